@@ -229,7 +229,7 @@ def test_the_orbits_at_the_bifurcations_have_a_multiplier_plus_or_minus_one(name
     # The continuation's own extended system meets them.
     for kind, orbit in zip(Bifurcation, (node, doubling), strict=True):
         system = PaperUnknowns.of(orbit)
-        event = next(each for each in events_of(system.orbits) if each.name == kind)
+        event = next(each for each in events_of(system.equations) if each.name == kind)
         start = system.point(orbit) * (1 + 1e-4)
         settings = NewtonSettings(max_iterations=40)
         found = newton(system, start, system.event(event).condition, settings)

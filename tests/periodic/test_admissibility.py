@@ -78,7 +78,7 @@ def test_the_last_admissible_orbit_grazes_the_table(release):
     contact = SpringDamper(10.0, 0.05, release)
     orbit = orbit_at(contact, 1, np.linspace(1.9, 2.4, 6), Side.UNSTABLE)
     system = PaperUnknowns.of(orbit[0])
-    inside = partial(is_admissible, system.orbits)
+    inside = partial(is_admissible, system.equations)
     found = domain_limits(system, lambda y: inside(system.inner(y)), system.point(orbit))
     assert len(found) == 1
     at = orbits_along(system, found[0])

@@ -69,9 +69,11 @@ def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_tabl
 @pytest.mark.parametrize("name", ["restitution", "spring-damper"])
 def test_grazing_orbits_are_those_that_bisection_finds(name):
     whole = whole_branch(start(name).model, 1, 6.0, 0.1).resampled(100)
-    orbits = whole.problem.orbits
+    equations = whole.problem.equations
     bisected = domain_limits(
-        whole.problem, lambda y: is_admissible(orbits, whole.problem.inner(y)), whole.branch.points
+        whole.problem,
+        lambda y: is_admissible(equations, whole.problem.inner(y)),
+        whole.branch.points,
     )
     expected = bisected[:, -1]
     located = [each.amplitude for each in whole.special if each.kind == Special.GRAZING_FLIGHT]

@@ -78,7 +78,7 @@ def test_the_residual_is_that_of_the_papers_solution(
 
 
 def events_of(system):
-    events = (*bifurcations(system.orbits), *ends_of_contact(system.orbits))
+    events = (*bifurcations(system.equations), *ends_of_contact(system.equations))
     return tuple(system.event(event) for event in events)
 
 

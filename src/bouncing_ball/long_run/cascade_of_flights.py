@@ -43,7 +43,7 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
@@ -370,7 +370,7 @@ class _Followed(Batch):
         there = known[more]
         return above.take(more), Openings(amplitude[there], multiplier[there]), there
 
-    def _equations(self, flights: int) -> tuple[PeriodicOrbits, np.ndarray]:
+    def _equations(self, flights: int) -> tuple[OrbitEquations, np.ndarray]:
         """The equations of the orbits along Λ, and these orbits as a guess.
 
         From permanent contact the phases and durations differ by the order of ϖ⁻¹, the velocities
@@ -398,5 +398,5 @@ class _Followed(Batch):
         unit[:, -1] /= np.hypot(1, self.threshold)
         turns = np.eye(flights, dtype=int)[-1]
         balls = Balls(model, self.threshold)
-        problem = PeriodicOrbits(balls, flights, turns, (LAMBDA,), selects=True, unit=unit)
+        problem = OrbitEquations(balls, flights, turns, (LAMBDA,), selects=True, unit=unit)
         return problem, problem.point(phase, closing, duration, amplitude=amplitude)

@@ -15,7 +15,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches.switching import ahead, twice
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 FEIGENBAUM = 4.669201609102990
@@ -87,9 +87,9 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
 
 def _followed(row: Orbit, doublings: int) -> np.ndarray:
     """φ, δ′ and Λ at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
-    orbits = row.problem(LAMBDA)
-    y = row.point(orbits)
-    phase, velocity = (x[:, 0] for x in orbits.states(y))
+    equations = row.problem(LAMBDA)
+    y = row.point(equations)
+    phase, velocity = (x[:, 0] for x in equations.states(y))
     amplitude = np.broadcast_to(row.amplitude, phase.shape)
     found = np.full((doublings, row.size, 3), np.nan)
     found[0] = np.stack([phase, velocity, amplitude], axis=-1)
@@ -101,10 +101,10 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
             break
         with np.errstate(all="ignore"):
             # The coordinate is arsinh Λ.
-            guess = ahead(orbits, y, _SHARE * gap / np.hypot(1, before))
-            orbits, _ = twice(orbits, y)
-            solved = newton(orbits, guess, _condition(orbits), _SETTINGS)
-        amplitude = orbits.values(solved.point)[LAMBDA]
+            guess = ahead(equations, y, _SHARE * gap / np.hypot(1, before))
+            equations, _ = twice(equations, y)
+            solved = newton(equations, guess, _condition(equations), _SETTINGS)
+        amplitude = equations.values(solved.point)[LAMBDA]
         step = amplitude - before
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.
         # Feigenbaum's number underestimates a distance by a factor of at most 1.8 in all cascades
@@ -114,12 +114,12 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
         y = solved.point[good]
         before = amplitude[good]
         gap = step[good] / FEIGENBAUM
-        orbits = orbits.take(good)
-        phases, velocities = orbits.states(y)
+        equations = equations.take(good)
+        phases, velocities = equations.states(y)
         found[k, which] = np.stack([phases[:, 0], velocities[:, 0], before], axis=-1)
     return found
 
 
-def _condition(orbits: PeriodicOrbits):
+def _condition(equations: OrbitEquations):
     """The condition that the period of the orbits doubles."""
-    return lambda y: orbits.bifurcation(Bifurcation.PERIOD_DOUBLING, y)
+    return lambda y: equations.bifurcation(Bifurcation.PERIOD_DOUBLING, y)

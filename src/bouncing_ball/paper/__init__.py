@@ -25,7 +25,7 @@ Eqs.    what                      where
 21, 22  start of contact          ``models.dynamics.Dynamics.start``
 23      end of the contact        ``models.linear_contact.LinearContactDynamics.depart``
 ..      near a given duration     ``models.linear_contact.LinearContactDynamics.depart_after``
-24-26   return to the start       ``periodic.orbits.problem.PeriodicOrbits.residual``
+24-26   return to the start       ``periodic.orbits.problem.OrbitEquations.residual``
 ..      all, in unknowns of paper ``periodic.one_impact.paper_unknowns.PaperUnknowns``
 ..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
 ..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``

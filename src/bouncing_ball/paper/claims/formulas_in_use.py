@@ -37,7 +37,7 @@ _OF_ORBITS = (
     "models.dynamics.Dynamics.start",
     "models.linear_contact.LinearContactDynamics.depart",
     "models.linear_contact.LinearContactDynamics.depart_after",
-    "periodic.orbits.problem.PeriodicOrbits.residual",
+    "periodic.orbits.problem.OrbitEquations.residual",
     "periodic.one_impact.paper_unknowns.PaperUnknowns",
     "periodic.one_impact.spring_damper_branch.branch_point",
     "periodic.one_impact.spring_damper_bifurcations.saddle_node",

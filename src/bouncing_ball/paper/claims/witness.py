@@ -101,7 +101,7 @@ def formula_and_equations(shown: Shown) -> np.ndarray:
     distance = orbit.distance(near)
     if shown.bifurcation:
         kind = shown.bifurcation
-        condition = system.condition(lambda inner: system.orbits.bifurcation(kind, inner))
+        condition = system.condition(lambda inner: system.equations.bifurcation(kind, inner))
         turn = reduce_angle(orbit.phase - near.phase)
         distance = np.maximum(abs(orbit.amplitude - near.amplitude), abs(turn))
     with np.errstate(all="ignore"):

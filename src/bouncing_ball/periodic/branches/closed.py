@@ -50,7 +50,7 @@ def without_start(found: Followed, start: Orbit) -> Followed:
     """
     if not start.kind:
         return found
-    here = start.point(found.problem.orbits)
+    here = start.point(found.problem.equations)
     branch = found.branch
     others = [each for each in branch.special if np.linalg.norm(each.point - here) > _SAME]
     return replace(found, branch=replace(branch, special=tuple(others)))

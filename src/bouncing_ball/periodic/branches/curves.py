@@ -44,7 +44,7 @@ from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition
 from bouncing_ball.periodic.orbits.special import (
     Special,
@@ -90,7 +90,7 @@ class Degenerate(StrEnum):
     GENERALIZED = "generalized period doubling"
 
 
-def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
+def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
     """g and its gradient for a kind of special orbit.
 
     Raises
@@ -100,14 +100,14 @@ def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
     """
     if str(kind) in list(map(str, Bifurcation)):
         bifurcation = Bifurcation(str(kind))
-        return lambda y: orbits.bifurcation(bifurcation, y)
+        return lambda y: equations.bifurcation(bifurcation, y)
     if kind is Special.GRAZING_RELEASE:
-        return lambda y: release_condition(orbits, y)
+        return lambda y: release_condition(equations, y)
     if kind not in _MARGINS:
         known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, *_MARGINS])
         raise ParameterError(f"{{}} is not one of {known}", repr(str(kind)))
     margin = _MARGINS[kind]
-    return vanishing(lambda y: margin(orbits, y))
+    return vanishing(lambda y: margin(equations, y))
 
 
 @dataclass(frozen=True)
@@ -117,18 +117,18 @@ class CurveProblem:
     ``orbits`` has two parameters that vary, and ``condition`` is g with its gradient.
     """
 
-    orbits: PeriodicOrbits
+    equations: OrbitEquations
     condition: Condition
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """The equations of the orbit and g, shape (..., N + 1)."""
         value, _ = self.condition(y)
-        return np.concatenate([self.orbits.residual(y), value[..., np.newaxis]], axis=-1)
+        return np.concatenate([self.equations.residual(y), value[..., np.newaxis]], axis=-1)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Its Jacobian, shape (..., N + 1, N + 2)."""
         _, gradient = self.condition(y)
-        matrix = self.orbits.jacobian(y)
+        matrix = self.equations.jacobian(y)
         return np.concatenate([matrix, gradient[..., np.newaxis, :]], axis=-2)
 
 
@@ -174,19 +174,19 @@ def curve_through(
     ParameterError
         If the balls have no such parameter, or no curve is defined for the kind.
     """
-    orbits = start.problem(along, across)
-    guess = start.point(orbits)
-    windows = _ranges(orbits, {along: along_window, across: across_window})
+    equations = start.problem(along, across)
+    guess = start.point(equations)
+    windows = _ranges(equations, {along: along_window, across: across_window})
     if kind is Special.STICKING:
         first, second = windows.values()
-        return Curve(orbits, sticking_curve(orbits, guess, (first, second), most), kind)
-    problem = CurveProblem(orbits, condition_of(orbits, kind))
-    limits = _limits(orbits, windows)
+        return Curve(equations, sticking_curve(equations, guess, (first, second), most), kind)
+    problem = CurveProblem(equations, condition_of(equations, kind))
+    limits = _limits(equations, windows)
     # Where an impact grazes, so does its release.
-    ends = [] if kind is Special.GRAZING_IMPACT else [loss_of_release(orbits)]
+    ends = [] if kind is Special.GRAZING_IMPACT else [loss_of_release(equations)]
     first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
-        places = orbit_of_point(orbits, first).parameters.items()
+        places = orbit_of_point(equations, first).parameters.items()
         where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
         raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another at {where}")
     with np.errstate(all="ignore"):
@@ -205,18 +205,18 @@ def curve_through(
         named = replace(
             branch,
             special=tuple(special),
-            start=_explained_end(orbits, backwards, kind, windows),
-            end=_explained_end(orbits, branch, kind, windows),
+            start=_explained_end(equations, backwards, kind, windows),
+            end=_explained_end(equations, branch, kind, windows),
         )
-    return Curve(orbits, named, kind)
+    return Curve(equations, named, kind)
 
 
 def _explained_end(
-    orbits: PeriodicOrbits, branch: Branch, kind: Special, ranges: dict[str, Window]
+    equations: OrbitEquations, branch: Branch, kind: Special, ranges: dict[str, Window]
 ) -> End:
     """The end of a curve, with what is there if its points accumulate."""
-    tests = [each for each in (*events(orbits), loss_of_release(orbits)) if each.name != kind]
-    end = explained(branch, tests, _limits(orbits, ranges))
+    tests = [each for each in (*events(equations), loss_of_release(equations)) if each.name != kind]
+    end = explained(branch, tests, _limits(equations, ranges))
     if not end.stuck or end != branch.end:
         return end
     last = branch.points[-1]
@@ -225,12 +225,15 @@ def _explained_end(
             if abs(np.arcsinh(bound) - at) < CURVE_STEPS.creep:
                 shown = f"{name.replace('_', ' ')} = {bound:g}"
                 return End(f"the points accumulate next to {shown}, the end of its range")
-    if orbits.impacts == 1 and _zero_ahead(branch, lambda y: flight_time(orbits, y)) is not None:
+    if (
+        equations.impacts == 1
+        and _zero_ahead(branch, lambda y: flight_time(equations, y)) is not None
+    ):
         return End(MERGES)
-    place = _zero_ahead(branch, loss_of_release(orbits).function)
+    place = _zero_ahead(branch, loss_of_release(equations).function)
     if place is None:
         return end
-    values = orbits.values(place).items()
+    values = equations.values(place).items()
     where = ", ".join(f"{name.replace('_', ' ')} = {value:.3g}" for name, value in values)
     sentence = (
         f"the orbit is next to a release without speed, at about {where}, where its equations are "
@@ -262,11 +265,11 @@ def _special_at(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
     return point
 
 
-def _ranges(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> dict[str, Window]:
+def _ranges(equations: OrbitEquations, windows: dict[str, Window | None]) -> dict[str, Window]:
     """The ranges of both parameters, inside their windows if there are any."""
     found = {}
     for name, window in windows.items():
-        low, high = orbits.balls.bounds(name)
+        low, high = equations.balls.bounds(name)
         if name == LAMBDA:
             low = LOWEST
         if window is not None:
@@ -276,17 +279,17 @@ def _ranges(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> dict[s
     return found
 
 
-def _limits(orbits: PeriodicOrbits, ranges: dict[str, Window]) -> list[Event]:
+def _limits(equations: OrbitEquations, ranges: dict[str, Window]) -> list[Event]:
     """The ends of the ranges of both parameters, as terminal events."""
     found = []
     for j, (name, within) in enumerate(ranges.items()):
-        found += limits_of(name, within, orbits.equations + j)
+        found += limits_of(name, within, equations.size + j)
     return found
 
 
-def _null_vector(orbits: PeriodicOrbits, y: np.ndarray, reference: np.ndarray) -> np.ndarray:
+def _null_vector(equations: OrbitEquations, y: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """u with a zero for each parameter, oriented along a reference, shape (..., N + 2)."""
-    matrix = orbits.jacobian(y)[..., : orbits.equations]
+    matrix = equations.jacobian(y)[..., : equations.size]
     vector = null_vector(matrix)
     vector = vector * np.where(vector @ reference < 0, -1.0, 1.0)[..., np.newaxis]
     none = np.zeros((*y.shape[:-1], 2))
@@ -297,15 +300,15 @@ def _cusps(problem: CurveProblem, branch: Branch, kind: Special) -> list[Special
     """The cusps, which lie where the direction in the plane of the parameters is reversed."""
     if kind is not Special.SADDLE_NODE:
         return []
-    orbits = problem.orbits
+    equations = problem.equations
     direction = branch.tangents[:, -2:]
     turned = np.flatnonzero(np.sum(direction[1:] * direction[:-1], axis=-1) < 0)
     found = []
     for k in turned:
         left = branch.points[k]
         right = branch.points[k + 1]
-        reference = _null_vector(orbits, left, branch.tangents[k, : orbits.equations])
-        test = _quadratic(problem, reference[: orbits.equations])
+        reference = _null_vector(equations, left, branch.tangents[k, : equations.size])
+        test = _quadratic(problem, reference[: equations.size])
         cusp = locate(problem, Event(Degenerate.CUSP, test), left, right, _BY_DIFFERENCES)
         if cusp is not None:
             found.append(cusp)
@@ -317,7 +320,7 @@ def _quadratic(problem: CurveProblem, reference: np.ndarray) -> Callable[[np.nda
 
     def test(y: np.ndarray) -> np.ndarray:
         _, gradient = problem.condition(y)
-        return np.sum(gradient * _null_vector(problem.orbits, y, reference), axis=-1)
+        return np.sum(gradient * _null_vector(problem.equations, y, reference), axis=-1)
 
     return test
 
@@ -333,7 +336,7 @@ def _resonances(problem: CurveProblem, branch: Branch, kind: Special) -> list[Sp
     name = names[kind]
 
     def excess(y: np.ndarray) -> np.ndarray:
-        return problem.orbits.trace_and_determinant(y)[1] - 1
+        return problem.equations.trace_and_determinant(y)[1] - 1
 
     values = excess(branch.points)
     if np.all(np.abs(values) < _RESONANT):
@@ -357,7 +360,7 @@ def _generalized(problem: CurveProblem, branch: Branch, kind: Special) -> list[S
 
     def cubic(y: np.ndarray) -> np.ndarray:
         rows = y.reshape(-1, y.shape[-1])
-        return np.reshape([_cubic(problem.orbits, row) for row in rows], y.shape[:-1])
+        return np.reshape([_cubic(problem.equations, row) for row in rows], y.shape[:-1])
 
     event = Event(Degenerate.GENERALIZED, cubic)
     found = []
@@ -384,16 +387,16 @@ def _sign_changes(
     return [(int(tested[k]), int(tested[k + 1])) for k in changed]
 
 
-def _cubic(orbits: PeriodicOrbits, y: np.ndarray) -> float:
+def _cubic(equations: OrbitEquations, y: np.ndarray) -> float:
     """The coefficient of a period doubling; NaN outside the ranges of the parameters, where
     Newton's method may try points, and at a 1:2 resonance, which has another normal form.
     """
-    dynamics, _ = orbits.dynamics(y)
-    if dynamics is None or _is_resonant(orbits, y):
+    dynamics, _ = equations.dynamics(y)
+    if dynamics is None or _is_resonant(equations, y):
         return np.nan
-    return coefficient(orbits, y, Bifurcation.PERIOD_DOUBLING)[0]
+    return coefficient(equations, y, Bifurcation.PERIOD_DOUBLING)[0]
 
 
-def _is_resonant(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def _is_resonant(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """Whether det M is 1, so that both multipliers of a saddle-node or of a doubling are equal."""
-    return np.abs(orbits.trace_and_determinant(y)[1] - 1) < _RESONANT
+    return np.abs(equations.trace_and_determinant(y)[1] - 1) < _RESONANT

@@ -17,7 +17,7 @@ from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.lost_release import lost_release
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, turns_of_half, twice
+from bouncing_ball.periodic.orbits.problem import OrbitEquations, turns_of_half, twice
 from bouncing_ball.periodic.orbits.special import (
     CLOSE,
     MEANINGS,
@@ -75,23 +75,23 @@ def orbits_on(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
     Where a release is lost, which is a double zero, the duration among the unknowns is the one that
     is known.
     """
-    orbits = problem.orbits
+    equations = problem.equations
     inner = problem.inner(y)
-    found = orbit_of_point(orbits, inner, kind)
-    if not orbits.selects:
+    found = orbit_of_point(equations, inner, kind)
+    if not equations.selects:
         return found
-    unknown = orbits.durations(inner)
+    unknown = equations.durations(inner)
     same = np.abs(found.durations - unknown) <= _SAME_DURATION
     return replace(found, durations=np.where(same, found.durations, unknown))
 
 
 def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
     """The orbits at points y, with phases that pass ±π continuously along a branch."""
-    orbits = problem.orbits
+    equations = problem.equations
     found = orbits_on(problem, y)
-    phase, _ = orbits.states(problem.inner(y))
+    phase, _ = equations.states(problem.inner(y))
     turned = np.round((phase - found.phases) / (2 * np.pi))
-    turns = np.broadcast_to(orbits.turns, phase.shape)
+    turns = np.broadcast_to(equations.turns, phase.shape)
     return replace(found, phases=found.phases + 2 * np.pi * turned, turns=turns)
 
 
@@ -166,7 +166,7 @@ class Followed(Orbits):
     kinds = Special
 
 
-def point_near(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
+def point_near(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
     """The point of the orbit at the parameters of an approximate one.
 
     Raises
@@ -184,15 +184,15 @@ def point_near(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
     return point
 
 
-def range_ahead(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> Window:
+def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) -> Window:
     """The range of the parameter on a branch: up to the value ``to``, and as far beyond the start.
 
     Without such a value it is the range of the parameter. If this has no largest value, the largest
     one is ten times that at the start, and at least 10.
     """
-    (name,) = orbits.along
-    low, high = orbits.balls.bounds(name)
-    here = float(orbits.values(start)[name])
+    (name,) = equations.along
+    low, high = equations.balls.bounds(name)
+    here = float(equations.values(start)[name])
     if to is not None:
         back = 2 * here - to
         return Window(max(low, min(to, back)), min(high, max(to, back)))
@@ -254,23 +254,23 @@ def branch_from(
     ParameterError
         If the balls have no such parameter.
     """
-    orbits = start.problem(along)
-    here = point_near(orbits, start.point(orbits))
+    equations = start.problem(along)
+    here = point_near(equations, start.point(equations))
     if increasing is None:
-        increasing = to is None or bool(to > orbits.values(here)[along])
+        increasing = to is None or bool(to > equations.values(here)[along])
     if towards is None:
         towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
-    within = range_ahead(orbits, here, to)
-    limits = limits_of(along, within, orbits.equations)
-    near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
+    within = range_ahead(equations, here, to)
+    limits = limits_of(along, within, equations.size)
+    near = min(_NEAR, float(turns_apart(equations, here)) / 2)
     with np.errstate(all="ignore"):
         branch = _followed(
-            orbits, here, limits, near=near, towards=towards, control=control, most=most
+            equations, here, limits, near=near, towards=towards, control=control, most=most
         )
         for _ in range(_TRIES):
             if branch.end.event != _HALVES:
                 break
-            whole = _up_to_halving(orbits, branch)
+            whole = _up_to_halving(equations, branch)
             if whole is not None:
                 branch = whole
                 break
@@ -279,16 +279,16 @@ def branch_from(
             last = branch.points[-1]
             ahead = branch.tangents[-1]
             further = _followed(
-                orbits, last, limits, near=near, towards=ahead, control=control, most=left
+                equations, last, limits, near=near, towards=ahead, control=control, most=left
             )
             branch = _joined(branch, further)
-        tests = [*events(orbits), loss_of_release(orbits)]
-        branch = _up_to_limit(orbits, branch, within)
-        whole = replace(branch, end=_explained_end(orbits, branch, tests, limits))
-        return Followed(orbits, _with_lost_release(orbits, whole))
+        tests = [*events(equations), loss_of_release(equations)]
+        branch = _up_to_limit(equations, branch, within)
+        whole = replace(branch, end=_explained_end(equations, branch, tests, limits))
+        return Followed(equations, _with_lost_release(equations, whole))
 
 
-def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Window) -> Branch:
+def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> Branch:
     """A branch that ended next to an end of the range of its parameter, with the orbit at this end.
 
     Steps beyond the end fail, because there are no balls, so that the steps become too short.
@@ -301,7 +301,7 @@ def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Window) -> Bran
     # Rounding of sinh must not lead out of the range.
     while not within.low <= np.sinh(at) <= within.high:
         at = np.nextafter(at, last[-1])
-    point, why = solution_at(orbits, np.array([*last[:-1], at]), PATIENT)
+    point, why = solution_at(equations, np.array([*last[:-1], at]), PATIENT)
     if why:
         return branch
     return replace(
@@ -311,11 +311,11 @@ def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Window) -> Bran
     )
 
 
-def _with_lost_release(orbits: PeriodicOrbits, branch: Branch) -> Branch:
+def _with_lost_release(equations: OrbitEquations, branch: Branch) -> Branch:
     """A branch with the orbit at which its ball no longer leaves the table, if it ends there."""
     if branch.end.event != Special.RELEASE_LOST:
         return branch
-    place = lost_release(orbits, branch.points[-1])
+    place = lost_release(equations, branch.points[-1])
     if place is None:
         return branch
     special = (*branch.special, SpecialPoint(Special.RELEASE_LOST, place))
@@ -335,7 +335,7 @@ def _joined(branch: Branch, further: Branch) -> Branch:
 
 
 def _followed(
-    orbits: PeriodicOrbits,
+    equations: OrbitEquations,
     start: np.ndarray,
     limits: list[Event],
     *,
@@ -347,50 +347,50 @@ def _followed(
     """The branch from a solution on, at most up to where its turns are so near to each other."""
 
     def two_turns(y: np.ndarray) -> np.ndarray:
-        return turns_apart(orbits, y) - near
+        return turns_apart(equations, y) - near
 
     # The first steps must not pass over a place nearby where the turns are equal. If a later step
     # does, the branch is cut off there.
-    initial = min(control.initial, near * np.sqrt(2 * orbits.impacts) / 2)
+    initial = min(control.initial, near * np.sqrt(2 * equations.impacts) / 2)
     equal_turns = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
-    at_rest = _resting(orbits, start)
+    at_rest = _resting(equations, start)
     try:
         branch = continue_branch(
-            orbits,
+            equations,
             start,
             towards=towards,
-            events=[*events(orbits), loss_of_release(orbits), equal_turns, *at_rest, *limits],
+            events=[*events(equations), loss_of_release(equations), equal_turns, *at_rest, *limits],
             control=replace(control, initial=initial),
             max_points=most,
         )
     except ContinuationError as error:
         raise NoOrbitError(str(error)) from None
-    return _cut_off(orbits, branch)
+    return _cut_off(equations, branch)
 
 
-def _resting(orbits: PeriodicOrbits, start: np.ndarray) -> list[Event]:
+def _resting(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     """The end of a branch of orbits of the restitution models with a rest on the table where the
     rest fills nearly the whole period.
 
     All flights vanish together there, and the bounces before the rest are so much slower than the
     first one that rounding errors decide on them, before the steps become short.
     """
-    legs = orbits.legs(start)
-    if orbits.impacts == 1 or legs.departure is None or not legs.dynamics.forgets:
+    legs = equations.legs(start)
+    if equations.impacts == 1 or legs.departure is None or not legs.dynamics.forgets:
         return []
     if not np.any(legs.departure.sticks):
         return []
 
     def aloft(y: np.ndarray) -> np.ndarray:
-        return np.sum(orbits.intervals(y) - orbits.durations(y), axis=-1)
+        return np.sum(equations.intervals(y) - equations.durations(y), axis=-1)
 
     near = min(CLOSE, float(aloft(start)) / 2)
     return [Event(_ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=_ALL_VANISH)]
 
 
-def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
+def _cut_off(equations: OrbitEquations, branch: Branch) -> Branch:
     """The branch up to the first step on which the difference of the two turns is reversed."""
-    difference = halves(orbits, branch.points)
+    difference = halves(equations, branch.points)
     reversed_at = np.flatnonzero(np.sum(difference[1:] * difference[:-1], axis=-1) < 0)
     if not reversed_at.size:
         return branch
@@ -406,22 +406,22 @@ def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
     )
 
 
-def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
+def _up_to_halving(equations: OrbitEquations, branch: Branch) -> Branch | None:
     """The branch up to the period halving, which is a period doubling of the orbit of half the
     period; None if there is none near the end of the branch.
 
     At the halving the equations have two directions of solutions, so that Newton's method fails.
     """
-    k = orbits.impacts // 2
+    k = equations.impacts // 2
     last = branch.points[-1]
-    phase, velocity = orbits.states(last)
+    phase, velocity = equations.states(last)
     first = phase[:k]
     turned = np.concatenate([first, first + reduce_angle(phase[k:] - first)])
-    turns = turns_of_half(orbits.turns, phase)
-    half = replace(orbits, impacts=k, turns=turns, resumes=orbits.resuming[:k])
-    rows = (turned, velocity, orbits.durations(last))
+    turns = turns_of_half(equations.turns, phase)
+    half = replace(equations, impacts=k, turns=turns, resumes=equations.resuming[:k])
+    rows = (turned, velocity, equations.durations(last))
     means = (row.reshape(2, k).mean(axis=0) for row in rows)
-    guess = half.point(*means, **orbits.values(last))
+    guess = half.point(*means, **equations.values(last))
     kind = Bifurcation.PERIOD_DOUBLING
     found = newton(half, guess, lambda y: half.bifurcation(kind, y), PATIENT)
     if not (found.converged and np.linalg.norm(found.point - guess) < _NEAR):
@@ -440,14 +440,14 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
 
 
 def _explained_end(
-    orbits: PeriodicOrbits, branch: Branch, tests: Sequence[Event], limits: Sequence[Event]
+    equations: OrbitEquations, branch: Branch, tests: Sequence[Event], limits: Sequence[Event]
 ) -> End:
     """The end of a branch: see :func:`explained`.
 
     Where the only flight of an orbit vanishes, so do the speeds of its impact and of its release.
     """
-    if branch.end.stuck and orbits.impacts == 1:
-        if float(flight_time(orbits, branch.points[-1])) < CLOSE:
+    if branch.end.stuck and equations.impacts == 1:
+        if float(flight_time(equations, branch.points[-1])) < CLOSE:
             return End(_STAYS)
     return explained(branch, tests, limits)
 

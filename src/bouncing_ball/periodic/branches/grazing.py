@@ -32,7 +32,7 @@ from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
 
 # Speeds of the additional impact of the first orbit, of which the first that Newton's method
@@ -143,7 +143,7 @@ def _require_grazing(orbit: Orbit) -> None:
         raise NoOrbitError("the orbit is no grazing of a flight of a branch")
 
 
-def _problem(orbit: Orbit, along: str) -> tuple[PeriodicOrbits, np.ndarray]:
+def _problem(orbit: Orbit, along: str) -> tuple[OrbitEquations, np.ndarray]:
     """The equations of a grazing orbit, and the orbit.
 
     Raises
@@ -165,7 +165,7 @@ def _problem(orbit: Orbit, along: str) -> tuple[PeriodicOrbits, np.ndarray]:
     return problem, here
 
 
-def _touch(problem: PeriodicOrbits, y: np.ndarray) -> Touch:
+def _touch(problem: OrbitEquations, y: np.ndarray) -> Touch:
     """The lowest local minimum of the flights of an orbit."""
     legs = problem.legs(y)
     flight = legs.departure.flight
@@ -190,7 +190,7 @@ def _touch(problem: PeriodicOrbits, y: np.ndarray) -> Touch:
     )
 
 
-def _height(problem: PeriodicOrbits, y: np.ndarray, aside: float) -> float:
+def _height(problem: OrbitEquations, y: np.ndarray, aside: float) -> float:
     """The least height of the flights beside an orbit, at another value of the parameter."""
     guess = np.array([*y[:-1], y[-1] + aside])
     return float(flight_margin(problem, point_near(problem, guess)))
@@ -253,7 +253,7 @@ def one_more(orbit: Orbit, along: str, speed: float | None = None) -> Orbit:
 def faster(orbit: Orbit, along: str, leg: int) -> np.ndarray:
     """The direction of the unknowns in which the impact after another one, ``leg``, gets faster."""
     problem = orbit.problem(along)
-    size = problem.equations + 1
+    size = problem.size + 1
     return -np.eye(size)[2 * (leg + 1) + 1]
 
 

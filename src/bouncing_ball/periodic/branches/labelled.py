@@ -17,7 +17,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches import observables
 from bouncing_ball.periodic.branches.following import Orbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.saved import KEPT
 from bouncing_ball.periodic.orbits.special import Special
 
@@ -137,7 +137,7 @@ class SpecialCurve(_Orbits):
         return _one_by_one(replace(Orbit.of_dataset(self), kind=kind))
 
 
-def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:
+def _attributes(problem: OrbitEquations) -> dict[str, Any]:
     """The values of the parameters that do not vary, and k and m."""
     values = problem.balls.values
     varied = {name: values[name] for name in problem.along}
@@ -157,16 +157,16 @@ def labelled(found: Orbits, made_by: str, **attributes: str) -> dict[str, Any]:
         dims, values = variables[name]
         variables[name] = dims, reduce_angle(values)
     variables["phase"] = variables["phase"][0], found.row.phases
-    along = found.problem.orbits.along
+    along = found.problem.equations.along
     changing = {*along, *(name for name in variables if f"special_{name}" in variables)}
     known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in changing}
     names = {f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()}
     named = SHARED | known | names | observables.VARIABLES | _AXES | KEPT
     data = {name: (*x, named[name].attributes()) for name, x in variables.items()}
-    axes = {"point": len(found), "impact": found.problem.orbits.impacts, "multiplier": 2}
+    axes = {"point": len(found), "impact": found.problem.equations.impacts, "multiplier": 2}
     coords = {name: (name, np.arange(size)) for name, size in axes.items()}
     coords |= {name: data.pop(name) for name in ("special", "end")}
-    of_ball = _attributes(found.problem.orbits)
+    of_ball = _attributes(found.problem.equations)
     return {
         "data_vars": data,
         "coords": {name: (*x[:2], named[name].attributes()) for name, x in coords.items()},

@@ -153,10 +153,10 @@ def _merges(problem: Coordinates, points: np.ndarray) -> bool:
     line over that of the flight time, whereas at the grazing of an impact a flight remains.
     """
     inner = problem.inner(points)
-    flight = flight_time(problem.orbits, inner)
+    flight = flight_time(problem.equations, inner)
     if flight[0] < CLOSE:
         return True
-    speed = impact_margin(problem.orbits, inner)
+    speed = impact_margin(problem.equations, inner)
     rows = [0]
     for row, here in enumerate(speed):
         if here > _FASTER * speed[rows[-1]]:

@@ -17,7 +17,7 @@ from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
 from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball.periodic.branches.following import PATIENT, Window
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import sticking
 
 # The first, the largest and the smallest step in the coordinate of the parameter that is given.
@@ -36,13 +36,13 @@ _OTHER = {-1: -2, -2: -1}
 
 
 def sticking_curve(
-    orbits: PeriodicOrbits, start: np.ndarray, windows: tuple[Window, Window], most: int
+    equations: OrbitEquations, start: np.ndarray, windows: tuple[Window, Window], most: int
 ) -> Branch:
     """The limits of sticking through one of them, in both directions.
 
     Parameters
     ----------
-    orbits : PeriodicOrbits
+    orbits : OrbitEquations
         The equations, with the two parameters.
     start : ndarray, shape (N + 2,)
         An orbit at the end of sticking.
@@ -57,13 +57,13 @@ def sticking_curve(
         If there is no end of sticking near the start.
     """
     try:
-        first = _limit(orbits, start, -1)
+        first = _limit(equations, start, -1)
     except NoOrbitError as error:
         raise NoOrbitError(
             f"no end of sticking was found near the start of the curve: {error}"
         ) from None
-    forward, end = _one_way(orbits, first, 1.0, windows, most)
-    backward, begin = _one_way(orbits, first, -1.0, windows, most)
+    forward, end = _one_way(equations, first, 1.0, windows, most)
+    backward, begin = _one_way(equations, first, -1.0, windows, most)
     points = np.array([*backward[:0:-1], *forward])
     slopes = np.gradient(points, axis=0) if len(points) > 1 else np.ones_like(points)
     tangents = slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)
@@ -71,7 +71,7 @@ def sticking_curve(
 
 
 def _one_way(
-    orbits: PeriodicOrbits,
+    equations: OrbitEquations,
     first: np.ndarray,
     sign: float,
     windows: tuple[Window, Window],
@@ -98,7 +98,7 @@ def _one_way(
         guess = here + slope * (ahead - here[given])
         guess[given] = ahead
         try:
-            found = _limit(orbits, guess, given)
+            found = _limit(equations, guess, given)
         except NoOrbitError as error:
             step /= 2
             if step >= _SMALLEST:
@@ -108,11 +108,11 @@ def _one_way(
         if not within[other][0] <= found[other] <= within[other][1]:
             window = windows[other]
             bound = window.high if found[other] > within[other][1] else window.low
-            return points, End(f"{_said(orbits, other)} = {bound:g} is passed")
+            return points, End(f"{_said(equations, other)} = {bound:g} is passed")
         points.append(found)
         if ahead == last:
             value = windows[given].high if heading > 0 else windows[given].low
-            return points, End(f"{_said(orbits, given)} = {value:g} is reached")
+            return points, End(f"{_said(equations, given)} = {value:g} is reached")
         step = min(2 * step, _LARGEST)
         change = found - here
         if abs(change[other]) > _FASTER * abs(change[given]):
@@ -123,12 +123,12 @@ def _one_way(
     return points, End(f"reached the limit of {most} points", finished=False)
 
 
-def _said(orbits: PeriodicOrbits, column: int) -> str:
+def _said(equations: OrbitEquations, column: int) -> str:
     """The name of the parameter in a column, in words."""
-    return orbits.along[column].replace("_", " ")
+    return equations.along[column].replace("_", " ")
 
 
-def _limit(orbits: PeriodicOrbits, guess: np.ndarray, given: int) -> np.ndarray:
+def _limit(equations: OrbitEquations, guess: np.ndarray, given: int) -> np.ndarray:
     """The end of sticking next to a guess, with its coordinate of one parameter, by its column.
 
     Raises
@@ -137,8 +137,8 @@ def _limit(orbits: PeriodicOrbits, guess: np.ndarray, given: int) -> np.ndarray:
         If there is none near.
     """
     free = _OTHER[given]
-    value = {orbits.along[given]: np.sinh(guess[given])}
-    one = replace(orbits, along=(orbits.along[free],), balls=orbits.balls.at(value))
+    value = {equations.along[given]: np.sinh(guess[given])}
+    one = replace(equations, along=(equations.along[free],), balls=equations.balls.at(value))
     start = np.array([*guess[:-2], guess[free]])
     with np.errstate(all="ignore"):
         # Along the branch, because its states change much faster than the parameter.
@@ -160,6 +160,6 @@ def _limit(orbits: PeriodicOrbits, guess: np.ndarray, given: int) -> np.ndarray:
     raise NoOrbitError("the balls of all orbits near it come to rest, or those of none")
 
 
-def _rests(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def _rests(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """Whether the ball rests on the table at orbits, in one of their impacts."""
-    return np.any(orbits.durations(y) > 0, axis=-1)
+    return np.any(equations.durations(y) > 0, axis=-1)

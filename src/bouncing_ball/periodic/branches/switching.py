@@ -15,7 +15,7 @@ from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
 from bouncing_ball.periodic.branches.following import PATIENT, point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, turns_of_half, twice
+from bouncing_ball.periodic.orbits.problem import OrbitEquations, turns_of_half, twice
 from bouncing_ball.periodic.orbits.stability import Bifurcation, is_stable
 
 ASIDE = 0.02
@@ -34,50 +34,50 @@ _MEASURED = 1e-4
 _SIDE = 1e-3
 
 
-def apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def apart(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The unit direction in which two turns of orbits at their period doublings move apart.
 
     It is a direction of the doubled orbit's unknowns. The first impact moves along the eigenvector
     of the multiplier -1, each leg maps its deviation to the next impact, and the second turn moves
     against the first.
     """
-    product = orbits.monodromy(y)
+    product = equations.monodromy(y)
     first = np.stack([-1 - product.d, product.c], axis=-1)
     second = np.stack([product.b, -1 - product.a], axis=-1)
     longer = np.linalg.norm(first, axis=-1) > np.linalg.norm(second, axis=-1)
     deviation = np.where(longer[..., np.newaxis], first, second)
     deviations = []
-    for matrix in np.moveaxis(orbits.matrices(y), -3, 0):
+    for matrix in np.moveaxis(equations.matrices(y), -3, 0):
         deviations.append(deviation)
         deviation = (matrix @ deviation[..., np.newaxis])[..., 0]
     turn = np.concatenate(deviations, axis=-1)
     # The equation of a duration says how it follows from the states.
-    rows = orbits.jacobian(y)[..., 2 * orbits.impacts :, : 2 * orbits.impacts]
+    rows = equations.jacobian(y)[..., 2 * equations.impacts :, : 2 * equations.impacts]
     longer_contacts = -(rows @ turn[..., np.newaxis])[..., 0]
-    parameters = np.zeros((*y.shape[:-1], len(orbits.along)))
+    parameters = np.zeros((*y.shape[:-1], len(equations.along)))
     parts = [turn, -turn, longer_contacts, -longer_contacts, parameters]
     whole = np.concatenate(parts, axis=-1)
     return whole / np.linalg.norm(whole, axis=-1, keepdims=True)
 
 
 def doubled(
-    orbits: PeriodicOrbits, y: np.ndarray, aside: np.ndarray | float = ASIDE
-) -> tuple[PeriodicOrbits, Correction]:
+    equations: OrbitEquations, y: np.ndarray, aside: np.ndarray | float = ASIDE
+) -> tuple[OrbitEquations, Correction]:
     """The orbits of twice the period at the distance ``aside`` from orbits at period doublings."""
-    whole, at = twice(orbits, y)
-    direction = apart(orbits, y)
+    whole, at = twice(equations, y)
+    direction = apart(equations, y)
     guess = at + np.asarray(aside)[..., np.newaxis] * direction
     return whole, newton(whole, guess, plane(direction, guess), PATIENT)
 
 
-def ahead(orbits: PeriodicOrbits, y: np.ndarray, above: np.ndarray) -> np.ndarray:
+def ahead(equations: OrbitEquations, y: np.ndarray, above: np.ndarray) -> np.ndarray:
     """Orbits of twice the period, at a coordinate of the parameter ``above`` that of the doublings.
 
     The coordinate rises with the square of the distance from the doubling,
     by an amount that is measured at a small distance; Newton's method then corrects the orbits.
     """
-    whole, at = twice(orbits, y)
-    _, near = doubled(orbits, y, np.full(y.shape[:-1], _MEASURED))
+    whole, at = twice(equations, y)
+    _, near = doubled(equations, y, np.full(y.shape[:-1], _MEASURED))
     step = near.point - at
     share = np.sqrt(np.abs(above / step[..., -1]))
     guess = at + share[..., np.newaxis] * step
@@ -95,23 +95,23 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
     NoOrbitError
         If the orbit is no period doubling, or if no orbit of twice the period is found beside it.
     """
-    orbits = doubling.problem(along)
-    here = doubling.point(orbits)
+    equations = doubling.problem(along)
+    here = doubling.point(equations)
     with np.errstate(all="ignore"):
-        product = orbits.monodromy(here)
-        off = float(Bifurcation.PERIOD_DOUBLING.test(*orbits.trace_and_determinant(here)))
+        product = equations.monodromy(here)
+        off = float(Bifurcation.PERIOD_DOUBLING.test(*equations.trace_and_determinant(here)))
         size = 1 + float(np.max(np.abs(product)))
         if not abs(off) <= _DOUBLES * size:
             raise NoOrbitError(
                 f"the orbit is no period doubling: det(M + 1) = {off:.1e}, which is 0 at one"
             )
-        whole, found = doubled(orbits, here, aside)
+        whole, found = doubled(equations, here, aside)
     if not found.converged:
         raise NoOrbitError(
             f"no orbit of twice the period was found beside the period doubling: residual "
             f"{float(found.residual):.1e} after {int(found.iterations)} Newton iterations"
         )
-    _, at = twice(orbits, here)
+    _, at = twice(equations, here)
     away = float(np.linalg.norm(found.point - at))
     if not away <= _FARTHER * aside:
         raise NoOrbitError(
@@ -141,8 +141,8 @@ def first_doubled(doubling: Orbit, along: str, to: float | None) -> tuple[Orbit,
         )
     if to is not None and (to - at) * change >= 0 and abs(to - at) < abs(change):
         return found, None
-    orbits = doubling.problem(along)
-    return found, apart(orbits, doubling.point(orbits))
+    equations = doubling.problem(along)
+    return found, apart(equations, doubling.point(equations))
 
 
 def halved(halving: Orbit) -> Orbit:
@@ -181,19 +181,19 @@ def sides(fold: Orbit, along: str) -> Sides:
     NoOrbitError
         If there is no orbit near the saddle-node.
     """
-    orbits = fold.problem(along)
-    here = point_near(orbits, fold.point(orbits))
+    equations = fold.problem(along)
+    here = point_near(equations, fold.point(equations))
     axis = np.eye(here.size)[-1]
     # The direction of a branch whose parameter increases at the start, and the opposite one.
-    leaves = tangent(orbits.jacobian(here), axis)
+    leaves = tangent(equations.jacobian(here), axis)
     beside = here + _SIDE * np.array([1.0, -1.0])[:, np.newaxis] * leaves
     with np.errstate(all="ignore"):
-        found = newton(orbits, beside, plane(np.stack([leaves, leaves]), beside), PATIENT)
+        found = newton(equations, beside, plane(np.stack([leaves, leaves]), beside), PATIENT)
     rises = found.point[:, -1] > here[-1]
-    stable = is_stable(*orbits.trace_and_determinant(found.point)) & found.converged
+    stable = is_stable(*equations.trace_and_determinant(found.point)) & found.converged
     is_fold = bool(found.converged.all() and rises[0] == rises[1])
     return Sides(
-        at=float(orbits.values(here)[along]),
+        at=float(equations.values(here)[along]),
         above=bool(rises[0]) if is_fold else None,
         stable=leaves if stable[0] or not stable[1] else -leaves,
     )

@@ -18,7 +18,7 @@ from bouncing_ball.numerics.corrector import Condition
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class PaperUnknowns:
 
     Parameters
     ----------
-    orbits : PeriodicOrbits
+    equations : OrbitEquations
         The equations with one impact, along Λ.
     clock : float or array
         ϖ.
@@ -44,7 +44,7 @@ class PaperUnknowns:
     [0.0, 0.0]
     """
 
-    orbits: PeriodicOrbits
+    equations: OrbitEquations
     clock: Any = 1.0
 
     @classmethod
@@ -54,7 +54,7 @@ class PaperUnknowns:
 
     def take(self, which: Any) -> Self:
         """The equations of some orbits of a row."""
-        return replace(self, orbits=self.orbits.take(which), clock=pick(self.clock, which))
+        return replace(self, equations=self.equations.take(which), clock=pick(self.clock, which))
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The unknowns (φ, δ′, D, arsinh Λ) of y."""
@@ -81,7 +81,7 @@ class PaperUnknowns:
 
     def point(self, orbit: Orbit) -> np.ndarray:
         """y of n-T orbits, shape (..., N + 1)."""
-        return self.outer(orbit.point(self.orbits))
+        return self.outer(orbit.point(self.equations))
 
     def outer(self, inner: np.ndarray) -> np.ndarray:
         """y at the unknowns (φ, δ′, D, arsinh Λ)."""
@@ -100,19 +100,19 @@ class PaperUnknowns:
     @cached_property
     def _weights(self) -> np.ndarray:
         """The factors of the equations; that of the duration is of the order of a velocity."""
-        weights = np.ones((*np.shape(self.clock), self.orbits.equations))
+        weights = np.ones((*np.shape(self.clock), self.equations.size))
         weights[..., 2:] = self._clock
         return weights
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """The defects of the equations, shape (..., N)."""
-        return self._weights * self.orbits.residual(self.inner(y))
+        return self._weights * self.equations.residual(self.inner(y))
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """The Jacobian of the residual, shape (..., N, N + 1)."""
         # The duration of a contact that touches its release has infinite derivatives.
         with np.errstate(invalid="ignore"):
-            matrix = self.orbits.jacobian(self.inner(y)) @ self._slopes(y)
+            matrix = self.equations.jacobian(self.inner(y)) @ self._slopes(y)
         return self._weights[..., np.newaxis] * matrix
 
     def event(self, event: Event) -> Event:

@@ -26,7 +26,7 @@ from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, in_order, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
@@ -114,7 +114,7 @@ class _Search(NamedTuple):
         search = cls(model.flat(shape), index.astype(int), Instant(*rows[:size]))
         return search, rows[size:], shape
 
-    def guess(self, amplitude: np.ndarray, psi: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:
+    def guess(self, amplitude: np.ndarray, psi: np.ndarray) -> tuple[OrbitEquations, np.ndarray]:
         """The problem, and points y of the corrected model's orbits with instants at ψ."""
         t_c = self.instant.delay
         orbit = Orbit.of(
@@ -129,7 +129,7 @@ class _Search(NamedTuple):
         return problem, orbit.point(problem)
 
 
-def _solved(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
+def _solved(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
     """Solutions at the Λ of each guess; NaN where Newton's method does not converge."""
     y = guess.copy()
     todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
@@ -138,14 +138,14 @@ def _solved(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
             break
         fixed, unknowns = problem.take(todo).fixed(y[todo])
         found = solve(fixed.equations_at, unknowns, _SETTINGS)
-        y[todo, : fixed.equations] = found.point
+        y[todo, : fixed.size] = found.point
         todo = todo[~found.converged]
     y[todo] = np.nan
     return y
 
 
 def _orbits(
-    problem: PeriodicOrbits, y: np.ndarray, shape: tuple[int, ...]
+    problem: OrbitEquations, y: np.ndarray, shape: tuple[int, ...]
 ) -> tuple[Orbit, np.ndarray]:
     """The orbits at a row of points, and the test function of their saddle-nodes, in the shape of
     the arguments; NaN where y is NaN.
@@ -233,8 +233,8 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     ahead = tangent(problem.jacobian(start), np.ones_like(start))
     events = [
         *ends_of_contact(problem),
-        limit(LAMBDA, amplitude, sign=-1.0, column=problem.equations),
-        limit(LAMBDA, LOWEST, sign=1.0, column=problem.equations),
+        limit(LAMBDA, amplitude, sign=-1.0, column=problem.size),
+        limit(LAMBDA, LOWEST, sign=1.0, column=problem.size),
     ]
     tested = WithEvents(problem, events)
     branches = continue_branches(lambda _: tested, [start, start], [ahead, -ahead], _STEPS, _POINTS)
@@ -283,7 +283,7 @@ def continued(
         *bifurcations(problem),
         *ends_of_contact(problem),
         Event(_HERE, lambda y: y[..., -1] - here),
-        *limits_of(LAMBDA, Window(LOWEST, most), problem.equations),
+        *limits_of(LAMBDA, Window(LOWEST, most), problem.size),
     )
     try:
         branch = continue_branch(

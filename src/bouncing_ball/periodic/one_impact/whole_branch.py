@@ -271,11 +271,11 @@ def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -
     """The bifurcations and grazing orbits, of which those in ``ends`` are terminal, the ends of the
     domain in which orbits exist, and the bounds of Λ.
     """
-    orbits = problem.orbits
+    equations = problem.equations
     of_orbits = [
-        *passed_by(orbits),
-        *ends_of_contact(orbits),
-        *limits_of(LAMBDA, Window(LOWEST, top), orbits.equations),
+        *passed_by(equations),
+        *ends_of_contact(equations),
+        *limits_of(LAMBDA, Window(LOWEST, top), equations.size),
     ]
     return [
         replace(problem.event(event), terminal=event.terminal or event.name in ends)

@@ -22,7 +22,7 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, time_to_section, without_force
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -352,7 +352,7 @@ class Impacts(Batch):
         resumes = np.broadcast_to(self.resumes, whole).ravel()
         return dynamics, without_force(impact, lag_of(dynamics, resumes))
 
-    def problem(self, *along: str) -> PeriodicOrbits:
+    def problem(self, *along: str) -> OrbitEquations:
         """The equations of these orbits, with parameters that vary.
 
         Raises
@@ -369,7 +369,7 @@ class Impacts(Batch):
                     raise ParameterError(f"{other} follows from {name}: both cannot vary")
         dynamics, _ = self._start
         lasting = bool(np.any(self.durations > 0))
-        return PeriodicOrbits(
+        return OrbitEquations(
             balls=balls,
             impacts=self.impacts,
             turns=self.turns,
@@ -378,7 +378,7 @@ class Impacts(Batch):
             resumes=np.broadcast_to(self.resumes, (self.impacts,)),
         )
 
-    def point(self, problem: PeriodicOrbits) -> np.ndarray:
+    def point(self, problem: OrbitEquations) -> np.ndarray:
         """y of these orbits among the unknowns of a problem, shape (..., N + parameters)."""
         dynamics, impact = self._start
         whole = (*self.shape, self.impacts)
@@ -391,7 +391,7 @@ class Impacts(Batch):
         return problem.point(phase, velocity.reshape(whole), duration, **given)
 
     @cached_property
-    def _own(self) -> tuple[PeriodicOrbits, np.ndarray]:
+    def _own(self) -> tuple[OrbitEquations, np.ndarray]:
         """The equations with no parameter that varies, and the unknowns."""
         problem = replace(self.problem(), balls=self._balls)
         return problem, self.point(problem)

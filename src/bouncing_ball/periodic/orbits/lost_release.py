@@ -23,7 +23,7 @@ import numpy as np
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic.orbits.legs import Legs
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 # The Jacobian is a central difference; its error only affects the number of steps.
 _DIFFERENCE = 6e-6
@@ -47,28 +47,28 @@ def rise_of_release(legs: Legs) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _LostRelease:
-    """The equations above for the unknowns of :class:`.PeriodicOrbits`, with one parameter."""
+    """The equations above for the unknowns of :class:`.OrbitEquations`, with one parameter."""
 
-    orbits: PeriodicOrbits
+    equations: OrbitEquations
     contact: int
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Their left sides less their right sides, shape (..., N + 1)."""
-        orbits = self.orbits
+        equations = self.equations
         # The durations are unknowns of linear contacts only, whose motion goes on beyond its end.
-        dynamics: Any = orbits.dynamics(y)[0]
-        shape = (*y.shape[:-1], orbits.impacts)
+        dynamics: Any = equations.dynamics(y)[0]
+        shape = (*y.shape[:-1], equations.impacts)
         if dynamics is None:
             return np.full((*y.shape[:-1], y.shape[-1]), np.nan)
-        impact = orbits.impact(dynamics, y)
-        duration = orbits.durations(y).ravel()
+        impact = equations.impact(dynamics, y)
+        duration = equations.durations(y).ravel()
         displacement, velocity = dynamics.after(impact, duration)
         setting = dynamics.setting
         phase = impact.phase + duration
         level = setting.level(phase, dynamics.amplitude)
         flight = setting.flight(displacement, velocity, phase, level, dynamics.amplitude)
-        gap, rate, _, _ = flight.gap(orbits.intervals(y).ravel() - duration)
-        _, closing = orbits.states(y)
+        gap, rate, _, _ = flight.gap(equations.intervals(y).ravel() - duration)
+        _, closing = equations.states(y)
         lag = np.broadcast_to(_lag(dynamics), duration.shape)
         release = (displacement + lag * velocity).reshape(shape)
         rise = (velocity + lag * (flight.y - 1)).reshape(shape)
@@ -76,7 +76,7 @@ class _LostRelease:
         lost = rise[..., [self.contact]]
         return np.concatenate([gap.reshape(shape), faster, release, lost], axis=-1)
 
-    def equations(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def equations_at(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The residual and its square Jacobian."""
         step = _DIFFERENCE * np.eye(y.shape[-1])
         beside = self.residual(np.concatenate([y + step, y - step]))
@@ -84,17 +84,17 @@ class _LostRelease:
         return self.residual(y), (beside[:size] - beside[size:]).T / (2 * _DIFFERENCE)
 
 
-def lost_release(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray | None:
+def lost_release(equations: OrbitEquations, y: np.ndarray) -> np.ndarray | None:
     """The orbit near a point of a branch at which the ball no longer leaves the table, as a point
     y; None if there is none near, or if the durations of the contacts are no unknowns.
     """
-    if not orbits.selects or orbits.resuming.any():
+    if not equations.selects or equations.resuming.any():
         return None
-    legs = orbits.legs(y)
+    legs = equations.legs(y)
     if legs.departure is None or legs.dynamics.contact is None:
         return None
     slowest = int(np.argmin(rise_of_release(legs)))
     with np.errstate(all="ignore"):
-        found = solve(_LostRelease(orbits, slowest).equations, y, _SETTINGS)
+        found = solve(_LostRelease(equations, slowest).equations_at, y, _SETTINGS)
     near = bool(found.converged) and np.linalg.norm(found.point - y) < _NEAR
     return found.point if near else None

@@ -31,7 +31,7 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.return_map import returned
 from bouncing_ball.periodic.orbits.special import Special
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -136,7 +136,7 @@ def normal_form(orbit: Orbit) -> NormalForm:
 
 
 def coefficient(
-    problem: PeriodicOrbits, y: np.ndarray, kind: Bifurcation
+    problem: OrbitEquations, y: np.ndarray, kind: Bifurcation
 ) -> tuple[float, float, np.ndarray, float]:
     """a or b of an orbit at a bifurcation, its error, q, and the other multiplier."""
     multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
@@ -164,7 +164,7 @@ def coefficient(
 
 
 def eigenvectors(
-    problem: PeriodicOrbits, y: np.ndarray, multiplier: float
+    problem: OrbitEquations, y: np.ndarray, multiplier: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """q with ``|q| = 1`` and its largest entry positive, and p with p·q = 1, of the monodromy."""
     m = problem.monodromy(y)
@@ -179,14 +179,14 @@ def eigenvectors(
     return right, left
 
 
-def _rate(problem: PeriodicOrbits, y: np.ndarray, kind: Bifurcation) -> float:
+def _rate(problem: OrbitEquations, y: np.ndarray, kind: Bifurcation) -> float:
     """The rate of the normal form, by the first parameter that varies."""
     name = problem.along[0]
     if kind is Bifurcation.PERIOD_DOUBLING:
         # det(M + 1) = (1 + μ₁)(1 + μ₂) along the branch.
         _, gradient = problem.bifurcation(kind, y)
         matrix = problem.jacobian(y)
-        n = problem.equations
+        n = problem.size
         states = np.linalg.solve(matrix[:, :n], -matrix[:, n])
         slope = gradient[:n] @ states + gradient[n]
         other = -float(problem.trace_and_determinant(y)[1])

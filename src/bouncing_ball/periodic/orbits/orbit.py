@@ -23,7 +23,7 @@ from bouncing_ball.periodic.orbits import stability
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.impacts import Impacts
 from bouncing_ball.periodic.orbits.legs import time_to_section
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.simulation import is_admissible
 
 if TYPE_CHECKING:
@@ -427,7 +427,7 @@ class Orbit(Impacts):
         return self._single(np.maximum(of_impacts, larger))
 
 
-def orbit_of_point(problem: PeriodicOrbits, y: np.ndarray, kind: str = "") -> Orbit:
+def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Orbit:
     """The orbits at points y of a problem, with phases in [-π, π]."""
     dynamics, _ = problem.dynamics(y)
     theta, v = problem.states(y)

@@ -77,8 +77,9 @@ _KEPT = 8
 
 
 @dataclass(frozen=True)
-class PeriodicOrbits:
-    """Orbits with k impacts in m periods as a :class:`~bouncing_ball.numerics.corrector.Problem`.
+class OrbitEquations:
+    """The equations of orbits with k impacts in m periods: a
+    :class:`~bouncing_ball.numerics.corrector.Problem`.
 
     The last axis of y holds θ_1, v_1, θ_2, …, v_k, the durations D_1, …, D_k if they are unknowns,
     and the coordinates arsinh p of the parameters in ``along``. With two of them the
@@ -120,7 +121,7 @@ class PeriodicOrbits:
     # The unknowns of a branch may be others, such as those of the paper.
 
     @property
-    def orbits(self) -> Self:
+    def equations(self) -> Self:
         """The equations in the unknowns of this class."""
         return self
 
@@ -147,7 +148,7 @@ class PeriodicOrbits:
         return np.sum(self.turns, axis=-1)
 
     @property
-    def equations(self) -> int:
+    def size(self) -> int:
         """N, the number of equations."""
         return self.impacts * (3 if self.selects else 2)
 
@@ -158,7 +159,7 @@ class PeriodicOrbits:
 
     def values(self, y: np.ndarray) -> dict[str, np.ndarray]:
         """The values of the parameters that vary, each with the leading shape of y."""
-        return {name: np.sinh(y[..., self.equations + j]) for j, name in enumerate(self.along)}
+        return {name: np.sinh(y[..., self.size + j]) for j, name in enumerate(self.along)}
 
     def durations(self, y: np.ndarray) -> np.ndarray:
         """The durations of the contacts, shape (..., k); 0 if they are no unknowns."""
@@ -233,7 +234,7 @@ class PeriodicOrbits:
 
         It costs less to solve, because a derivative by a parameter needs two more legs.
         """
-        return replace(self, balls=self.at(y), along=()), y[..., : self.equations]
+        return replace(self, balls=self.at(y), along=()), y[..., : self.size]
 
     def take(self, which: Any) -> Self:
         """The problem of some orbits of a row."""
@@ -342,7 +343,7 @@ class PeriodicOrbits:
         Points beside y do not leave the ranges of the parameters. Where y itself is outside of
         them, they are equal to y.
         """
-        columns: list[Any] = [slice(j, j + 1) for j in range(self.equations, y.shape[-1])]
+        columns: list[Any] = [slice(j, j + 1) for j in range(self.size, y.shape[-1])]
         limits = self._limits
         if everywhere:
             columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
@@ -374,7 +375,7 @@ class PeriodicOrbits:
         step = np.full(y.shape, _DIFFERENCE * unit)
         _, speed = self.states(np.abs(y / unit))
         share = np.minimum(np.maximum(speed.min(axis=-1) / _SLOW, _LEAST), 1.0)
-        step[..., self.equations :] *= np.where(np.isnan(share), 1.0, share)[..., np.newaxis]
+        step[..., self.size :] *= np.where(np.isnan(share), 1.0, share)[..., np.newaxis]
         return step
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
@@ -382,7 +383,7 @@ class PeriodicOrbits:
         compared = self.compared(y)
         legs = compared.legs
         k = self.impacts
-        matrix = np.zeros((*y.shape[:-1], self.equations, y.shape[-1]))
+        matrix = np.zeros((*y.shape[:-1], self.size, y.shape[-1]))
         first = 2 * np.arange(k)
         after = first[self._next]
         speed = legs.velocity[0]
@@ -403,7 +404,7 @@ class PeriodicOrbits:
             bend = np.abs(right + left - 2 * legs.residual[0])
             jumps = (bend > _JUMP) & (bend > np.abs(right - left) / 2)
             slope = np.where(jumps, np.nan, slope)
-            matrix[..., : 2 * k, self.equations + j] = slope.reshape(*y.shape[:-1], -1)
+            matrix[..., : 2 * k, self.size + j] = slope.reshape(*y.shape[:-1], -1)
         if self.selects:
             self._fill_durations(matrix, compared)
         return matrix
@@ -419,7 +420,7 @@ class PeriodicOrbits:
         row = 2 * self.impacts + contact
         matrix[..., row, row] = 1
         for j in range(len(self.along)):
-            matrix[..., row, self.equations + j] = -compared.slope(j, legs.duration)
+            matrix[..., row, self.size + j] = -compared.slope(j, legs.duration)
         for j, slopes in enumerate(legs.duration_slopes):
             matrix[..., row, 2 * contact + j] = -slopes[0]
 
@@ -467,7 +468,7 @@ class PeriodicOrbits:
         parameters = len(self.along)
         gradient = np.zeros(y.shape)
         for j in range(parameters):
-            gradient[..., self.equations + j] = change[j].sum(axis=-1) / lengths[j][..., 0]
+            gradient[..., self.size + j] = change[j].sum(axis=-1) / lengths[j][..., 0]
         for j in range(2):
             column = slice(j, 2 * self.impacts, 2)
             gradient[..., column] = change[parameters + j] / lengths[parameters + j]
@@ -500,17 +501,17 @@ class LegsBeside(NamedTuple):
         return (right - left) / length.reshape(length.shape + axes_of_values)
 
 
-def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:
+def twice(equations: OrbitEquations, y: np.ndarray) -> tuple[OrbitEquations, np.ndarray]:
     """The same orbits, taken twice: the problem with 2k impacts and its points."""
-    phase, velocity = orbits.states(y)
-    duration = orbits.durations(y)
-    turns = np.concatenate([orbits.turns, orbits.turns], axis=-1)
-    resumes = np.tile(orbits.resuming, 2)
-    whole = replace(orbits, impacts=2 * orbits.impacts, turns=turns, resumes=resumes)
+    phase, velocity = equations.states(y)
+    duration = equations.durations(y)
+    turns = np.concatenate([equations.turns, equations.turns], axis=-1)
+    resumes = np.tile(equations.resuming, 2)
+    whole = replace(equations, impacts=2 * equations.impacts, turns=turns, resumes=resumes)
     phases = np.concatenate([phase, phase], axis=-1)
     velocities = np.concatenate([velocity, velocity], axis=-1)
     durations = np.concatenate([duration, duration], axis=-1)
-    return whole, whole.point(phases, velocities, durations, **orbits.values(y))
+    return whole, whole.point(phases, velocities, durations, **equations.values(y))
 
 
 def turns_of_half(turns: np.ndarray, phase: np.ndarray) -> np.ndarray:

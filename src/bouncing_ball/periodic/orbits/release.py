@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bouncing_ball.periodic.orbits.legs import Legs
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 # Samples of a contact: evenly, and in geometric progression from this fraction of the duration on,
 # because the oscillations after an impact decay.
@@ -34,28 +34,28 @@ class _Tops(NamedTuple):
     time: np.ndarray
 
 
-def release_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def release_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """Minus the largest local maximum of δ + κ δ′ within the contacts of each orbit, of the leading
     shape of y; 1 where there is none, where impacts are instants, and for laws without a κ.
     """
-    return -_tops(orbits.legs(y), (*y.shape[:-1], orbits.impacts)).height.max(axis=-1)
+    return -_tops(equations.legs(y), (*y.shape[:-1], equations.impacts)).height.max(axis=-1)
 
 
-def release_condition(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def release_condition(equations: OrbitEquations, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The margin and its gradient, of the leading shape and of the shape of y."""
-    points = orbits.around(y, everywhere=True)
-    shape = (*points.shape[:-1], orbits.impacts)
-    legs = orbits.legs(points)
+    points = equations.around(y, everywhere=True)
+    shape = (*points.shape[:-1], equations.impacts)
+    legs = equations.legs(points)
     # The first of the points is y.
     tops = _tops(legs, shape[1:])
     # Only the contact with the largest maximum counts.
-    counts = np.arange(orbits.impacts) == tops.height.argmax(axis=-1)[..., np.newaxis]
+    counts = np.arange(equations.impacts) == tops.height.argmax(axis=-1)[..., np.newaxis]
     which = np.flatnonzero(np.broadcast_to(counts, shape))
     time = np.broadcast_to(tops.time, shape).ravel()[which]
     height = np.zeros(shape)
     height.ravel()[which] = _heights(legs, which, time)
     change = height[2::2] - height[1::2]
-    return -tops.height.max(axis=-1), orbits.gradient(y, change)
+    return -tops.height.max(axis=-1), equations.gradient(y, change)
 
 
 class _Contacts(NamedTuple):

@@ -13,7 +13,7 @@ import numpy as np
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.legs import lag_of, landed, without_force
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 # Newton's method for a landing doubles its digits in each round.
 _ROUNDS = 12
@@ -30,13 +30,13 @@ class Returned(NamedTuple):
 
 
 def returned(
-    orbits: PeriodicOrbits, y: np.ndarray, aside: np.ndarray, balls: Balls | None = None
+    equations: OrbitEquations, y: np.ndarray, aside: np.ndarray, balls: Balls | None = None
 ) -> Returned:
     """The images of states at distances ``aside`` (dφ, dδ′) from the first impact of an orbit.
 
     Parameters
     ----------
-    orbits : PeriodicOrbits
+    orbits : OrbitEquations
         The equations of one orbit.
     y : ndarray, shape (N + parameters,)
         The orbit.
@@ -49,21 +49,21 @@ def returned(
     Returned
         NaN for states that do not return.
     """
-    one = orbits.at(y)
+    one = equations.at(y)
     dynamics = one.dynamics() if balls is None else balls.dynamics()
-    phases, velocities = orbits.states(y)
-    lasts = orbits.beside(y).duration[0]
-    interval = orbits.intervals(y)
+    phases, velocities = equations.states(y)
+    lasts = equations.beside(y).duration[0]
+    interval = equations.intervals(y)
     turned = aside[:, 0]
     velocity = velocities[0] + aside[:, 1]
     derivative = np.broadcast_to(np.eye(2), (len(aside), 2, 2))
-    k = orbits.impacts
+    k = equations.impacts
     whole = np.ones(len(aside), dtype=bool)
     with np.errstate(all="ignore"):
         for i in range(k):
             after = (i + 1) % k
-            lag = lag_of(dynamics, whole & orbits.resuming[i])
-            next_lag = lag_of(dynamics, whole & orbits.resuming[after])
+            lag = lag_of(dynamics, whole & equations.resuming[i])
+            next_lag = lag_of(dynamics, whole & equations.resuming[after])
             start = dynamics.at_section(reduce_angle(phases[i] + turned), velocity)
             impact = without_force(start, lag)
             departure = dynamics.depart_after(impact, np.full(len(aside), lasts[i]))

@@ -11,7 +11,7 @@ from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.legs import lag_of, time_to_section, without_force
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import sticking
 
 # Relative to its length, and to the speeds of its impacts, a leg of the simulation differs from
@@ -22,7 +22,7 @@ _SAME = 1e-6
 
 def simulated(
     balls: Balls, phase: float, velocity: float, impacts: int, along: Sequence[str]
-) -> tuple[PeriodicOrbits, np.ndarray]:
+) -> tuple[OrbitEquations, np.ndarray]:
     """The problem and the guess y of an orbit with k impacts near a simulated impact.
 
     ``phase`` and ``velocity`` are those of an impact on the section; with a positive velocity the
@@ -60,7 +60,7 @@ def simulated(
     if any(resumes):
         _check_resumption(dynamics)
     selects = dynamics.continues and max(durations) > 0
-    problem = PeriodicOrbits(
+    problem = OrbitEquations(
         balls=balls,
         impacts=impacts,
         turns=np.array(turns),
@@ -81,39 +81,39 @@ def _check_resumption(dynamics: Dynamics) -> None:
         )
 
 
-def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """Whether a simulated ball follows the orbits, with the first releases and landings.
 
     The events of the simulation are certified (:mod:`bouncing_ball.numerics.first_zero`).
     """
-    dynamics, inside = orbits.dynamics(y)
-    shape = (*y.shape[:-1], orbits.impacts)
+    dynamics, inside = equations.dynamics(y)
+    shape = (*y.shape[:-1], equations.impacts)
     if dynamics is None:
         return np.zeros(y.shape[:-1], dtype=bool)
-    _, velocity = orbits.states(y)
+    _, velocity = equations.states(y)
     same = np.zeros(inside.shape, dtype=bool)
-    closing = np.where(orbits.resuming, -velocity, velocity).ravel()
+    closing = np.where(equations.resuming, -velocity, velocity).ravel()
     possible = np.flatnonzero(inside & (closing < 0) & np.isfinite(closing))
     if not possible.size:
         return np.all(same.reshape(shape), axis=-1)
-    expected = orbits.durations(y).ravel()[possible]
-    start = pick(orbits.impact(dynamics, y), possible)
+    expected = equations.durations(y).ravel()[possible]
+    start = pick(equations.impact(dynamics, y), possible)
     leg = next(dynamics.take(possible).legs(start, differentiate=True))
-    if orbits.selects and dynamics.forgets:
+    if equations.selects and dynamics.forgets:
         # The bounces before a rest belong to the leg in which the ball comes to rest.
         early = leg.departure.sticks & (expected == 0)
         leg.departure = leg.dynamics.depart_after(start, np.where(early, np.nan, expected))
     possible, expected = leg.keep(leg.bouncing(), possible, expected)
     after, passed = leg.fly()
     part = leg.dynamics
-    interval = orbits.intervals(y).ravel()[possible]
+    interval = equations.intervals(y).ravel()[possible]
     before = velocity.ravel()[possible]
     next_velocity = np.roll(velocity, -1, axis=-1).ravel()[possible]
     faster = part.section(after)[1] - next_velocity
     late = passed + time_to_section(part, after) - time_to_section(part, leg.impact) - interval
-    longer = leg.departure.duration - expected if orbits.selects else np.zeros_like(late)
-    resumes = np.broadcast_to(np.roll(orbits.resuming, -1), shape).ravel()[possible]
+    longer = leg.departure.duration - expected if equations.selects else np.zeros_like(late)
+    resumes = np.broadcast_to(np.roll(equations.resuming, -1), shape).ravel()[possible]
     alike = (after.displacement < 0) == resumes
     same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
     same[possible] &= np.abs(faster) < _SAME * np.maximum(np.abs(before), np.abs(next_velocity))
-    return np.all(same.reshape(shape), axis=-1) & (sticking(orbits, y) > 0)
+    return np.all(same.reshape(shape), axis=-1) & (sticking(equations, y) > 0)

@@ -29,7 +29,7 @@ from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.lost_release import lost_release, rise_of_release
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition, release_margin
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -45,21 +45,21 @@ _FAR = 1.0
 
 class Coordinates(Problem, Protocol):
     """The equations of orbits in some unknowns y: those of
-    :class:`~bouncing_ball.periodic.orbits.problem.PeriodicOrbits`, or those of the paper.
+    :class:`~bouncing_ball.periodic.orbits.problem.OrbitEquations`, or those of the paper.
     """
 
     @property
-    def orbits(self) -> PeriodicOrbits:
+    def equations(self) -> OrbitEquations:
         """The equations in their own unknowns."""
 
     def inner(self, y: np.ndarray) -> np.ndarray:
-        """The unknowns of :attr:`orbits` at y."""
+        """The unknowns of :attr:`equations` at y."""
 
     def outer(self, inner: np.ndarray) -> np.ndarray:
-        """y at unknowns of :attr:`orbits`."""
+        """y at unknowns of :attr:`equations`."""
 
     def event(self, event: Event) -> Event:
-        """An event of :attr:`orbits` as a function of y."""
+        """An event of :attr:`equations` as a function of y."""
 
 
 class Special(StrEnum):
@@ -93,11 +93,11 @@ def _reason(kind: Special) -> str:
     return f"{kind}: {MEANINGS[kind]}"
 
 
-def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def flight_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The smallest local minimum of δ in flight over the legs of each orbit, of the leading shape
     of y; 1 where there is none.
     """
-    legs = orbits.legs(y)
+    legs = equations.legs(y)
     if legs.departure is None:
         return np.full(y.shape[:-1], np.nan)
     flight = legs.departure.flight
@@ -107,15 +107,15 @@ def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     return lowest.reshape(legs.duration.shape).min(axis=-1)
 
 
-def impact_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def impact_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The smallest speed of the impacts of each orbit, -v, or v where a contact resumes while the
     ball rises; of the leading shape of y.
     """
-    _, velocity = orbits.states(y)
-    return np.where(orbits.resuming, velocity, -velocity).min(axis=-1)
+    _, velocity = equations.states(y)
+    return np.where(equations.resuming, velocity, -velocity).min(axis=-1)
 
 
-def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def sticking(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """1 for orbits whose balls come to rest wherever the equations say so, also for those without a
     rest, and -1 for others; of the leading shape of y.
 
@@ -123,11 +123,11 @@ def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     is no whole number, and infinitely many bounces precede it. No function of the state is smooth
     there, whereas the equations of the orbit are, because the lift-off depends on Λ alone.
     """
-    legs = orbits.legs(y)
-    dynamics, inside = orbits.dynamics(y)
+    legs = equations.legs(y)
+    dynamics, inside = equations.dynamics(y)
     if dynamics is None:
         return np.ones(y.shape[:-1])
-    rests = np.flatnonzero(inside & (orbits.durations(y).ravel() > 0))
+    rests = np.flatnonzero(inside & (equations.durations(y).ravel() > 0))
     settles = np.ones(inside.shape, dtype=bool)
     settles[rests] = dynamics.take(rests).settles(pick(legs.impact, rests))
     return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
@@ -138,7 +138,7 @@ def _at_point(legs: Legs, values: np.ndarray) -> np.ndarray:
     return np.reshape(values, legs.duration.shape)[0]
 
 
-def loss_of_release(orbits: PeriodicOrbits) -> Event:
+def loss_of_release(equations: OrbitEquations) -> Event:
     """The rate δ′ + κ δ″ with which a contact opens relative to the speed of its impact, the
     smallest of an orbit.
 
@@ -149,12 +149,12 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
     """
 
     def share(y: np.ndarray) -> np.ndarray:
-        legs = orbits.beside(y)
+        legs = equations.beside(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
-        _, closing = orbits.states(y)
+        _, closing = equations.states(y)
         velocity = _at_point(legs, rise_of_release(legs))
-        approach = np.where(orbits.resuming, closing, -closing)
+        approach = np.where(equations.resuming, closing, -closing)
         with np.errstate(divide="ignore", invalid="ignore"):
             lowest = (velocity / approach).min(axis=-1)
         if not legs.dynamics.forgets:
@@ -166,7 +166,7 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
     return Event(Special.RELEASE_LOST, share, terminal=True, reason=_reason(Special.RELEASE_LOST))
 
 
-def halves(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def halves(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The differences of the second half of each orbit to the first: those of the times from half
     the period after an impact to the impact that is k/2 later, and those of the velocities.
 
@@ -174,74 +174,74 @@ def halves(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     branch. Their shape is (..., k), with an axis of length 0 if k or m is odd: such orbits do not
     repeat after half their period.
     """
-    half, odd = divmod(orbits.impacts, 2)
-    if odd or np.any(np.asarray(orbits.periods) % 2):
+    half, odd = divmod(equations.impacts, 2)
+    if odd or np.any(np.asarray(equations.periods) % 2):
         return np.empty((*y.shape[:-1], 0))
-    interval = orbits.intervals(y)
+    interval = equations.intervals(y)
     begun = np.cumsum(interval, axis=-1) - interval
-    of_half = np.pi * np.asarray(orbits.periods)[..., np.newaxis]
+    of_half = np.pi * np.asarray(equations.periods)[..., np.newaxis]
     later = begun[..., half:] - begun[..., :half] - of_half
-    _, velocity = orbits.states(y)
+    _, velocity = equations.states(y)
     faster = velocity[..., half:] - velocity[..., :half]
     return np.concatenate([later, faster], axis=-1)
 
 
-def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def turns_apart(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The distance of the two halves of each orbit, the root of the mean square over its impacts.
 
     It vanishes for an orbit that repeats after half its period; 1 where no orbit does.
     """
-    apart = halves(orbits, y)
+    apart = halves(equations, y)
     if not apart.shape[-1]:
         return np.full(y.shape[:-1], _FAR)
-    return np.sqrt(np.sum(apart**2, axis=-1) * 2 / orbits.impacts)
+    return np.sqrt(np.sum(apart**2, axis=-1) * 2 / equations.impacts)
 
 
-def bifurcations(orbits: PeriodicOrbits) -> list[Event]:
+def bifurcations(equations: OrbitEquations) -> list[Event]:
     """The saddle-node and the period doubling."""
 
     def bifurcation(kind: Bifurcation) -> Event:
         return Event(
             Special(kind),
-            lambda y: kind.test(*orbits.trace_and_determinant(y)),
-            condition=lambda y: orbits.bifurcation(kind, y),
+            lambda y: kind.test(*equations.trace_and_determinant(y)),
+            condition=lambda y: equations.bifurcation(kind, y),
         )
 
     return [bifurcation(kind) for kind in Bifurcation]
 
 
-def passed_by(orbits: PeriodicOrbits) -> list[Event]:
+def passed_by(equations: OrbitEquations) -> list[Event]:
     """The bifurcations and the grazing orbits beyond which a branch goes on."""
     return [
-        *bifurcations(orbits),
-        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
+        *bifurcations(equations),
+        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(equations, y)),
         Event(
             Special.GRAZING_RELEASE,
-            lambda y: release_margin(orbits, y),
-            condition=lambda y: release_condition(orbits, y),
+            lambda y: release_margin(equations, y),
+            condition=lambda y: release_condition(equations, y),
         ),
     ]
 
 
-def events(orbits: PeriodicOrbits) -> Sequence[Event]:
+def events(equations: OrbitEquations) -> Sequence[Event]:
     """The events along a branch, which ends where an impact grazes and where sticking ends."""
 
     def end(kind: Special, margin) -> Event:
-        return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=_reason(kind))
+        return Event(kind, lambda y: margin(equations, y), terminal=True, reason=_reason(kind))
 
     return (
-        *passed_by(orbits),
+        *passed_by(equations),
         end(Special.GRAZING_IMPACT, impact_margin),
         replace(end(Special.STICKING, sticking), is_sign=True),
     )
 
 
-def flight_time(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+def flight_time(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The shortest flight of each orbit, of the leading shape of y."""
-    return (orbits.intervals(y) - orbits.beside(y).duration[0]).min(axis=-1)
+    return (equations.intervals(y) - equations.beside(y).duration[0]).min(axis=-1)
 
 
-def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
+def ends_of_contact(equations: OrbitEquations) -> list[Event]:
     """Where an orbit with one impact ceases to exist: the ball no longer approaches the table at
     impact, it no longer leaves the table at the end of contact, or its flight time vanishes.
 
@@ -254,7 +254,7 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
         return Event(name, left, terminal=True, reason=f"{name}: {why}")
 
     def released(y: np.ndarray) -> np.ndarray:
-        legs = orbits.beside(y)
+        legs = equations.beside(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
         return _at_point(legs, rise_of_release(legs)).min(axis=-1)
@@ -263,13 +263,13 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
         end(
             "contact lost",
             "the ball no longer closes in on the table at impact",
-            lambda y: impact_margin(orbits, y) - _MARGIN,
+            lambda y: impact_margin(equations, y) - _MARGIN,
         ),
         end(Special.RELEASE_LOST, MEANINGS[Special.RELEASE_LOST], released),
         end(
             "flight lost",
             "the contact fills the whole cycle",
-            lambda y: flight_time(orbits, y) - _MARGIN,
+            lambda y: flight_time(equations, y) - _MARGIN,
         ),
     ]
 
@@ -292,7 +292,7 @@ def with_ends(problem: Coordinates, branch: Branch) -> Branch:
     the state, so that a branch approaches this end up to the shortest step. The special point is
     found by :mod:`~bouncing_ball.periodic.orbits.lost_release`, or else it is the last point.
     """
-    ends = ends_of_contact(problem.orbits)
+    ends = ends_of_contact(problem.equations)
     start, first = _end_near(problem, branch.start, branch.points[0], ends)
     end, last = _end_near(problem, branch.end, branch.points[-1], ends)
     return replace(branch, special=(*first, *branch.special, *last), start=start, end=end)
@@ -308,6 +308,6 @@ def _end_near(
     nearest = next_to(ends, inner)
     if nearest is None:
         return end, []
-    place = lost_release(problem.orbits, inner) if nearest.name == Special.RELEASE_LOST else None
+    place = lost_release(problem.equations, inner) if nearest.name == Special.RELEASE_LOST else None
     there = point if place is None else problem.outer(place)
     return End(nearest.reason, event=nearest.name), [SpecialPoint(nearest.name, there)]

@@ -39,7 +39,6 @@ from bouncing_ball.periodic.branches.following import (
     explained,
     limits_of,
 )
-from bouncing_ball.periodic.branches.observables import MERGES
 from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.normal_form import coefficient
@@ -47,6 +46,7 @@ from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition
 from bouncing_ball.periodic.orbits.special import (
+    MERGES,
     Special,
     events,
     flight_margin,

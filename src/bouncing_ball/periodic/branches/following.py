@@ -21,6 +21,7 @@ from bouncing_ball.periodic.orbits.problem import OrbitEquations, turns_of_half,
 from bouncing_ball.periodic.orbits.special import (
     CLOSE,
     MEANINGS,
+    MERGES,
     Coordinates,
     Special,
     events,
@@ -44,7 +45,6 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
-_STAYS = "the flight vanishes: the orbit merges with permanent contact"
 _ALL_VANISH = "the flights vanish: the orbit merges with permanent contact"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a parameter this close to the end of its range is given as the
@@ -448,7 +448,7 @@ def _explained_end(
     """
     if branch.end.stuck and equations.impacts == 1:
         if float(flight_time(equations, branch.points[-1])) < CLOSE:
-            return End(_STAYS)
+            return End(MERGES)
     return explained(branch, tests, limits)
 
 

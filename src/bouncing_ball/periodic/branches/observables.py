@@ -21,7 +21,9 @@ from bouncing_ball.periodic.orbits.saved import columns_of
 from bouncing_ball.periodic.orbits.special import (
     CLOSE,
     MEANINGS,
+    MERGES,
     Coordinates,
+    LossOfContact,
     Special,
     flight_time,
     impact_margin,
@@ -69,11 +71,6 @@ OBSERVED = (
 )
 """The quantities of orbits along a branch or along ϖ."""
 
-MERGES = "the flight vanishes: the orbit merges with permanent contact"
-"""Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
-# Ends of branches of orbits with one impact (:func:`~.special.ends_of_contact`) at which the speed
-# of the impact or the flight time vanishes, or both.
-_LOST = ("contact lost", "flight lost")
 # The slope of a straight line over logarithms is the same on two pieces, up to a tenth. On each of
 # them the speed becomes larger by this factor at least.
 _STRAIGHT = 0.1
@@ -137,7 +134,7 @@ def _reason(problem: Coordinates, end: End, points: np.ndarray) -> str:
     """Why a branch ends, by its points from this end on; with the event that could not be located
     on its last step, if there is one.
     """
-    if end.event not in _LOST:
+    if end.event not in list(LossOfContact):
         return str(end)
     grazes = f"{Special.GRAZING_IMPACT}: {MEANINGS[Special.GRAZING_IMPACT]}"
     why = MERGES if _merges(problem, points) else grazes

@@ -62,6 +62,13 @@ class Coordinates(Problem, Protocol):
         """An event of :attr:`equations` as a function of y."""
 
 
+class LossOfContact(StrEnum):
+    """Where an orbit with one impact ceases to exist, besides :attr:`Special.RELEASE_LOST`."""
+
+    IMPACT = "contact lost"
+    FLIGHT = "flight lost"
+
+
 class Special(StrEnum):
     """The kinds of special orbits."""
 
@@ -86,6 +93,8 @@ MEANINGS = {
     Special.STICKING: "the ball comes to rest as the table leaves it behind",
 }
 """What each kind of special orbit is."""
+MERGES = "the flight vanishes: the orbit merges with permanent contact"
+"""Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
 
 
 def _reason(kind: Special) -> str:
@@ -261,13 +270,13 @@ def ends_of_contact(equations: OrbitEquations) -> list[Event]:
 
     return [
         end(
-            "contact lost",
+            LossOfContact.IMPACT,
             "the ball no longer closes in on the table at impact",
             lambda y: impact_margin(equations, y) - _MARGIN,
         ),
         end(Special.RELEASE_LOST, MEANINGS[Special.RELEASE_LOST], released),
         end(
-            "flight lost",
+            LossOfContact.FLIGHT,
             "the contact fills the whole cycle",
             lambda y: flight_time(equations, y) - _MARGIN,
         ),

@@ -140,17 +140,29 @@ def locate_all(
     """The zeros of several events between two points of the branch, in order along the chord."""
     located = []
     missed = None
-    for event in events:
-        special = locate(problem, event, left, right)
+    last = right
+    # What is beyond the end of the branch need not be located.
+    for event in sorted(events, key=lambda event: not event.terminal):
+        if last is not right and not _is_before(event, left, last):
+            continue
+        special = locate(problem, event, left, last)
         if special is None:
             missed = event
-        else:
-            located.append((event, special))
+            continue
+        located.append((event, special))
+        if event.terminal:
+            last = special.point
     located.sort(key=lambda pair: float((pair[1].point - left) @ (right - left)))
     for count, (event, _) in enumerate(located, start=1):
         if event.terminal:
             return Passage(tuple(special for _, special in located[:count]), event, None)
     return Passage(tuple(special for _, special in located), None, missed)
+
+
+def _is_before(event: Event, left: np.ndarray, end: np.ndarray) -> bool:
+    """Whether a test function changes its sign up to the end of a branch, where it may vanish."""
+    here, there = (event.function(point) for point in (left, end))
+    return bool((here >= 0) != (there >= 0))
 
 
 def domain_limits(

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cached_property
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -87,8 +88,12 @@ def orbits_on(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
 
 def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
     """The orbits at points y, with phases that pass ±π continuously along a branch."""
+    return unrolled(problem, y, orbits_on(problem, y))
+
+
+def unrolled(problem: Coordinates, y: np.ndarray, found: Orbit) -> Orbit:
+    """The orbits found at points y, with phases that pass ±π continuously along a branch."""
     equations = problem.equations
-    found = orbits_on(problem, y)
     phase, _ = equations.states(problem.inner(y))
     turned = np.round((phase - found.phases) / (2 * np.pi))
     turns = np.broadcast_to(equations.turns, phase.shape)
@@ -118,7 +123,7 @@ class Orbits:
     def _one(self, y: np.ndarray, kind: str = "") -> Orbit:
         return orbits_on(self.problem, y, kind)
 
-    @property
+    @cached_property
     def row(self) -> Orbit:
         """The orbits as a row."""
         return orbits_on(self.problem, self.branch.points)
@@ -213,8 +218,17 @@ def limit(name: str, bound: float, sign: float, column: int) -> Event:
     is positive, otherwise from below.
     """
     at = np.arcsinh(bound)
+
+    def inside(y: np.ndarray) -> np.ndarray:
+        return sign * (y[..., column] - at)
+
+    def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        gradient = np.zeros_like(y)
+        gradient[..., column] = sign
+        return inside(y), gradient
+
     reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
-    return Event(_BOUND, lambda y: sign * (y[..., column] - at), True, reason)
+    return Event(_BOUND, inside, True, reason, condition)
 
 
 def branch_from(
@@ -375,7 +389,7 @@ def _resting(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     All flights vanish together there, and the bounces before the rest are so much slower than the
     first one that rounding errors decide on them, before the steps become short.
     """
-    legs = equations.legs(start)
+    legs = equations.beside(start).first()
     if equations.impacts == 1 or legs.departure is None or not legs.dynamics.forgets:
         return []
     if not np.any(legs.departure.sticks):

@@ -14,7 +14,7 @@ import xarray as xr
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.numerics.branch import End
-from bouncing_ball.periodic.branches.following import Orbits, orbits_along, orbits_on
+from bouncing_ball.periodic.branches.following import Orbits, orbits_on, unrolled
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import columns_of
@@ -112,9 +112,15 @@ def branch_columns(found: Orbits) -> xr.Dataset:
 def branch_variables(found: Orbits) -> dict[str, Any]:
     """The variables and the coordinates of :func:`branch_columns`."""
     special = _special_places(found)
+    return _variables(found, special, orbits_on(found.problem, special.points))
+
+
+def _variables(found: Orbits, special: "_Special", there: Orbit) -> dict[str, Any]:
+    """The variables of :func:`branch_variables`, with the orbits at the special places."""
+    problem = found.problem
     variables = _orbits_in_columns(
-        orbits_along(found.problem, found.branch.points),
-        orbits_along(found.problem, special.points),
+        unrolled(problem, found.branch.points, found.row),
+        unrolled(problem, special.points, there),
         special.kinds,
         _reasons(found),
     )
@@ -167,12 +173,14 @@ def _merges(problem: Coordinates, points: np.ndarray) -> bool:
 
 def kept_variables(found: Orbits) -> dict[str, Any]:
     """The variables of :func:`branch_variables`, with all that the orbits need to come back."""
-    special = orbits_on(found.problem, _special_places(found).points)
+    special = _special_places(found)
+    there = orbits_on(found.problem, special.points)
     along = columns_of(found.row, "point")
     # No special orbit has parameters of its own if there is none.
     empty = {f"special_{name}": ("special", np.empty(0)) for name in _over_points(along)}
-    kept = columns_of(special, "special", "special_")
-    return (empty if not special.size else {}) | kept | along | branch_variables(found)
+    kept = columns_of(there, "special", "special_")
+    variables = _variables(found, special, there)
+    return (empty if not there.size else {}) | kept | along | variables
 
 
 def _over_points(variables: dict[str, Any]) -> list[str]:

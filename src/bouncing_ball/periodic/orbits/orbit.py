@@ -397,8 +397,10 @@ class Orbit(Impacts):
         """
 
         def digits(part: Orbit) -> np.ndarray:
-            problem = part.problem(*(part.along[:1] if part.kind else ()))
-            y = part.point(problem)
+            problem, y = part._own
+            if part.kind:
+                problem = part.problem(part.along[0])
+                y = part.point(problem)
             with np.errstate(invalid="ignore"):
                 matrix = np.nan_to_num(problem.jacobian(y))
             largest = np.max(np.abs(y), axis=-1)

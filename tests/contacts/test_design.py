@@ -311,6 +311,15 @@ def test_a_contact_slower_than_the_table_is_noted(ratio, noted):
     assert any("slower than the table" in note for note in found.notes) is noted
 
 
+def test_only_the_impedance_of_a_solref_is_compared_with_its_spring_and_damper():
+    elastic = {"stiffness": None, "law": "impedance", "contact_time": "0.5 ms", "restitution": 1}
+    of_impact = " ".join(assessed(**STEEL | elastic).notes)
+    assert "solref" not in of_impact and "the r of the impedance contact" in of_impact
+    solref = {"stiffness": None, "from_engine": "mujoco", "solref": "-1e7 -100"}
+    of_engine = " ".join(assessed(**STEEL | solref).notes)
+    assert "spring and damper of this solref" in of_engine and "impedance is 0.9" in of_engine
+
+
 def test_the_error_law_holds_up_to_its_small_parameter():
     contact = SpringDamper.from_restitution(0.85, 1.0)
     # Its parts are proportional to 1/ϖ.

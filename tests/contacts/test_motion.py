@@ -10,7 +10,7 @@ from asked_contacts import assessed
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.ends import Ending, EndingKind
 from bouncing_ball.contacts.engines.impedance import Impedance
-from bouncing_ball.contacts.means import Mean, _changed, _oscillator
+from bouncing_ball.contacts.means import Mean, _changed, _law
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.table import Table
@@ -421,13 +421,11 @@ def test_an_impedance_with_another_r_has_it_at_the_speed_of_its_impacts():
     law = Impedance(20.0, 0.15, 0.95, 0.9, width=0.3)
     impact = law.signature(2.0)
     for factor, longer, unit in ((1.001, 1.0, 1.0), (0.999, 1 / 1.001, 1.0), (1.0, 1.0, 1.001)):
-        r = factor * float(impact.restitution)
-        duration = longer * float(impact.duration)
-        found = _oscillator(law, 2.0, r, duration, unit)
+        found = _law(law, 2.0, factor, longer, unit)
         again = found.signature(2.0 / unit)
-        assert float(again.restitution) == pytest.approx(r, rel=1e-9)
-        assert float(again.duration) == pytest.approx(duration, rel=1e-9)
+        assert float(again.restitution / impact.restitution) == pytest.approx(factor, rel=1e-9)
+        assert float(again.duration / impact.duration) == pytest.approx(longer, rel=1e-9)
         # The width in metres and the other numbers of solimp are those of the same contact.
         assert found.width == pytest.approx(0.3 / unit, rel=1e-14)
         assert (found.share, found.at_surface) == (0.95, 0.9)
-    assert _oscillator(law, 2.0, float(impact.restitution), float(impact.duration), 1.0) == law
+    assert _law(law, 2.0) == law

@@ -32,8 +32,10 @@ from bouncing_ball.models.laws.hertzian import (
     LinearHuntCrossley,
     Tsuji,
 )
-from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.law_of_impact import law_of_impact, law_with_impact
+from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.sequence import Status
@@ -446,3 +448,51 @@ def test_a_ball_that_the_load_pulls_away_meets_no_force_at_the_surface(
     # The steps are adapted to the kinks of the force, with errors of some parts of their tolerance.
     assert run.y[0, -1] == pytest.approx(-found.release_displacement[1], abs=1e-7)
     assert run.y[1, -1] == pytest.approx(-found.relative_bounce_velocity[1], abs=1e-6)
+
+
+CHANGED = {
+    **{name: LAWS[name] for name in ("hunt-crossley", "tsuji", "kuwabara-kono")},
+    **{name: LAWS[name] for name in ("elasto-backlash", "impedance", "impedance, by depth")},
+    "hunt-crossley-linear": LinearHuntCrossley(1e3, 0.08),
+    "lankarani-nikravesh": LankaraniNikravesh(1e3, 0.8),
+    "flores": Flores(1e3, 0.8),
+    "linear": SpringDamper(10.0, 0.136, "force"),
+    "damped on approach": SpringDamper(10.0, 0.136, "approach"),
+    "hardly damped": Impedance(10.0, 5e-5, 0.95, 0.5, width=0.2),
+    "undamped": Impedance(10.0, 0.0, 0.95, 0.5, width=0.2),
+}
+
+
+def test_every_named_law_is_changed_here():
+    assert {law.name for law in CHANGED.values()} == set(NAMED)
+
+
+@pytest.mark.parametrize("law", CHANGED.values(), ids=CHANGED)
+def test_a_law_with_another_impact_keeps_what_the_impact_does_not_determine(law):
+    before = law.signature(SPEED)
+    found = law_with_impact(law, 0.98 * before.restitution, 1.05 * before.duration, SPEED)
+    impact = found.signature(SPEED)
+    assert float(impact.restitution / before.restitution) == pytest.approx(0.98, rel=1e-9)
+    assert float(impact.duration / before.duration) == pytest.approx(1.05, rel=1e-9)
+    changed = {name for name, x in law.parameters().items() if x != found.parameters()[name]}
+    assert type(found) is type(law) and found.release is law.release
+    assert len(changed) == 2
+
+
+@pytest.mark.parametrize("law", CHANGED.values(), ids=CHANGED)
+def test_a_law_of_twice_the_stiffness_pushes_a_ball_at_rest_twice_as_hard(law):
+    depth = np.array([0.03, 0.3])
+    stiff = law.stiffened(2.0).force(depth, 0 * depth)
+    assert stiff == pytest.approx(2 * law.force(depth, 0 * depth), rel=1e-12)
+
+
+def test_a_law_without_a_stiffness_is_not_made_stiffer():
+    with pytest.raises(ModelError, match="spring has no parameter stiffness"):
+        Spring(10.0, 0.1).stiffened(2.0)
+
+
+@pytest.mark.parametrize("width", [1e-9, 1e-5, 0.1])
+def test_a_ball_at_rest_on_a_stiff_impedance_is_held_by_force_and_load(width):
+    law = Impedance(3e4, 0.1, 0.9, 0.2, width=width)
+    depth = np.array(rest(law))
+    assert float(law.loaded_force(depth, np.array(0.0), 1.0)) == pytest.approx(1.0, abs=1e-14)

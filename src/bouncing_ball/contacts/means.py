@@ -33,10 +33,9 @@ from bouncing_ball.long_run.sampled_means import (
     start,
     sums_at,
 )
-from bouncing_ball.models.damping import Release
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.laws.contact_law import ContactLaw, OscillatorLaw
-from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.law_of_impact import law_with_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -79,13 +78,6 @@ _BALLS_OF_CHANGE = 1024
 _BALLS_OF_CHANGE_OF_LAW = 128
 # To this part of itself a law is found from its impact again.
 _SAME = 1e-6
-# How closely an oscillator with another r and duration is found, the rounds of the search, and the
-# difference of ζ for its slope.
-_FOUND = 1e-9
-_ROUNDS = 20
-_BESIDE = 1e-4
-# The parameter of a law to which its force is proportional.
-_STIFFNESS = "stiffness"
 
 
 def compared_means(
@@ -173,12 +165,9 @@ def _impact_speed(case: ResolvedContact, end: Ending) -> float:
 
 def _shorter(law: ContactLaw | None, speed: float) -> float:
     """The factor of the duration of an impact on a stiffer contact."""
-    if law is None or isinstance(law, SpringDamper):
+    if law is None:
         return 1 / math.sqrt(1 + _CHANGE)
-    if isinstance(law, OscillatorLaw):
-        stiffer = replace(law, frequency_ratio=law.frequency_ratio * math.sqrt(1 + _CHANGE))
-    else:
-        stiffer = replace(law, **{_STIFFNESS: getattr(law, _STIFFNESS) * (1 + _CHANGE)})
+    stiffer = law.stiffened(1 + _CHANGE)
     return float(stiffer.signature(speed).duration / law.signature(speed).duration)
 
 
@@ -218,53 +207,20 @@ def _law(
     impact = law.signature(speed)
     r = float(impact.restitution) * restitution
     time = float(impact.duration) * duration
-    if isinstance(law, SpringDamper):
-        one = SpringDamper.from_restitution(r, 1.0, law.release, measured=True)
-        return replace(one, frequency_ratio=float(one.free_duration) / time)
-    if isinstance(law, OscillatorLaw):
-        return _oscillator(law, speed, r, time, unit)
-    return law_of_impact(type(law), r, time, speed / unit)
-
-
-def _oscillator(
-    law: OscillatorLaw, speed: float, restitution: float, duration: float, unit: float
-) -> OscillatorLaw:
-    """The law of an oscillator with another ϖ and ζ, whose free impact at a speed has this r and
-    duration, in a unit of speeds that is greater by a factor.
-
-    The changes are small: Newton's method takes the slopes of the linear contact.
-
-    Raises
-    ------
-    ModelError
-        If it does not converge.
-    """
-    lengths = [name for name, of in law.units.items() if of.length == 1]
-    one = replace(law, **{name: getattr(law, name) / unit for name in lengths})
-    zeta = float(law.damping_ratio)
-    around = SpringDamper(1.0, np.abs([zeta - _BESIDE, zeta + _BESIDE]), Release.FORCE)
-    slope = float(np.diff(np.log(around.restitution))[0]) / (2 * _BESIDE)
-    for _ in range(_ROUNDS):
-        impact = one.signature(speed / unit)
-        off = math.log(restitution / float(impact.restitution))
-        longer = float(impact.duration) / duration
-        if max(abs(off), abs(longer - 1)) < _FOUND:
-            return one
-        one = replace(
-            one,
-            frequency_ratio=one.frequency_ratio * longer,
-            damping_ratio=max(one.damping_ratio + off / slope, 0.0),
-        )
-    raise ModelError(f"no {law.name} contact has r = {restitution:.6g} at this speed")
+    in_unit = replace(law, **law.in_si(1.0, 1 / unit, 1.0))
+    return law_with_impact(in_unit, r, time, speed / unit)
 
 
 def _is_of_impact(law: ContactLaw, speed: float) -> bool:
-    """Whether the impact at a speed determines the law, to the accuracy of the impact."""
+    """Whether the impact at a speed determines the law, to the accuracy of the impact, and the law
+    has a stiffness that can be changed.
+    """
     try:
         again = _law(law, speed).parameters()
+        _shorter(law, speed)
     except ModelError:
         return False
-    return (isinstance(law, OscillatorLaw) or _STIFFNESS in again) and all(
+    return all(
         math.isclose(float(again[name]), float(x), rel_tol=_SAME)
         for name, x in law.parameters().items()
     )

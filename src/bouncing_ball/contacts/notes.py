@@ -4,15 +4,14 @@ import math
 
 import numpy as np
 
-from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.contacts.engines.engine import Engine
 from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
 from bouncing_ball.contacts.motion import FinalMotion
+from bouncing_ball.contacts.named_laws import in_words
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -80,38 +79,36 @@ def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
     )
 
 
-def _cost_of(law: Impedance, case: ResolvedContact, family: ComparedOrbit) -> str:
-    """A sentence on the change of the greatest height that an impedance causes."""
-    about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
+def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -> str:
+    """A sentence on the change of the greatest height that the law of an engine causes in place of
+    the spring and damper of its parameters.
+    """
+    of = engine.names[0]
+    about = f"stiffness, damping, ϖ and ζ are those of the spring and damper of this {of}"
     spring = n_t.orbit(SpringDamperModel(case.contact), family.n, case.table.amplitude)
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
-    depth = np.array(family.greatest_compression / case.table.length)
+    where = engine.at_depth(case.given.engine_parameters, family.greatest_compression)
     off = float(prediction_error(family.max_height, spring.max_height * case.table.length))
     return (
-        f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
-        f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "
-        f"{'higher' if off > 0 else 'lower'} than with them"
+        f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, {where}, "
+        f"the ball bounces {shown(abs(off), '%')} {'higher' if off > 0 else 'lower'} than with them"
     )
 
 
 def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit) -> list[str]:
     """Sentences on how the numbers of a linear contact are those of a case with another law."""
-    # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
-    if isinstance(law, Impedance) and math.isclose(
-        law.frequency_ratio, case.contact.frequency_ratio
-    ):
-        return [_cost_of(law, case, family)]
-    if isinstance(law, SpringDamper):
+    if case.is_spring_damper:
         return [
             "the damper acts on approach only; the ϖ that is needed is that of a linear contact "
             "with the same r and duration"
         ]
-    hertz = isinstance(law, Tsuji)
-    name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
+    engine = case.given.engine
+    if engine is not None and not engine.needs_speed:
+        return [_cost_of_law(engine, case, family)]
     found = [
         "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-        f"it has the r of the {name}, and its duration at the impact"
+        f"it has the r of the {in_words(law)}, and its duration at the impact"
     ]
     if not np.all(case.has_its_restitution([family.n, family.n + 1])):
         found.append(

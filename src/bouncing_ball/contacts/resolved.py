@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.named_laws import model_name
 from bouncing_ball.contacts.rebounds import slowed
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.laws.signature import Signature
@@ -88,6 +88,13 @@ class ResolvedContact:
     def is_of_no_impact(self) -> bool:
         """Whether there is neither a table that moves nor an impact with a speed."""
         return self.table.is_at_rest and self.impact_speed is None
+
+    @property
+    def is_spring_damper(self) -> bool:
+        """Whether the contact is a spring and a damper, though this may act on approach only, so
+        that k and c are those of the contact itself.
+        """
+        return self.law is None or not self.law.release.is_linear
 
     @property
     def omega(self) -> float:
@@ -180,7 +187,7 @@ class ResolvedContact:
         """The name of a contact law and its parameters in SI units; None for a spring and damper,
         whose k and c are known.
         """
-        if self.law is None or isinstance(self.law, SpringDamper):
+        if self.law is None or self.is_spring_damper:
             return None
         numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
         return {"name": self.law.name, **numbers}
@@ -198,7 +205,7 @@ class ResolvedContact:
         if self.law is None:
             return {model.name: model for model in exact_and_simple_models(self.contact)}
         return {
-            "hertz" if isinstance(self.law, Tsuji) else self.law.name: LawModel(self.law),
+            model_name(self.law): LawModel(self.law),
             "restitution": RestitutionModel(self.contact.restitution),
             "corrected": CorrectedModel(Signature(self.law)),
         }

@@ -25,6 +25,7 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
+from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -136,7 +137,8 @@ def settings(
         not known what the engine does there.
     """
     engine = _engine_of(case, setup.engine, speed)
-    if case.law_in_si is not None and setup.time_step is not None and not engine.has_steps_of_law:
+    given_step = setup.time_step is not None
+    if given_step and not case.is_spring_damper and not engine.has_steps_of_law:
         raise ParameterError(_OF_A_LAW)
     release = str(case.contact.release)
     error = setup.restitution_error
@@ -197,8 +199,8 @@ def softer(
     if written.softer is None or written.softer.at_step is None:
         return None
     at = written.softer.at_step
-    if case.law_in_si is not None:
-        own = _longer(case, at.steps * at.time_step)
+    if case.law is not None and not case.is_spring_damper:
+        own = _longer(case, case.law, at.steps * at.time_step)
     else:
         ball = at.softer(case.mass)
         if ball is None:
@@ -221,23 +223,21 @@ def softer(
     )
 
 
-def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
-    """The contact of a linear spring with Hunt and Crossley's damping, whose impacts take so many
-    seconds, with the same r at each speed.
+def _longer(case: ResolvedContact, law: ContactLaw, contact_time: float) -> ResolvedContact:
+    """The contact whose impacts take so many seconds, of a law of which steps are known: that of a
+    linear spring, so that r is the same at each speed whatever its stiffness is.
     """
-    law = case.law
-    assert isinstance(law, LinearHuntCrossley)
     factor = contact_time / (
         float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
     )
     slower = replace(case.contact, frequency_ratio=case.contact.frequency_ratio / factor)
-    return replace(case, contact=slower, law=replace(law, stiffness=law.stiffness / factor**2))
+    return replace(case, contact=slower, law=law.stiffened(1 / factor**2))
 
 
 def _verdict(case: ResolvedContact, question: Question) -> str:
     """The headline and the verdict on a contact, or the reason why there are none."""
     period = 2 * math.pi * case.table.time
-    if case.law_in_si is not None and case.contact_time > period:
+    if not case.is_spring_damper and case.contact_time > period:
         long = f"an impact takes {shown(case.contact_time, 's')}, more than the table's period"
         return f"It is not judged: {long} of {shown(period, 's')}."
     try:

@@ -18,7 +18,7 @@ penetration P, because ``P = r v/ϖ`` and the load is balanced at a/ϖ², and ta
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -165,6 +165,18 @@ class SpringDamper(OscillatorLaw):
         rule = Release.of(release)
         zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
         return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
+
+    def with_impact(self, restitution: float, duration: float, speed: float) -> SpringDamper:
+        """The contact with another ϖ and ζ, whose free impacts have these r and D.
+
+        Examples
+        --------
+        >>> contact = SpringDamper(2.0, 0.1, "approach").with_impact(0.5, 0.25, 1.0)
+        >>> contact.release.value, float(contact.restitution), float(contact.free_duration)
+        ('approach', 0.5, 0.25)
+        """
+        one = SpringDamper.from_restitution(restitution, 1.0, self.release, measured=True)
+        return replace(one, frequency_ratio=float(one.free_duration) / duration)
 
     def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given, or for ζ ≥ 1.

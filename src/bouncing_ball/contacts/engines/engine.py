@@ -158,6 +158,12 @@ class Engine(ABC):
         """
         return None
 
+    def at_depth(self, parameters: Mapping[str, Any], depth: float) -> str:
+        """A clause on what distinguishes the law of :meth:`law` from the spring and damper of
+        :meth:`read` at a depth in m.
+        """
+        return "where the contact is not a spring and a damper"
+
     def with_law(self, law_in_si: Mapping[str, Any]) -> "Engine":
         """The engine for a contact law, which has a ``name`` and its parameters in SI units, also
         the ``radius`` in m of the ball and the ``speed`` in m/s of an impact, if they are known.

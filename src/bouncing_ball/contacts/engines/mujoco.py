@@ -218,6 +218,12 @@ class MuJoCo(Engine):
         found = at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
         return replace(found, remarks=remarks)
 
+    def at_depth(self, parameters: Mapping[str, Any], depth: float) -> str:
+        law = self.law(parameters)
+        if law is None:
+            return super().at_depth(parameters, depth)
+        return f"where the impedance is {float(law.impedance(np.array(depth))):.3g}"
+
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         law = self.law(parameters)
         if law is None:

@@ -4,16 +4,22 @@ A user's law is a subclass of :class:`ContactLaw`. The paper's contact is
 :class:`~bouncing_ball.models.spring_damper.SpringDamper`, a law among others.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
+from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.contact import ContactSpan
-from bouncing_ball.models.damping import check_damping, check_positive
+from bouncing_ball.models.damping import (
+    Release,
+    check_damping,
+    check_positive,
+    restitution_coefficient,
+)
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.instant import Instant
@@ -27,6 +33,11 @@ from bouncing_ball.models.setting import PAPER, Setting
 # The closed form of a motion is used for √γ above this value: the relative error of its steady part
 # is ε/√γ.
 _RESONANCE = 1e-4
+# How closely an oscillator with another r and duration is found, the rounds of the search, and the
+# difference of ζ for its slope.
+_FOUND = 1e-9
+_ROUNDS = 20
+_BESIDE = 1e-4
 
 
 @dataclass(frozen=True, repr=False)
@@ -191,3 +202,35 @@ class OscillatorLaw(ContactLaw):
         """The law with ϖ = v/P and ζ = group, and the defaults of all other parameters."""
         ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(ratio, group + 0 * ratio)
+
+    def stiffened(self, factor: float) -> Self:
+        """The law with ϖ√factor and the same ζ."""
+        return replace(self, frequency_ratio=self.frequency_ratio * math.sqrt(factor))
+
+    def with_impact(self, restitution: float, duration: float, speed: float) -> Self | None:
+        """The law with another ϖ and ζ, whose free impact of speed v has these r and D.
+
+        They must be near those of this law: Newton's method takes the slopes of the linear contact.
+
+        Raises
+        ------
+        ModelError
+            If it does not converge.
+        """
+        middle = max(float(self.damping_ratio), _BESIDE)
+        around = np.array([middle - _BESIDE, middle + _BESIDE])
+        logarithm = np.log(restitution_coefficient(around, Release.FORCE))
+        slope = float(np.diff(logarithm)[0]) / (2 * _BESIDE)
+        one = self
+        for _ in range(_ROUNDS):
+            impact = one.signature(speed)
+            off = math.log(restitution / float(impact.restitution))
+            longer = float(impact.duration) / duration
+            if max(abs(off), abs(longer - 1)) < _FOUND:
+                return one
+            one = replace(
+                one,
+                frequency_ratio=one.frequency_ratio * longer,
+                damping_ratio=max(one.damping_ratio + off / slope, 0.0),
+            )
+        raise ModelError(f"no {self.name} contact has r = {restitution:.6g} at this speed")

@@ -15,7 +15,7 @@ numerical methods need it to keep their order at the ends of the contact.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -191,6 +191,29 @@ class ForceLaw(Batch, ABC):
     def group_of(cls, restitution: float) -> float | None:
         """The dissipation ``group`` that gives a restitution coefficient r if it has a closed
         form, otherwise None.
+        """
+        return None
+
+    def stiffened(self, factor: float) -> Self:
+        """The law whose stiffness k is greater by a factor; its other parameters are the same.
+
+        Raises
+        ------
+        ModelError
+            If the law has no parameter ``stiffness``, and does not define this.
+        """
+        if "stiffness" not in self.parameters():
+            raise ModelError(f"{self.name} has no parameter stiffness")
+        return replace(self, **{"stiffness": self.parameters()["stiffness"] * factor})
+
+    def with_impact(self, restitution: float, duration: float, speed: float) -> Self | None:
+        """The law with another r and D of a free impact of speed v, that keeps what these do not
+        determine, such as its release; None if they determine the whole law.
+
+        Raises
+        ------
+        ModelError
+            If no such law was found.
         """
         return None
 

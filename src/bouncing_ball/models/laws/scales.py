@@ -21,6 +21,7 @@ _ENOUGH = 1e-3
 # Steps of ln p: the one for the difference quotient, and the longest of Newton's method.
 _DIFFERENCE = 1e-4
 _LONGEST = 10.0
+_ROUNDING = np.finfo(float).eps
 
 
 class Scales(NamedTuple):
@@ -83,7 +84,8 @@ def rest(law: ForceLaw) -> float:
     def surplus(p: float) -> float:
         return law.loaded_force(p * weight, 0 * weight, 1.0)[0] - 1
 
-    return scipy.optimize.brentq(surplus, 0.0, 2 * deepest)
+    # Stiff contacts are less deep than the absolute tolerance that is scipy's default.
+    return scipy.optimize.brentq(surplus, 0.0, 2 * deepest, xtol=_ROUNDING * deepest)
 
 
 def scales(law: ForceLaw, speed: np.ndarray, load: np.ndarray) -> Scales:

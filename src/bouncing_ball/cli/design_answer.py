@@ -6,7 +6,7 @@ from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import Description
 from bouncing_ball.contacts.drops import Dropped, drop_at_rest
-from bouncing_ball.contacts.engines.drop_in_steps import Rise
+from bouncing_ball.contacts.engines.drop_in_steps import ReboundHeights
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
 from bouncing_ball.contacts.quantities import quantities
@@ -41,7 +41,7 @@ class DesignAnswer(NamedTuple):
     at_step: AtStep | None
     question: dict[str, Any]
     whole: bool = True
-    dropped_at_step: Rise | None = None
+    dropped_at_step: ReboundHeights | None = None
     softer: Softer | None = None
     looser: Looser | None = None
     doubts: tuple[str, ...] = ()

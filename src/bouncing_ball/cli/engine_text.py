@@ -5,7 +5,7 @@ from bouncing_ball.cli.options import option
 from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.describe import Description
-from bouncing_ball.contacts.engines.drop_in_steps import Rise
+from bouncing_ball.contacts.engines.drop_in_steps import ReboundHeights
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
 from bouncing_ball.contacts.engines.physical import Physical
@@ -88,7 +88,7 @@ def _pasted(engine: EngineSettings) -> list[str]:
     return ["", *(f"    {line}".rstrip() for line in engine.snippet.splitlines()), ""]
 
 
-def _rise(found: Rise | None) -> list[str]:
+def _rise(found: ReboundHeights | None) -> list[str]:
     if found is None:
         return []
     ends = [shown(height, "m") for height in (found.least, found.most)]

@@ -13,7 +13,7 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import LONGEST, Description, describe
 from bouncing_ball.contacts.drops import Dropped, drop_at_rest
 from bouncing_ball.contacts.engines.choice import engine_named
-from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, Rise, drop_in_steps
+from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, ReboundHeights, drop_in_steps
 from bouncing_ball.contacts.engines.engine import Engine, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball.contacts.engines.hunt_crossley_steps import fewest_steps_of_law
@@ -185,7 +185,7 @@ class Softer:
 
     contact: Description
     dropped: Dropped | None = None
-    dropped_at_step: Rise | None = None
+    dropped_at_step: ReboundHeights | None = None
     verdict: str = ""
 
 
@@ -249,7 +249,7 @@ def _verdict(case: ResolvedContact, question: Question) -> str:
 
 def dropped_at_step(
     case: ResolvedContact, written: EngineSettings | None, speed: float | None
-) -> Rise | None:
+) -> ReboundHeights | None:
     """The rises of balls that are dropped, in an engine with a time step that is given."""
     if speed is None or written is None or written.at_step is None:
         return None

@@ -18,7 +18,7 @@ Number = Any
 """A ball or a series."""
 
 
-class Responses(NamedTuple):
+class EnclosedResponses(NamedTuple):
     """The contact's responses at a time: g, g′, G, P = Im h and Q = Re h (Eq. 4 of the page)."""
 
     impulse: Number
@@ -72,7 +72,7 @@ class EnclosedContact:
         """D = (θ₀ + ε)/ϖ_d."""
         return (excess + self.free_angle) / self.damped
 
-    def responses(self, time: Number) -> Responses:
+    def responses(self, time: Number) -> EnclosedResponses:
         """g, g′, G, P and Q after a time in contact.
 
         The quotients are singular at the undamped resonance ζ = 0, ϖ = 1, where the balls become
@@ -95,7 +95,7 @@ class EnclosedContact:
         square = detuning * detuning + loss * loss
         in_phase = (real * detuning + imaginary * loss) / square
         quadrature = (imaginary * detuning - real * loss) / square
-        return Responses(g, g_rate, gravity, quadrature, in_phase)
+        return EnclosedResponses(g, g_rate, gravity, quadrature, in_phase)
 
     def state(self, time: Number, u: Number, x: Number, y: Number) -> tuple[Number, Number]:
         """δ and δ′ after a time in contact (Eqs. 2 and 3 of the page)."""

@@ -17,14 +17,14 @@ MOST_STEPS = 20_000
 
 
 @dataclass(frozen=True)
-class Rise:
+class ReboundHeights:
     """The least and the greatest height of the rebound in m; 0 for a ball that does not leave."""
 
     least: float
     most: float
 
 
-def drop_in_steps(step: Step, speed: float, gravity: float, contact_time: float) -> Rise:
+def drop_in_steps(step: Step, speed: float, gravity: float, contact_time: float) -> ReboundHeights:
     """The rises of balls that arrive with a speed in m/s, at all instants within a time step in s.
 
     ``contact_time`` is that of a free impact in s.
@@ -55,4 +55,4 @@ def drop_in_steps(step: Step, speed: float, gravity: float, contact_time: float)
     # Relative to the drop of each ball, of which one is the drop asked for.
     rises = np.maximum(top, 0.0) / np.maximum(drop, np.finfo(float).tiny) * speed**2 / (2 * g)
     rises = np.where(v > 0, rises, 0.0)
-    return Rise(float(rises.min()), float(rises.max()))
+    return ReboundHeights(float(rises.min()), float(rises.max()))

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.pipeline.diff.budgets import IGNORED, Budget, budget_of
 from bouncing_ball.pipeline.diff.cause import parameter_changes
-from bouncing_ball.pipeline.diff.outcome import Finding, Outcome
+from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome
 from bouncing_ball.pipeline.provenance import TEXTUAL, parameters_of
 
 # Number of samples by which a point may slide along a curve.
@@ -151,7 +151,9 @@ def _form(data: xr.Dataset, name: str) -> str | None:
     return ", ".join([kind, *sizes]) + role
 
 
-def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[Finding]:
+def _attribute_rows(
+    name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]
+) -> list[ComparedItem]:
     """The attributes of a variable or a dataset that differ, such as units or a raised budget."""
     found = []
     for attribute in sorted(record.keys() | new.keys()):
@@ -160,11 +162,13 @@ def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]
             for side in (record, new)
         )
         if old_text != new_text:
-            found.append(Finding(f"{attribute} of {name}", Outcome.STRUCTURE, old_text, new_text))
+            found.append(
+                ComparedItem(f"{attribute} of {name}", Outcome.STRUCTURE, old_text, new_text)
+            )
     return found
 
 
-def word_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
+def word_rows(record: xr.Dataset, new: xr.Dataset) -> list[ComparedItem]:
     """A row for each text about a dataset that differs, such as its title and its references.
 
     Examples
@@ -177,7 +181,7 @@ def word_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     return _attribute_rows("the dataset", old, now)
 
 
-def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
+def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[ComparedItem]:
     """A row for each variable of another type or size, and for each attribute that differs.
 
     The attributes of the dataset itself are compared elsewhere.
@@ -194,7 +198,7 @@ def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
         old_form = _form(record, name)
         new_form = _form(new, name)
         if old_form != new_form:
-            found.append(Finding(name, Outcome.STRUCTURE, old_form, new_form))
+            found.append(ComparedItem(name, Outcome.STRUCTURE, old_form, new_form))
         if old_form is not None and new_form is not None:
             found += _attribute_rows(name, record[name].attrs, new[name].attrs)
     return found
@@ -328,13 +332,13 @@ def _word_changes(old: xr.DataArray, now: xr.DataArray, unmoved: np.ndarray) -> 
     return tuple(found)
 
 
-def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Finding:
+def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> ComparedItem:
     """The largest move of a variable over its budget, and the number of entries that moved."""
     old = record[name]
     now = new[name]
     unmoved = same(old.values, now.values)
     if unmoved.all():
-        return Finding(name, Outcome.IDENTICAL, entries=old.size)
+        return ComparedItem(name, Outcome.IDENTICAL, entries=old.size)
     share = shares(name, record, new, budget_of(artifact, name, now.attrs))
     # Among the entries that moved, because several may have the same share.
     order = np.where((share > 0) | ~unmoved, share, -1.0)
@@ -346,7 +350,7 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
         change = relative_change(float(old.values[place]), float(now.values[place]), span(old))
     elif old.dtype.kind in "OSUT" and old.ndim:
         changes = _word_changes(old, now, unmoved)
-    return Finding(
+    return ComparedItem(
         name,
         Outcome.DRIFTED if beyond else Outcome.WITHIN,
         record=str(old.values[place]),
@@ -362,14 +366,14 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
     )
 
 
-def _secondary(row: Finding) -> Finding:
+def _secondary(row: ComparedItem) -> ComparedItem:
     """A row of two datasets with other parameters: the difference has no share of a budget."""
     if row.outcome is Outcome.IDENTICAL:
         return row
     return replace(row, outcome=Outcome.PARAMETERS, share=0.0, beyond=0)
 
 
-def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
+def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[ComparedItem]:
     """A row for each parameter and each part of the structure that differs, and for each variable.
 
     Examples
@@ -387,7 +391,7 @@ def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list
     """
     changes = parameter_changes(parameters_of(record.attrs), parameters_of(new.attrs))
     parameters = [
-        Finding(f"parameter {change.name}", Outcome.PARAMETERS, change.record, change.new)
+        ComparedItem(f"parameter {change.name}", Outcome.PARAMETERS, change.record, change.new)
         for change in changes
     ]
     structure = structure_rows(record, new)

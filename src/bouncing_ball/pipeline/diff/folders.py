@@ -42,7 +42,7 @@ from bouncing_ball.pipeline.diff.cause import (
     require_origin,
 )
 from bouncing_ball.pipeline.diff.datasets import compare_datasets, word_rows
-from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole, worst
+from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_drawings, compare_texts, words_of
 from bouncing_ball.pipeline.samples import outdated
 
@@ -77,7 +77,7 @@ def read_picture(path: Path) -> np.ndarray:
 
 def compare_pictures(
     record: np.ndarray, new: np.ndarray, budget: float | None = budgets.PICTURE
-) -> list[Finding]:
+) -> list[ComparedItem]:
     """The difference of two pictures of :func:`read_picture`: no row if all pixels are identical.
 
     Parameters
@@ -95,7 +95,7 @@ def compare_pictures(
     """
     if record.shape != new.shape:
         old_size, new_size = (f"{shape[1]} × {shape[0]}" for shape in (record.shape, new.shape))
-        return [Finding("size in pixels", Outcome.STRUCTURE, old_size, new_size)]
+        return [ComparedItem("size in pixels", Outcome.STRUCTURE, old_size, new_size)]
     changed = (new != record).any(axis=-1)
     if not changed.any():
         return []
@@ -106,7 +106,9 @@ def compare_pictures(
         share = float(np.sqrt(np.mean(difference**2))) / budget
     outcome = Outcome.WITHIN if share <= 1 else Outcome.DRIFTED
     return [
-        Finding("pixels", outcome, share=share, note=f"{100 * changed.mean():.2g} % of all changed")
+        ComparedItem(
+            "pixels", outcome, share=share, note=f"{100 * changed.mean():.2g} % of all changed"
+        )
     ]
 
 
@@ -114,21 +116,21 @@ def _content(path: Path) -> bytes | None:
     return path.read_bytes() if path.exists() else None
 
 
-def _rows(old: Path, now: Path, data: Outcome | None) -> list[Finding]:
+def _rows(old: Path, now: Path, data: Outcome | None) -> list[ComparedItem]:
     """The rows of a file, see :func:`judge`; the library that reads it may raise an error."""
     record = _content(old)
     new = _content(now)
     if record == new:
         return []
     if record is None:
-        return [Finding("", Outcome.EXTRA)]
+        return [ComparedItem("", Outcome.EXTRA)]
     if new is None:
-        return [Finding("", Outcome.MISSING)]
+        return [ComparedItem("", Outcome.MISSING)]
     if old.suffix == DATASET:
         both = read_dataset(old), read_dataset(now)
         return word_rows(*both) + compare_datasets(old.stem, *both)
     if old.suffix in PICTURES and (note := redrawn(record, new)):
-        return [Finding("", Outcome.WITHIN, note=note)]
+        return [ComparedItem("", Outcome.WITHIN, note=note)]
     if old.suffix == ".png":
         of_moved = budgets.PICTURES.get(old.stem, budgets.PICTURE)
         budget = None if data is Outcome.IDENTICAL else of_moved
@@ -187,7 +189,7 @@ def judge(file: str, compared: Compared, data: Outcome | None) -> Whole:
     shown = old.suffix == ".png"
     if file in compared.not_made:
         before = _content(old) if shown else None
-        return Whole(file, (Finding("", Outcome.NOT_MADE),), (before, None))
+        return Whole(file, (ComparedItem("", Outcome.NOT_MADE),), (before, None))
     # Warnings of the libraries about a damaged file become one line.
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
@@ -197,13 +199,13 @@ def judge(file: str, compared: Compared, data: Outcome | None) -> Whole:
                 for path in (old, now):
                     require_origin(path)
             if _is_stale(file, compared.new):
-                rows.append(Finding("", Outcome.STALE, note="made by older code"))
+                rows.append(ComparedItem("", Outcome.STALE, note="made by older code"))
             pictures = (_content(old), _content(now)) if shown else (None, None)
             return Whole(file, tuple(rows), pictures)
         # On a damaged file the libraries raise errors of many types.
         except Exception as error:
             why = " ".join(str(error).split()) or type(error).__name__
-            return Whole(file, (Finding("", Outcome.UNREADABLE, note=why),))
+            return Whole(file, (ComparedItem("", Outcome.UNREADABLE, note=why),))
 
 
 @dataclass(frozen=True)
@@ -361,7 +363,7 @@ def _outdated_samples(record: Path, used: Collection[str] | None) -> Whole | Non
     if not reasons:
         return None
     files = [
-        Whole(f"config/{name}", (Finding("", Outcome.STALE, note=why),))
+        Whole(f"config/{name}", (ComparedItem("", Outcome.STALE, note=why),))
         for name, why in reasons.items()
     ]
     cause = "accepted samples are older than their code, or were changed by hand"

@@ -57,7 +57,7 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ComparedItem:
     """One item of the comparison of a file: a line of a text, a variable, an attribute, or pixels.
 
     Parameters

@@ -11,7 +11,7 @@ from itertools import takewhile
 from urllib.parse import quote
 
 from bouncing_ball.pipeline.artifacts import DATASET
-from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole
+from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome, Whole
 from bouncing_ball.pipeline.diff.words import headline, moved_by, numbers
 
 _SENTENCES = (
@@ -31,7 +31,7 @@ def sentence(comparison: Whole) -> str:
     --------
     >>> sentence(Whole("", (Whole("fig01"), Whole("fig02"))))
     '2 identical. The new artifacts agree with the record.'
-    >>> row = Finding("parameter n", Outcome.PARAMETERS, "1", "2")
+    >>> row = ComparedItem("parameter n", Outcome.PARAMETERS, "1", "2")
     >>> sentence(Whole("", (Whole("fig01", (row,)),)))
     '1 with changed parameters. The new artifacts differ from the record.'
     """
@@ -56,12 +56,12 @@ def share_text(share: float) -> str:
     return f"{100 * share:.3g} %" if 0 < share <= 1 else ""
 
 
-def entries_text(row: Finding) -> str:
+def entries_text(row: ComparedItem) -> str:
     """The number of entries of a variable that moved.
 
     Examples
     --------
-    >>> entries_text(Finding("phase", Outcome.DRIFTED, moved=7, beyond=2, entries=1204))
+    >>> entries_text(ComparedItem("phase", Outcome.DRIFTED, moved=7, beyond=2, entries=1204))
     '7 of 1204, 2 beyond the budget'
     """
     if not row.entries:
@@ -82,7 +82,7 @@ def _excerpt(text: str | None, start: int, width: int = 60) -> str:
     return f"{before}{shown.strip()}{after}"
 
 
-def _change(row: Finding) -> str:
+def _change(row: ComparedItem) -> str:
     """Both contents of a row, of long texts the part where they begin to differ."""
     if row.record is None and row.new is None:
         return ""
@@ -96,7 +96,7 @@ def note(file: Whole) -> str:
 
     Examples
     --------
-    >>> note(Whole("paper.md", (Finding("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26"),)))
+    >>> note(Whole("paper.md", (ComparedItem("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26"),)))
     'line 1: r = 0.25 → r = 0.26'
     """
     rows = file.moved
@@ -139,7 +139,7 @@ def to_terminal(comparison: Whole) -> str:
 
     Examples
     --------
-    >>> row = Finding("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26")
+    >>> row = ComparedItem("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26")
     >>> paper = Whole("paper", (Whole("paper.md", (row,)),), cause="made from fig14")
     >>> print(to_terminal(Whole("", (paper, Whole("fig01")))), end="")
     paper: made from fig14

@@ -6,7 +6,7 @@ from difflib import SequenceMatcher
 from itertools import zip_longest
 from pathlib import Path
 
-from bouncing_ball.pipeline.diff.outcome import Finding, Outcome
+from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome
 
 # A printed number with its sign and exponent.
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d{1,4})?")
@@ -56,7 +56,7 @@ def _line_outcome(old: str | None, new: str | None, data: Outcome | None) -> Out
     return Outcome.WITHIN if may_be_rounding(old, new) else Outcome.DRIFTED
 
 
-def compare_texts(record: str, new: str, data: Outcome | None) -> list[Finding]:
+def compare_texts(record: str, new: str, data: Outcome | None) -> list[ComparedItem]:
     """All lines that differ, each with its outcome.
 
     If the data have drifted within their budget, the last digit of a printed number may change by
@@ -90,7 +90,9 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Finding]:
         pairs = zip_longest(old_lines[first:last], new_lines[new_first:new_last])
         for number, (old, now) in enumerate(pairs, start=first + 1):
             if old != now:
-                found.append(Finding(f"line {number}", _line_outcome(old, now, data), old, now))
+                found.append(
+                    ComparedItem(f"line {number}", _line_outcome(old, now, data), old, now)
+                )
     return found
 
 
@@ -134,7 +136,7 @@ def _drawing(text: str) -> str:
     return re.sub("|".join(names), lambda match: names[match[0]], text)
 
 
-def compare_drawings(record: str, new: str, data: Outcome | None) -> list[Finding]:
+def compare_drawings(record: str, new: str, data: Outcome | None) -> list[ComparedItem]:
     """A row if two vector graphics draw something else; their words are compared elsewhere.
 
     If the data are identical, or if there are none, all elements must be, with numbers up to their
@@ -159,11 +161,11 @@ def compare_drawings(record: str, new: str, data: Outcome | None) -> list[Findin
     if kinds != new_kinds:
         gone = ", ".join(sorted(kinds - new_kinds)) or None
         come = ", ".join(sorted(new_kinds - kinds)) or None
-        return [Finding("elements", Outcome.DRIFTED, gone, come)]
+        return [ComparedItem("elements", Outcome.DRIFTED, gone, come)]
     if data not in (Outcome.IDENTICAL, None):
         said = "its data moved, and only its words were compared"
-        return [Finding("drawing", Outcome.WITHIN, note=said)]
+        return [ComparedItem("drawing", Outcome.WITHIN, note=said)]
     for line, new_line in zip_longest(old.split("\n"), now.split("\n")):
         if line is None or new_line is None or not may_be_rounding(line, new_line):
-            return [Finding("drawing", Outcome.DRIFTED, line, new_line)]
+            return [ComparedItem("drawing", Outcome.DRIFTED, line, new_line)]
     return []

@@ -5,7 +5,7 @@ from collections import Counter
 from contextlib import suppress
 
 from bouncing_ball.pipeline.artifacts import DATASET
-from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole
+from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome, Whole
 
 # More changes of words than these are counted.
 _NAMED = 6
@@ -43,14 +43,14 @@ def percent(change: float) -> str:
     return f"{float(two):+.0f} %" if "e+" in two else f"{two} %"
 
 
-def moved_by(row: Finding) -> str:
+def moved_by(row: ComparedItem) -> str:
     """The change of a number in words; of one that was almost nothing, as a part of its range.
 
     Examples
     --------
-    >>> moved_by(Finding("level", Outcome.DRIFTED, "2.0", "1.5", change=-0.25))
+    >>> moved_by(ComparedItem("level", Outcome.DRIFTED, "2.0", "1.5", change=-0.25))
     '-25 %'
-    >>> moved_by(Finding("level", Outcome.DRIFTED, "2e-14", "5.6", change=0.52))
+    >>> moved_by(ComparedItem("level", Outcome.DRIFTED, "2e-14", "5.6", change=0.52))
     '+52 % of the range'
     """
     change = percent(row.change)
@@ -64,16 +64,16 @@ def moved_by(row: Finding) -> str:
     return f"{100 * row.change:+.2g} % of the range" if row.change <= _FACTOR else ""
 
 
-def numbers(row: Finding) -> str:
+def numbers(row: ComparedItem) -> str:
     """Both contents of a row; of numbers the digits that differ, and one more.
 
     Examples
     --------
-    >>> numbers(Finding("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041"))
+    >>> numbers(ComparedItem("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041"))
     '0.84032 → 0.83950'
-    >>> numbers(Finding("orbits", Outcome.DRIFTED, "1204", "1187"))
+    >>> numbers(ComparedItem("orbits", Outcome.DRIFTED, "1204", "1187"))
     '1204 → 1187'
-    >>> numbers(Finding("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
+    >>> numbers(ComparedItem("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
     '0.15487 → nan'
     """
     record = str(row.record)
@@ -94,7 +94,7 @@ def numbers(row: Finding) -> str:
     return " → ".join(f"{float(text):#.{digits}g}".removesuffix(".") for text in (record, new))
 
 
-def _told(row: Finding) -> str:
+def _told(row: ComparedItem) -> str:
     """One variable in words."""
     if row.changes:
         named = "; ".join(row.changes[:_NAMED])
@@ -107,7 +107,7 @@ def _told(row: Finding) -> str:
     return f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {numbers(row)}"
 
 
-def _telling(rows: list[Finding]) -> Finding:
+def _telling(rows: list[ComparedItem]) -> ComparedItem:
     """The variable that says most: words before single numbers, and these before curves."""
     order = [
         (not row.changes, row.entries > 1, not math.isnan(row.change), -abs(row.change))
@@ -116,7 +116,7 @@ def _telling(rows: list[Finding]) -> Finding:
     return rows[order.index(min(order))]
 
 
-def telling_row(artifact: Whole) -> Finding | None:
+def telling_row(artifact: Whole) -> ComparedItem | None:
     """The variable of an artifact's dataset that says most about its drift."""
     for file in artifact.parts:
         if file.name.endswith(DATASET):
@@ -125,7 +125,7 @@ def telling_row(artifact: Whole) -> Finding | None:
     return None
 
 
-def _large(artifact: Whole) -> list[Finding]:
+def _large(artifact: Whole) -> list[ComparedItem]:
     """The variables with a large relative change that an absolute budget allows."""
     rows = [row for file in artifact.parts if file.name.endswith(DATASET) for row in file.parts]
     return [
@@ -145,7 +145,7 @@ def changed_code(comparison: Whole) -> str:
 
     Examples
     --------
-    >>> moved = (Finding("level", Outcome.DRIFTED),)
+    >>> moved = (ComparedItem("level", Outcome.DRIFTED),)
     >>> fig14 = Whole("fig14", (Whole("figures/fig14.nc", moved),), code=("a.py", "b.py"))
     >>> changed_code(Whole("", (fig14, Whole("fig15", code=("a.py",)))))
     'changed code (artifacts made by it that differ, and that do not): b.py (1, 0), a.py (1, 1)'
@@ -169,7 +169,7 @@ def headline(comparison: Whole) -> list[str]:
 
     Examples
     --------
-    >>> row = Finding("level", Outcome.DRIFTED, "82.2", "83.0", entries=1, title="threshold",
+    >>> row = ComparedItem("level", Outcome.DRIFTED, "82.2", "83.0", entries=1, title="threshold",
     ...     change=0.00973)
     >>> fig14 = Whole("fig14", (Whole("figures/fig14.nc", (row,)),), cause="numbers moved")
     >>> headline(Whole("", (fig14,)))

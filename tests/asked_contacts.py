@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from bouncing_ball.cli.design import answer
+from bouncing_ball.cli.design import answer_design
 from bouncing_ball.cli.design_answer import DesignAnswer
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.describe import Description
@@ -10,18 +10,18 @@ from bouncing_ball.contacts.describe import Description
 
 def answered(**given: Any) -> DesignAnswer:
     """The whole answer: the contact, a drop, and what is written into an engine."""
-    return answer(given)
+    return answer_design(given)
 
 
 def assessed(**given: Any) -> Assessment:
     """The assessment of a contact on a table, given or chosen."""
-    found = answer(given).found
+    found = answer_design(given).found
     assert isinstance(found, Assessment)
     return found
 
 
 def described(**given: Any) -> Description:
     """The description of a contact without a table."""
-    found = answer(given).found
+    found = answer_design(given).found
     assert isinstance(found, Description)
     return found

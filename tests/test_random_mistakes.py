@@ -33,7 +33,12 @@ from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.errors import ModelError, Range
 from bouncing_ball.models.makers import LOSSES
-from bouncing_ball.pipeline.configuration import ConfigurationError, check, place, read_yaml
+from bouncing_ball.pipeline.configuration import (
+    ConfigurationError,
+    check_parameters,
+    place,
+    read_yaml,
+)
 
 ROOT = Path(__file__).parents[1]
 NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
@@ -213,7 +218,7 @@ def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
         section = section[key]
     section[path[-1]] = wrong
     with refusal(ConfigurationError, place(path), " must "):
-        check(STUDIES, config)
+        check_parameters(STUDIES, config)
 
 
 @given(
@@ -228,7 +233,7 @@ def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
     known = list(section)
     section[word] = section.pop(path[-1])
     with pytest.raises(ConfigurationError) as error:
-        check(STUDIES, config)
+        check_parameters(STUDIES, config)
     # The key that has another name now is missing.
     unknown, *missing = str(error.value).splitlines()
     assert unknown.startswith(f"unknown key {place((*path[:-1], word))} = ")

@@ -4,7 +4,7 @@ import csv
 import json
 from pathlib import Path
 
-from bouncing_ball.beyond.proofs.bounces import hard, spring_damper, written
+from bouncing_ball.beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
 from bouncing_ball.models.damping import Release
 
 FOLDER = Path(__file__).with_name("reference")
@@ -21,7 +21,7 @@ def rows():
         for rule in map(str, Release):
             contact = ("1", k, c)
             case = {"rule": rule, "mass": "1", "stiffness": k, "damping": c}
-            yield given | case, spring_damper(rule, contact, HEIGHT, GRAVITY, COUNT)
+            yield given | case, enclosed_rebounds(rule, contact, HEIGHT, GRAVITY, COUNT)
 
 
 def main():
@@ -29,7 +29,7 @@ def main():
     for case, bounces in rows():
         for number, one in enumerate(bounces, 1):
             balls = (one.impact, one.release, one.top, one.speed, one.height)
-            values = dict(zip(COLUMNS, map(written, balls), strict=True))
+            values = dict(zip(COLUMNS, map(rounded_ball, balls), strict=True))
             table.append(case | {"bounce": str(number)} | values)
     names = list(dict.fromkeys(name for row in reversed(table) for name in row))
     FOLDER.mkdir(exist_ok=True)

@@ -8,7 +8,7 @@ from asked_contacts import assessed
 from PIL import Image
 
 from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.contacts.page_data import page
+from bouncing_ball.contacts.page_data import chart_and_motion
 from bouncing_ball.contacts.page_figures import draw
 from bouncing_ball.contacts.rows import document
 from bouncing_ball.drawing.labels import QUANTITIES
@@ -28,7 +28,7 @@ def found():
 
 @pytest.fixture(scope="module")
 def data(found):
-    return page(found)
+    return chart_and_motion(found)
 
 
 def test_json_is_the_answer_of_the_call(ask):
@@ -97,7 +97,7 @@ def test_choosing(said):
     ],
 )
 def test_mistakes_are_one_line(refused, monkeypatch, data, arguments, status, says):
-    monkeypatch.setattr("bouncing_ball.contacts.page_data.page", lambda found: data)
+    monkeypatch.setattr("bouncing_ball.contacts.page_data.chart_and_motion", lambda found: data)
     command = (*STIFF, *arguments)
     code, line = refused(*command)
     assert code == status and says in line
@@ -133,7 +133,7 @@ def test_the_axes_of_the_page_are_in_seconds_and_metres():
         mass="20 g", frequency="50 Hz", acceleration="0.8 g", stiffness="2e5 N/m",
         restitution=0.65, n=1,
     )  # fmt: skip
-    shown = page(real)
+    shown = chart_and_motion(real)
     one = real.judged
     # One cycle and a quarter of a period, of 20 ms.
     assert [float(shown.time[k]) for k in (0, -1)] == pytest.approx([0, 0.025], rel=1e-12)
@@ -186,13 +186,13 @@ def test_a_page_without_errors_and_with_a_long_reason(found, data):
 def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
     lonely = assessed(**UNIT | {"restitution": 0.85, "acceleration": 0.247}, stiffness=100.0)
     monkeypatch.setattr("bouncing_ball.contacts.page_data._CHART", 2)
-    shown = page(lonely)
+    shown = chart_and_motion(lonely)
     assert shown.ball.sel(model="restitution").isnull().all()
     assert draw(document(lonely), shown, []).axes
 
 
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
-    monkeypatch.setattr("bouncing_ball.contacts.page_data.page", lambda found: data)
+    monkeypatch.setattr("bouncing_ball.contacts.page_data.chart_and_motion", lambda found: data)
     assert said(*STIFF, "--plot", str(tmp_path / "page.png")) == said(*STIFF)
     with Image.open(tmp_path / "page.png") as picture:
         # A4 upright, with ink in it.

@@ -13,7 +13,7 @@ import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.pipeline import patience as module
-from bouncing_ball.pipeline.patience import patience
+from bouncing_ball.pipeline.patience import told_if_slow
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
@@ -48,7 +48,7 @@ def test_a_command_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monk
 
 
 def test_without_advice_a_line_gives_the_time_alone(hasty, capfd):
-    with patience(""):
+    with told_if_slow(""):
         time.sleep(0.1)
     line = "bouncing-ball: no answer after 0 s yet; Ctrl-C ends it\n"
     assert capfd.readouterr().err == line
@@ -76,7 +76,7 @@ def test_a_call_of_the_library_starts_no_thread(monkeypatch):
 
 
 def test_a_command_that_fails_ends_its_lines(hasty, capfd):
-    with pytest.raises(KeyError), patience("fewer balls"):
+    with pytest.raises(KeyError), told_if_slow("fewer balls"):
         raise KeyError
     time.sleep(0.2)
     assert capfd.readouterr().err == ""
@@ -84,7 +84,7 @@ def test_a_command_that_fails_ends_its_lines(hasty, capfd):
 
 def test_without_standard_error_an_answer_has_no_lines(hasty, capfd, monkeypatch):
     monkeypatch.setattr(sys, "stderr", None)
-    with patience("fewer balls"):
+    with told_if_slow("fewer balls"):
         time.sleep(0.2)
     assert capfd.readouterr() == ("", "")
 

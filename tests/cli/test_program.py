@@ -130,7 +130,7 @@ def test_every_command_is_explained_and_its_symbols_are(said):
     ("call", "computes"),
     [
         ("diagram --restitution 0.5 --amplitude 1 2 --plot", "long_run.motion_of.orbit_diagram"),
-        ("design --plot", "cli.design.answer"),
+        ("design --plot", "cli.design.answer_design"),
         ("diff figures results --html", "cli.diff.compare_folders"),
     ],
 )

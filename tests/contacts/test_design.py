@@ -10,7 +10,7 @@ from asked_contacts import answered, assessed
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.cli.design import document
+from bouncing_ball.cli.design import design_document
 from bouncing_ball.contacts import verdict
 from bouncing_ball.contacts.drop_test import rebound
 from bouncing_ball.contacts.named_laws import LAWS
@@ -338,11 +338,11 @@ def test_an_acceleration_in_si_units_means_the_same_with_and_without_its_unit(ac
     given = STEEL | {"restitution": 0.85, "acceleration": acceleration}
     found = answered(**given)
     assert found.found.amplitude == pytest.approx(0.49 / 9.80665, rel=1e-14)
-    assert document(found)["reason"].endswith("; perhaps 0.49 g was meant")
+    assert design_document(found)["reason"].endswith("; perhaps 0.49 g was meant")
     with pytest.raises(NoOrbitError, match=r"perhaps 0\.49 g was meant"):
         assessed(**given, n=1)
     plain = answered(**given | {"acceleration": "0.05 g"})
-    assert "was meant" not in document(plain)["reason"]
+    assert "was meant" not in design_document(plain)["reason"]
 
 
 @pytest.mark.parametrize(

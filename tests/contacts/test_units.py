@@ -13,7 +13,7 @@ from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.texts import shown
-from bouncing_ball.contacts.units import number
+from bouncing_ball.contacts.units import number_in_si
 from bouncing_ball.errors import ModelError
 
 KINDS = {}
@@ -22,7 +22,7 @@ for each in (Contact, Table, Question, EngineSetup, drop_at_rest):
 
 
 def read(name, value):
-    return number(name, value, KINDS[name])
+    return number_in_si(name, value, KINDS[name])
 
 
 # A unit of each way to write one, and what it is in SI units (cycles, for a frequency).

@@ -7,7 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.measured.experiment import COLUMNS, QUANTITIES, TEXTS, experiment, names, read
+from bouncing_ball.measured.experiment import (
+    COLUMNS,
+    QUANTITIES,
+    TEXTS,
+    experiment,
+    experiment_names,
+    read,
+)
 from bouncing_ball.measured.flights import drag_length, heard
 from bouncing_ball.measured.verdicts import Compatibility, error_size, judge, scatter
 
@@ -54,10 +61,10 @@ def test_every_experiment_is_in_the_list():
         if (line.startswith("| `") and " to " in line) or "`superball`" in line
     ]
     listed = " ".join(rows)
-    for name in names():
+    for name in experiment_names():
         assert f"`{name}`" in listed
     # Two marbles share a row, and one experiment has a single speed.
-    for name in set(names()) - {"blue_marble", "metal_marble", "superball"}:
+    for name in set(experiment_names()) - {"blue_marble", "metal_marble", "superball"}:
         (row,) = (line for line in rows if f"`{name}`" in line)
         low, high = map(float, re.search(r"([\d.]+) to ([\d.]+) m/s", row).groups())
         speeds = experiment(name).speeds

@@ -8,12 +8,12 @@ import pytest
 
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.errors import ModelError
-from bouncing_ball.measured.experiment import DATA, experiment, names, read
+from bouncing_ball.measured.experiment import DATA, experiment, experiment_names, read
 
 
 def test_every_experiment_says_where_its_numbers_come_from():
-    assert len(names()) >= 5
-    for name in names():
+    assert len(experiment_names()) >= 5
+    for name in experiment_names():
         found = experiment(name)
         for text in ("title", "ball", "measured by", "published", "source", "read"):
             assert found.texts[text], (name, text)
@@ -24,7 +24,7 @@ def test_every_experiment_says_where_its_numbers_come_from():
 def test_the_experiments_of_the_package_need_no_other_units(monkeypatch):
     # A job of the workflow may not import pint.
     monkeypatch.setitem(sys.modules, "pint", None)
-    for name in names():
+    for name in experiment_names():
         assert experiment(name).speeds.size
 
 

@@ -11,7 +11,7 @@ from bouncing_ball.measured.verdicts import (
     REJECTED,
     Compatibility,
     error_size,
-    extrapolated,
+    extrapolation_errors,
     judge,
     left_out,
     noise,
@@ -38,7 +38,10 @@ def sample(law, noise, count, known):
 def test_a_true_law_is_rarely_rejected(law, known):
     curve = curve_named(law)
     tests = [
-        [test(curve, points).probability(*noise(points)) for test in (left_out, extrapolated)]
+        [
+            test(curve, points).probability(*noise(points))
+            for test in (left_out, extrapolation_errors)
+        ]
         for points in sample(law, 0.003, 150, known)
     ]
     for p in np.transpose(tests):
@@ -114,7 +117,7 @@ def test_the_scatter_about_a_smooth_curve_is_the_variance():
 def test_the_extrapolation_is_that_of_a_fit_to_the_slower_half():
     croquet = experiment("croquet")
     points = Points(croquet.speeds, croquet.restitutions)
-    size = extrapolated(curve_named("linear"), points).size
+    size = extrapolation_errors(curve_named("linear"), points).size
     order = np.argsort(croquet.speeds)
     slow = croquet.restitutions[order[:5]]
     fast = croquet.restitutions[order[5:]]

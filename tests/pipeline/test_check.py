@@ -12,8 +12,8 @@ from whole_configuration import configuration_type
 
 from bouncing_ball.pipeline.configuration import (
     ConfigurationError,
-    check,
     check_configuration,
+    check_parameters,
     read_yaml,
 )
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
@@ -41,14 +41,14 @@ def changed(keys, value):
 
 
 def test_the_shipped_configuration_is_accepted(model):
-    check(model, CONFIG)
+    check_parameters(model, CONFIG)
 
 
 def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
     config = copy.deepcopy(CONFIG)
     larger = read_yaml(FOLDER / "motions-large.yaml")
     update_config(config, larger)
-    check(model, config)
+    check_parameters(model, config)
     assert config["beyond"]["ext_locking"]["amplitude"]["min"] == 0.8
     assert len(larger["beyond"]) == 5
 
@@ -110,7 +110,7 @@ SPAN = (*FIG05, "frequency_ratio")
 def test_a_mistake_is_named_in_one_line(model, keys, value, message):
     config = changed(keys, value)
     try:
-        check(model, config)
+        check_parameters(model, config)
         said = ""
     except ConfigurationError as error:
         said = str(error)
@@ -138,7 +138,7 @@ def test_all_mistakes_are_in_one_answer(model):
     del config["paper"]["table1"]["restitution"]
     del config["beyond"]
     with pytest.raises(ConfigurationError) as error:
-        check(model, config)
+        check_parameters(model, config)
     lines = error.value.mistakes
     assert len(lines) == 5 and all(line.isprintable() for line in lines)
     for said in (
@@ -155,7 +155,7 @@ def test_keys_that_are_missing_at_one_place_have_one_line(model):
     config = copy.deepcopy(CONFIG)
     config["paper"] = {name: config["paper"][name] for name in ("fig05", "fig06")}
     with pytest.raises(ConfigurationError) as error:
-        check(model, config)
+        check_parameters(model, config)
     (line,) = error.value.mistakes
     assert line.startswith("missing keys in paper: fig02, fig03, ")
 
@@ -174,7 +174,7 @@ def test_mistakes_in_files_and_in_their_values_are_in_one_answer(model, tmp_path
 
 def test_a_refusal_is_printable(model, one_line):
     with pytest.raises(ConfigurationError) as error:
-        check(model, CONFIG | {"n\x1b[31m\n\u202e": 1})
+        check_parameters(model, CONFIG | {"n\x1b[31m\n\u202e": 1})
     assert str(error.value).isprintable()
     one_line(error, r"n\x1b[31m\n\u202e")
 

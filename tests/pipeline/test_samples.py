@@ -11,7 +11,7 @@ from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.pipeline import sources
 from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Outcome
-from bouncing_ball.pipeline.diff.page import to_html, to_terminal
+from bouncing_ball.pipeline.diff.page import differences_html, to_terminal
 from bouncing_ball.pipeline.samples import (
     COMPUTATION,
     CONTENT,
@@ -87,7 +87,7 @@ def test_the_comparison_names_a_sample_that_is_older_or_says_nothing(checkout):
     (samples,) = (part for part in found.parts if part.name == "samples")
     (file,) = samples.parts
     assert file.name == "config/silent.nc" and "does not record" in file.parts[0].note
-    assert "config/silent.nc" in to_terminal(found) and "silent.nc" in to_html(found)
+    assert "config/silent.nc" in to_terminal(found) and "silent.nc" in differences_html(found)
     # One artifact alone is compared without samples of others.
     assert compare_folders(checkout, checkout / "results", ["fig01"]).outcome is Outcome.IDENTICAL
 

@@ -9,7 +9,7 @@ from bouncing_ball.pipeline.diff.targets import (
     requested_files,
 )
 from bouncing_ball.pipeline.jobs import concluded
-from bouncing_ball.pipeline.unfinished import listed, not_made
+from bouncing_ball.pipeline.unfinished import lines_by_reason, not_made
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
@@ -71,4 +71,4 @@ onerror:
         names = requested_artifacts(workflow)
         sys.exit(write_reports(Path(ROOT), names, name_of_reports(workflow), unmade))
     if unmade:
-        sys.exit("\n".join(listed(unmade)))
+        sys.exit("\n".join(lines_by_reason(unmade)))

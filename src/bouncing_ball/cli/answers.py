@@ -9,7 +9,7 @@ from bouncing_ball.cli.interrupt import importing
 from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
-from bouncing_ball.pipeline.patience import patience
+from bouncing_ball.pipeline.patience import told_if_slow
 
 
 class _OfCommand(Parser):
@@ -76,7 +76,7 @@ def answer(arguments: list[str]) -> None:
         import numpy as np
 
     try:
-        with np.errstate(all="ignore"), patience(COMMANDS[command].cheaper):
+        with np.errstate(all="ignore"), told_if_slow(COMMANDS[command].cheaper):
             found = program.answer(**given)
             if as_json:
                 text = json.dumps(program.document(found), allow_nan=False)

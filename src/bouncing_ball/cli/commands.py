@@ -135,9 +135,9 @@ def _diagram() -> Program:
 
 def _design() -> Program:
     from bouncing_ball.cli import design
-    from bouncing_ball.cli.design_text import lines
+    from bouncing_ball.cli.design_text import design_lines
 
-    return Program(design.add_options, design.design, lines, design.document)
+    return Program(design.add_options, design.design, design_lines, design.design_document)
 
 
 def _fit() -> Program:
@@ -147,18 +147,18 @@ def _fit() -> Program:
     return Program(
         add_options=lambda parser: add_parameters(parser, fit.fit),
         answer=lambda file, **options: fit.fit(file, **options),
-        lines=fit.lines,
+        lines=fit.fit_lines,
     )
 
 
 def _explain() -> Program:
     from bouncing_ball.cli.options import add_parameters
-    from bouncing_ball.pipeline.provenance import explain, lines
+    from bouncing_ball.pipeline.provenance import explain, explanation_lines
 
     return Program(
         add_options=lambda parser: add_parameters(parser, explain),
         answer=lambda file: explain(file),
-        lines=lines,
+        lines=explanation_lines,
     )
 
 

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from bouncing_ball.cli.design_answer import KINDS, DesignAnswer
-from bouncing_ball.cli.design_text import numbers
+from bouncing_ball.cli.design_text import contact_numbers
 from bouncing_ball.cli.options import Parser, add_file, add_optional, option
 from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment, LargestTimeStep, assess
 from bouncing_ball.contacts.choose import choose
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, describe
+from bouncing_ball.contacts.describe import Description, description_of
 from bouncing_ball.contacts.drops import drop_at_rest
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.quantities import quantities
@@ -30,7 +30,7 @@ from bouncing_ball.contacts.write import (
     dropped_at_step,
     looser,
     resolve_for,
-    settings,
+    settings_for,
     settings_on_table,
     softer,
 )
@@ -80,13 +80,13 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnsw
         If no model has the orbit.
     """
     require_writable(plot, PICTURES)
-    found = answer(given)
+    found = answer_design(given)
     if plot is not None:
         _draw(found, plot)
     return found._replace(whole=all_families or given.get("n") is not None)
 
 
-def answer(given: Mapping[str, Any]) -> DesignAnswer:
+def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
     """The answer for options by name; an option that is missing or None is not given.
 
     Raises
@@ -185,9 +185,9 @@ def _at_rest(
 ) -> tuple[Description, EngineSettings | None]:
     """The contact without a table, and what to write into an engine."""
     if setup is None:
-        return describe(resolve(contact, table, speed=speed)), None
-    found = describe(resolve_for(contact, setup, table, speed))
-    return found, settings(found.case, setup)
+        return description_of(resolve(contact, table, speed=speed)), None
+    found = description_of(resolve_for(contact, setup, table, speed))
+    return found, settings_for(found.case, setup)
 
 
 def _draw(given: DesignAnswer, path: Path) -> None:
@@ -196,19 +196,19 @@ def _draw(given: DesignAnswer, path: Path) -> None:
         raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
     if not any(each.exists for each in found.judged.standing.values()):
         raise NoOrbitError(f"without an orbit there is no page to print: {found.reason}")
-    from bouncing_ball.contacts.page_data import page
+    from bouncing_ball.contacts.page_data import chart_and_motion
 
     with extra("plot"):
         from bouncing_ball.contacts.page_figures import draw
         from bouncing_ball.drawing.files import write
         from bouncing_ball.drawing.style import style
     with style():
-        listed = numbers(given) + rows.texts(found.judged)
-        figure = draw(rows.document(found), page(found), listed)
+        listed = contact_numbers(given) + rows.texts(found.judged)
+        figure = draw(rows.document(found), chart_and_motion(found), listed)
         write(figure, path, "bouncing-ball design")
 
 
-def document(given: DesignAnswer) -> dict[str, Any]:
+def design_document(given: DesignAnswer) -> dict[str, Any]:
     """The answer as plain values for JSON, with the options."""
     found = rows.document(given.found)
     # What was not asked for has no key.

@@ -27,7 +27,7 @@ _TYPED = 12
 _NOT_ECHOED = {"quantity", "tolerance", "restitution_error"}
 
 
-def numbers(given: DesignAnswer) -> list[tuple[str, str]]:
+def contact_numbers(given: DesignAnswer) -> list[tuple[str, str]]:
     """The numbers of the contact and of a drop, by name."""
     dropped = [] if given.dropped is None else rows.texts(given.dropped)
     found = rows.texts(given.found)
@@ -163,7 +163,7 @@ def _ratio(value: float | None, status: str) -> str:
     return status if value is None else shown(value)
 
 
-def lines(given: DesignAnswer) -> list[str]:
+def design_lines(given: DesignAnswer) -> list[str]:
     """The answer as text, with the verdict first."""
     if isinstance(given.found, Description):
         return _description(given, given.found)
@@ -175,7 +175,7 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
     return [
         _echo(given.question),
         *(f"Note: {doubt}." for doubt in given.doubts),
-        *(line(*row) for row in numbers(given)),
+        *(line(*row) for row in contact_numbers(given)),
         line("release", found.release),
         *law_lines(found),
         *(f"Note: {note}." for note in found.notes),
@@ -224,7 +224,7 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
         *_at_small_steps(given.at_step),
         *engine_lines(given),
         "",
-        *(line(*row) for row in numbers(given) if not by_engine or row[0] != _STEP),
+        *(line(*row) for row in contact_numbers(given) if not by_engine or row[0] != _STEP),
         *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
         *law_lines(found),
         "",

@@ -7,7 +7,7 @@ from typing import NoReturn
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.datasets.files import require_writable, write_text
 from bouncing_ball.pipeline.diff.folders import compare_folders
-from bouncing_ball.pipeline.diff.page import to_html, to_terminal
+from bouncing_ball.pipeline.diff.page import differences_html, to_terminal
 
 
 def diff(
@@ -32,7 +32,7 @@ def diff(
         require_writable(html)
         comparison = compare_folders(record, results, artifacts)
         if html:
-            write_text(html, to_html(comparison))
+            write_text(html, differences_html(comparison))
     # A traceback would exit with status 1, which means that something differs.
     except Exception as error:
         fail(" ".join(str(error).split()) or type(error).__name__, status=2)

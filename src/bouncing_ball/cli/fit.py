@@ -9,7 +9,13 @@ from bouncing_ball.contacts.quantities import Speed, quantities
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.units import doubts, in_si
 from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
-from bouncing_ball.measured.experiment import QUANTITIES, Experiment, experiment, names, read
+from bouncing_ball.measured.experiment import (
+    QUANTITIES,
+    Experiment,
+    experiment,
+    experiment_names,
+    read,
+)
 from bouncing_ball.measured.fit import ContactFit
 from bouncing_ball.measured.law_fit import LawFit
 from bouncing_ball.measured.verdicts import JudgedLaw, error_size, judge
@@ -104,15 +110,15 @@ def fit(
 
 
 def _experiment(file: str, *, intervals: bool, **options: str | None) -> Experiment:
-    known = file in names() and not Path(file).exists()
+    known = file in experiment_names() and not Path(file).exists()
     if known and not intervals and not any(options.values()):
         return experiment(file)
     from bouncing_ball.measured.experiment import DATA
 
     if not known and not Path(file).exists():
-        of = ", ".join(names())
+        of = ", ".join(experiment_names())
         said = f"is neither a file nor an experiment of the package: {of}"
-        raise ModelError(f"{file} {said}{did_you_mean(file, names())}")
+        raise ModelError(f"{file} {said}{did_you_mean(file, experiment_names())}")
     return read(DATA / f"{file}.csv" if known else file, intervals=intervals, **options)
 
 
@@ -199,7 +205,7 @@ def _design_of_law(best: LawFit, speed: float) -> str | None:
     return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
-def lines(answer: dict[str, Any]) -> list[str]:
+def fit_lines(answer: dict[str, Any]) -> list[str]:
     """The answer as text: the impacts that were heard, the laws, notes and the next command."""
     found = [
         f"{answer['experiment']}: {_speeds(answer)} m/s",

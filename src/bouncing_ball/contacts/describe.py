@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar
 
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.drops import deep
-from bouncing_ball.contacts.notes import formula, remarks
+from bouncing_ball.contacts.notes import force_formula, remarks
 from bouncing_ball.contacts.quantities import Gravity, Speed, check_kinds, quantities
 from bouncing_ball.contacts.resolve import needs_table, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -56,7 +56,7 @@ class Description:
         """Sentences on how the contact was read."""
         depth = self.static_deflection
         sunk = () if depth is None else deep(depth, self.case.given.radius, "at rest")
-        return remarks(self.case) + formula(self.case) + sunk
+        return remarks(self.case) + force_formula(self.case) + sunk
 
 
 @suggesting
@@ -90,10 +90,10 @@ def describe_contact(contact: Contact, gravity: Gravity = None, speed: Speed = N
         gravity = in_si("gravity", gravity, kinds["gravity"])
     if speed is not None:
         speed = in_si("speed", speed, kinds["speed"])
-    return describe(resolve(contact, TableMotion.at_rest(gravity), speed=speed))
+    return description_of(resolve(contact, TableMotion.at_rest(gravity), speed=speed))
 
 
-def describe(case: ResolvedContact) -> Description:
+def description_of(case: ResolvedContact) -> Description:
     """The numbers of a contact on a table at rest.
 
     Raises

@@ -42,12 +42,12 @@ def model_name(law: ContactLaw) -> str:
     return _MODELS.get(law.name, law.name)
 
 
-def in_words(law: ContactLaw) -> str:
+def contact_in_words(law: ContactLaw) -> str:
     """The contact of a law as a sentence names it.
 
     Examples
     --------
-    >>> in_words(HuntCrossley(1.0, 0.1))
+    >>> contact_in_words(HuntCrossley(1.0, 0.1))
     'hunt-crossley contact'
     """
     return _IN_WORDS.get(law.name, f"{law.name} contact")

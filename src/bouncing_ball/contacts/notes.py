@@ -7,7 +7,7 @@ import numpy as np
 from bouncing_ball.contacts.engines.engine import Engine
 from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
 from bouncing_ball.contacts.motion import FinalMotion
-from bouncing_ball.contacts.named_laws import in_words
+from bouncing_ball.contacts.named_laws import contact_in_words
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.models.damping import Release
@@ -54,7 +54,7 @@ _FORCES = {
 }
 
 
-def formula(case: ResolvedContact) -> tuple[str, ...]:
+def force_formula(case: ResolvedContact) -> tuple[str, ...]:
     """The force of a law, in which its stiffness and its damping stand."""
     force = None if case.law is None else _FORCES.get(case.law.name)
     if case.law is None or force is None:
@@ -108,7 +108,7 @@ def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit)
         return [_cost_of_law(engine, case, family)]
     found = [
         "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-        f"it has the r of the {in_words(law)}, and its duration at the impact"
+        f"it has the r of the {contact_in_words(law)}, and its duration at the impact"
     ]
     if not np.all(case.has_its_restitution([family.n, family.n + 1])):
         found.append(
@@ -144,4 +144,4 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
             "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
             "has the r of a release without force"
         )
-    return (*found, *formula(case))
+    return (*found, *force_formula(case))

@@ -19,7 +19,7 @@ _SAMPLES = 1201
 _BEFORE, _SHOWN = 0.75, 3.0
 
 
-def page(design: Assessment) -> xr.Dataset:
+def chart_and_motion(design: Assessment) -> xr.Dataset:
     """The validity chart over r, heights over one cycle, and the gap in one contact, in SI units.
 
     The dataset has ``needed`` (simple, restitution), the ϖ needed; ``table`` (time,) and ``ball``

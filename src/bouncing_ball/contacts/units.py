@@ -102,7 +102,7 @@ def in_si(name: str, value: Any, kind: SIParameter) -> float:
     >>> in_si("tolerance", "5 %", SIParameter("", "1 %", Range(0, 1)))
     0.05
     """
-    found = number(name, value, kind)
+    found = number_in_si(name, value, kind)
     if found not in kind.allowed:
         raise _out_of_range(name, value, found, kind)
     if kind.name == "Pa" and found < _SOFTEST and _is_bare(value):
@@ -112,7 +112,7 @@ def in_si(name: str, value: Any, kind: SIParameter) -> float:
     return found
 
 
-def number(name: str, value: Any, kind: SIParameter) -> float:
+def number_in_si(name: str, value: Any, kind: SIParameter) -> float:
     """The value of a parameter in SI units.
 
     Parameters
@@ -132,11 +132,11 @@ def number(name: str, value: Any, kind: SIParameter) -> float:
     Examples
     --------
     >>> stiffness, frequency = SIParameter("N/m", "1e6 N/m"), SIParameter("Hz", "50 Hz")
-    >>> number("stiffness", 2e6, stiffness), number("stiffness", "2 kN/mm", stiffness)
+    >>> number_in_si("stiffness", 2e6, stiffness), number_in_si("stiffness", "2 kN/mm", stiffness)
     (2000000.0, 2000000.0)
-    >>> number("frequency", "3000 rpm", frequency)
+    >>> number_in_si("frequency", "3000 rpm", frequency)
     50.0
-    >>> number("frequency", "20 ms", frequency)
+    >>> number_in_si("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
     bouncing_ball.errors.ParameterError: frequency = 20 ms is in millisecond, not in Hz: \

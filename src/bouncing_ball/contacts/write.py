@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from bouncing_ball.contacts.assess import Assessment, assess
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import LONGEST, Description, describe
+from bouncing_ball.contacts.describe import LONGEST, Description, description_of
 from bouncing_ball.contacts.drops import Dropped, drop_at_rest
 from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, ReboundHeights, drop_in_steps
@@ -87,7 +87,7 @@ def write_contact(
     check_kinds("write_contact", **of, question=(asked, Question))
     if table is None:
         case = resolve_for(contact, setup, TableMotion.at_rest())
-        return settings(describe(case).case, setup)
+        return settings_for(description_of(case).case, setup)
     case = resolve(contact, table.motion, asked.families, setup.engine)
     return settings_on_table(assess(case, asked), setup)
 
@@ -124,7 +124,7 @@ def resolve_for(
     return resolve(stiff, at_rest, written=setup.engine)
 
 
-def settings(
+def settings_for(
     case: ResolvedContact, setup: EngineSetup, speed: float | None = None
 ) -> EngineSettings:
     """The settings for a contact, which at a given time step have the r of a law at an impact speed
@@ -161,9 +161,9 @@ def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
     Raises
     ------
     ModelError
-        See :func:`settings`.
+        See :func:`settings_for`.
     """
-    written = settings(found.case, setup, found.judged.impact_speed)
+    written = settings_for(found.case, setup, found.judged.impact_speed)
     if written.at_step is not None and not written.at_step.is_within:
         # At this step the contact has another r, and so another orbit.
         return written
@@ -216,7 +216,7 @@ def softer(
             given_damping=ball.damping,
         )
     return Softer(
-        contact=describe(own),
+        contact=description_of(own),
         dropped=None if speed is None else drop_at_rest(own, speed),
         dropped_at_step=dropped_at_step(own, written.softer, speed),
         verdict="" if case.table.is_at_rest else _verdict(own, question),
@@ -326,7 +326,7 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
     >>> from bouncing_ball.contacts.resolve import resolve
     >>> contact = Contact(mass=1.0, stiffness=1e6, restitution=0.75)
     >>> case = resolve(contact, TableMotion.at_rest(), written="generic")
-    >>> at = settings(case, EngineSetup(engine="generic", time_step="2 ms")).at_step
+    >>> at = settings_for(case, EngineSetup(engine="generic", time_step="2 ms")).at_step
     >>> looser(case, at).stiffness > 20 * at.stiffest
     True
     """

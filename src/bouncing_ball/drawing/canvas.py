@@ -12,7 +12,7 @@ from matplotlib.layout_engine import LayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
-from bouncing_ball.drawing.labels import QUANTITIES, number
+from bouncing_ball.drawing.labels import QUANTITIES, number_label
 from bouncing_ball.drawing.style import LINES, MARKS, palette
 from bouncing_ball.errors import ModelError
 
@@ -153,7 +153,7 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
     if ratio is not None:
         axes.set(xlabel=r"frequency ratio $\varpi$", xlim=(float(ratio[0]), float(ratio[-1])))
     axes.set(xscale="log", **settings)
-    axes.xaxis.set_major_formatter(lambda value, _: f"${number(value)}$")
+    axes.xaxis.set_major_formatter(lambda value, _: f"${number_label(value)}$")
     axes.xaxis.set_minor_formatter(lambda value, _: "")
 
 

@@ -48,7 +48,7 @@ def drawn_into(axes: Axes | Iterable[Axes] | None) -> Iterator[None]:
         GIVEN.reset(token)
 
 
-def fit(
+def fit_figure(
     figure: Figure, axes: Iterable[Axes], size: tuple[float, float] | None, font_size: float | None
 ) -> None:
     """Give a figure a size in inches, and scale all its texts, or those of the axes of a user.

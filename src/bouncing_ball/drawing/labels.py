@@ -44,12 +44,12 @@ _SYMBOLS = {
 }
 
 
-def number(value: float) -> str:
+def number_label(value: float) -> str:
     r"""A parameter as text for a label, with a power of ten in LaTeX from 10⁴ on.
 
     Examples
     --------
-    >>> number(0.85), number(10000.0), number(250000.0)
+    >>> number_label(0.85), number_label(10000.0), number_label(250000.0)
     ('0.85', '10^{4}', '2.5\\times 10^{5}')
     """
     if value >= 1e4:
@@ -67,7 +67,7 @@ def parameters(data: xr.Dataset, *names: str) -> str:
     >>> parameters(xr.Dataset(attrs={"n": 1, "restitution": 0.85}), "n", "restitution")
     '$n=1$, $r=0.85$'
     """
-    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[name])}$" for name in names)
+    return ", ".join(f"${_SYMBOLS[name]}={number_label(data.attrs[name])}$" for name in names)
 
 
 def symbol(name: str) -> str:
@@ -108,7 +108,9 @@ def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
     rows = filled.stack({CASE: axes}, create_index=False) if axes else filled.expand_dims(CASE)
     rows = rows.isel(dict.fromkeys(empty, slice(0)))
     told = [{name: rows[name].values[k] for name in labels} for k in range(rows.sizes[CASE])]
-    names = [", ".join(f"${_SYMBOLS[x]}={number(v)}$" for x, v in one.items()) for one in told]
+    names = [
+        ", ".join(f"${_SYMBOLS[x]}={number_label(v)}$" for x, v in one.items()) for one in told
+    ]
     return rows.transpose(CASE, ...), names
 
 

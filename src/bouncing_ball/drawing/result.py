@@ -75,14 +75,14 @@ class Result(xr.Dataset):
         """
         with extra("plot"):
             from bouncing_ball.drawing.files import write
-            from bouncing_ball.drawing.fitted import axes_in, drawn_into, fit
+            from bouncing_ball.drawing.fitted import axes_in, drawn_into, fit_figure
             from bouncing_ball.drawing.style import style
         draw, title = self._drawing()
         with style():
             with drawn_into(ax):
                 figure = draw(self)
             if (size, font_size) != (None, None):
-                fit(figure, axes_in(ax), size, font_size)
+                fit_figure(figure, axes_in(ax), size, font_size)
             if path is not None:
                 write(figure, Path(path), title)
         return figure

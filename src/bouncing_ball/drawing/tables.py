@@ -77,12 +77,12 @@ def to_markdown(header: Sequence[str], rows: Rows) -> str:
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
-def texts(header: Sequence[str], rows: Rows) -> dict[str, str]:
+def tables_by_suffix(header: Sequence[str], rows: Rows) -> dict[str, str]:
     """A table in all formats, by the suffix of its file.
 
     Examples
     --------
-    >>> list(texts(["n"], [["1"]]))
+    >>> list(tables_by_suffix(["n"], [["1"]]))
     ['.csv', '.md']
     """
     return {".csv": to_csv(header, rows), ".md": to_markdown(header, rows)}
@@ -95,13 +95,13 @@ Columns = dict[str, Column]
 """Columns by their headings."""
 
 
-def table(parts: Iterable[xr.Dataset], columns: Columns) -> TextTable:
+def text_table(parts: Iterable[xr.Dataset], columns: Columns) -> TextTable:
     """The header, and a row of texts for each part.
 
     Examples
     --------
     >>> data = [xr.Dataset({"n": n, "x": x}) for n, x in ((1, 0.5), (2, float("nan")))]
-    >>> table(data, {"n": text("n"), "x": value("x", ".2f")})
+    >>> text_table(data, {"n": text("n"), "x": value("x", ".2f")})
     (['n', 'x'], [['1', '0.50'], ['2', '–']])
     """
     return list(columns), [[column(part) for column in columns.values()] for part in parts]
@@ -117,7 +117,7 @@ def law_name(name: str) -> Column:
 
     Examples
     --------
-    >>> table([xr.Dataset({"law": "hunt-crossley"})], {"law": law_name("law")})[1]
+    >>> text_table([xr.Dataset({"law": "hunt-crossley"})], {"law": law_name("law")})[1]
     [['Hunt and Crossley']]
     """
     plain = text(name)

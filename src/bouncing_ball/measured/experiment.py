@@ -28,7 +28,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.contacts.units import SIParameter, in_si, number
+from bouncing_ball.contacts.units import SIParameter, in_si, number_in_si
 from bouncing_ball.errors import ModelError, ParameterError, Range
 from bouncing_ball.measured.fit import ContactFit, fit_contact
 from bouncing_ball.measured.flights import (
@@ -135,12 +135,12 @@ class Experiment:
         )
 
 
-def names() -> list[str]:
+def experiment_names() -> list[str]:
     """The names of the package's experiments.
 
     Examples
     --------
-    >>> "croquet" in names()
+    >>> "croquet" in experiment_names()
     True
     """
     return sorted(each.stem for each in DATA.glob("*.csv"))
@@ -159,8 +159,8 @@ def experiment(name: str) -> Experiment:
     >>> experiment("croquet").speeds.size
     10
     """
-    if name not in names():
-        raise ModelError(f"unknown experiment {name!r}: one of {', '.join(names())}")
+    if name not in experiment_names():
+        raise ModelError(f"unknown experiment {name!r}: one of {', '.join(experiment_names())}")
     return read(DATA / f"{name}.csv")
 
 
@@ -310,7 +310,7 @@ def _title(path: Path, at: int, text: str) -> tuple[str, float]:
     if not unit:
         return name, 1.0
     try:
-        return name, number(name, _plain(f"1 {unit}", COLUMNS[name]), COLUMNS[name])
+        return name, number_in_si(name, _plain(f"1 {unit}", COLUMNS[name]), COLUMNS[name])
     except ParameterError as error:
         raise ModelError(f"{path}, line {at}: {error}") from None
 
@@ -322,7 +322,7 @@ def _cell(path: Path, at: int, name: str, cell: str, factor: float) -> float:
         return math.nan
     try:
         # Fifteen digits keep those of the file without the rounding of the factor.
-        value = float(f"{number(name, text, kind) * factor:.15g}")
+        value = float(f"{number_in_si(name, text, kind) * factor:.15g}")
     except ParameterError as error:
         raise ModelError(f"{path}, line {at}: {error}") from None
     if value not in kind.allowed:

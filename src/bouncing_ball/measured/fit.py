@@ -118,7 +118,7 @@ def fit_contact(
         raise ParameterError(
             "{absolute_uncertainties} = {} is not True or False", shortened(absolute_uncertainties)
         )
-    points = checked(speeds, restitutions, uncertainties)
+    points = checked_points(speeds, restitutions, uncertainties)
     points = replace(points, is_relative=not absolute_uncertainties)
     weight = None if mass is None else in_si("mass", mass, quantities(Contact)["mass"])
     times = _times(durations, duration_uncertainties, points)
@@ -144,7 +144,9 @@ def _names(laws: Any) -> tuple[str, ...]:
     return tuple(laws)
 
 
-def checked(speeds: ArrayLike, restitutions: ArrayLike, uncertainties: ArrayLike | None) -> Points:
+def checked_points(
+    speeds: ArrayLike, restitutions: ArrayLike, uncertainties: ArrayLike | None
+) -> Points:
     """The points of a fit.
 
     Raises

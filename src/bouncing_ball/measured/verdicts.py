@@ -223,7 +223,7 @@ def left_out(curve: LawCurve, points: Points) -> Unseen:
     return Unseen(float(np.sum((scale * errors) ** 2) / total), float(total**2 / square))
 
 
-def extrapolated(curve: LawCurve, points: Points) -> Unseen:
+def extrapolation_errors(curve: LawCurve, points: Points) -> Unseen:
     """The errors at the faster half of the points, of a fit to the slower half."""
     order = np.argsort(points.speeds, kind="stable")
     half = points.size // 2
@@ -249,7 +249,7 @@ def judge(fit: ContactFit) -> dict[str, JudgedLaw]:
     points = fit.points
     variance = noise(points)
     tests = {
-        each.law: (left_out(each.curve, points), extrapolated(each.curve, points))
+        each.law: (left_out(each.curve, points), extrapolation_errors(each.curve, points))
         for each in fit.laws
     }
     found = {

@@ -65,12 +65,12 @@ def short(value: float, digits: int = 6) -> str:
     return power if factor == "1" else _typeset(f"{factor}·{power}")
 
 
-def percent(share: float, digits: int = 3) -> str:
+def rounded_percent(share: float, digits: int = 3) -> str:
     """A share in per cent.
 
     Examples
     --------
-    >>> percent(0.01), percent(0.0279, 2)
+    >>> rounded_percent(0.01), rounded_percent(0.0279, 2)
     ('1 %', '2.8 %')
     """
     # A share of a sample may lie halfway between two texts; rounding errors must not decide there.
@@ -78,12 +78,12 @@ def percent(share: float, digits: int = 3) -> str:
     return f"{short(above_a_half, digits)} %"
 
 
-def at_most(share: float, digits: int) -> str:
+def percent_at_most(share: float, digits: int) -> str:
     """A share in per cent, rounded up, for a sentence that says "at most" or "up to".
 
     Examples
     --------
-    >>> percent(0.00345, 1), at_most(0.00345, 1), at_most(0.03, 2)
+    >>> rounded_percent(0.00345, 1), percent_at_most(0.00345, 1), percent_at_most(0.03, 2)
     ('0.3 %', '0.4 %', '3 %')
     """
     value = 100 * abs(float(share))
@@ -129,12 +129,12 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
 
 
 FORMATS = {
-    "at_most": at_most,
+    "at_most": percent_at_most,
     "between": between,
     "decimal": decimal,
     "listed": listed,
     "pairs": pairs,
-    "percent": percent,
+    "percent": rounded_percent,
     "short": short,
 }
 """The functions that templates can call, by their names there."""

@@ -212,14 +212,14 @@ def check_configuration(
         except ConfigurationError as error:
             found += [f"{where}: {mistake}" for mistake in error.mistakes]
     try:
-        check(model, config)
+        check_parameters(model, config)
     except ConfigurationError as error:
         found += [f"configuration: {mistake}" for mistake in error.mistakes]
     if found:
         raise ConfigurationError(*found)
 
 
-def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
+def check_parameters(model: type[BaseModel], config: Mapping[str, Any]) -> None:
     """Raise on the mistakes in a configuration of this type.
 
     Raises
@@ -230,7 +230,7 @@ def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
     Examples
     --------
     >>> from bouncing_ball.datasets.parameters import Span
-    >>> check(Span, {"min": 1.0, "max": 2.0, "sample": 3})
+    >>> check_parameters(Span, {"min": 1.0, "max": 2.0, "sample": 3})
     Traceback (most recent call last):
     ...
     bouncing_ball.pipeline.configuration.ConfigurationError: unknown key sample = 3, did you mean \

@@ -160,12 +160,12 @@ def earlier_seconds(paths: Sequence[str]) -> float:
     return sum(float(read_attributes(Path(path)).get(SECONDS, 0)) for path in paths)
 
 
-def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
+def joined_shards(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
     """The arrays of all places, from the datasets of all shards in their order.
 
     Examples
     --------
-    >>> joined([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
+    >>> joined_shards([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
     {'twice': array([0, 0, 1, 1])}
     """
     whole = {}
@@ -221,7 +221,7 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     earlier = 0.0
     if paths := snakemake.input.get("shards"):
         shards = [read_input(path) for path in paths]
-        from_other_jobs["found"] = joined(shards)
+        from_other_jobs["found"] = joined_shards(shards)
         earlier = earlier_seconds(paths)
     with patience_of_job(Path(snakemake.output.data).stem, _CHEAPER):
         dataset = typed(study)(**given, **from_other_jobs)

@@ -18,7 +18,7 @@ _OF_A_JOB = 60.0
 
 
 @contextmanager
-def patience(cheaper: str) -> Iterator[None]:
+def told_if_slow(cheaper: str) -> Iterator[None]:
     """A context for a command that may take long: lines on standard error if it does.
 
     Parameters
@@ -28,7 +28,7 @@ def patience(cheaper: str) -> Iterator[None]:
 
     Examples
     --------
-    >>> with patience("fewer impacts"):
+    >>> with told_if_slow("fewer impacts"):
     ...     print("an answer at once has no lines")
     an answer at once has no lines
     """

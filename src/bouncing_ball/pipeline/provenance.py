@@ -270,7 +270,7 @@ def explain(file: Path, /) -> dict[str, Any]:
     }
 
 
-def lines(answer: Mapping[str, Any]) -> list[str]:
+def explanation_lines(answer: Mapping[str, Any]) -> list[str]:
     """The answer of :func:`explain` as a readable table, line by line."""
     rows: dict[str, Any] = {}
     for name, value in answer.items():

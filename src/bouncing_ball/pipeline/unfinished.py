@@ -48,13 +48,13 @@ def _name(job: Any) -> str:
     return Path(str(job.output[0])).stem
 
 
-def listed(files: Mapping[str, str]) -> list[str]:
+def lines_by_reason(files: Mapping[str, str]) -> list[str]:
     """One line for each reason, with the names of what was not made for it; each name once.
 
     Examples
     --------
     >>> needs = dict.fromkeys(["results/figures/claims.nc", "results/paper.md"], "needs fig05")
-    >>> listed({"results/figures/fig05.nc": "fig05: no orbit", **needs})
+    >>> lines_by_reason({"results/figures/fig05.nc": "fig05: no orbit", **needs})
     ['not made: fig05 (fig05: no orbit)', 'not made: claims, paper (needs fig05)']
     """
     reasons: dict[str, str] = {}

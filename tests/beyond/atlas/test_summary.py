@@ -83,7 +83,7 @@ def made():
     # The same for all quantities, and for both families.
     atlas = xr.Dataset(data, coords).isel(quantity=[0] * 4, limit_quantity=[0] * 3, n=[0, 0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(suprema, "largest", error_by_hand)
+        patch.setattr(suprema, "largest_error", error_by_hand)
         return summary(PLAN, atlas.isel(model=[0, 0]))
 
 

@@ -11,7 +11,7 @@ from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.beyond.atlas.summary import (
     Largest,
     in_common_range,
-    largest,
+    largest_error,
     suprema,
     tolerated,
 )
@@ -32,7 +32,7 @@ def test_the_suprema_with_a_closed_form_have_its_values(small):
     plan = small()
     span = (0.05, 1 - 1e-9)
     # Λ_SD = 1 - 1/ϖ² without damping; damping brings it closer to 1 while ζ² < 1/2.
-    still = partial(largest, plan, 0, ("restitution", Quantity.PERMANENT_CONTACT))
+    still = partial(largest_error, plan, 0, ("restitution", Quantity.PERMANENT_CONTACT))
     assert still(100.0, *span).error == pytest.approx(1e-4, rel=1e-6)
 
 
@@ -42,7 +42,7 @@ def test_the_relative_error_of_the_phase_is_unbounded(small, model, ratio):
     # The phase of the restitution model is 0 at the saddle-node. That of the corrected model is
     # negative there, and positive at the period doubling.
     for row in (0, small().rows[-1]):
-        assert np.isinf(largest(small(), row, (model, Quantity.PHASE), ratio, 0.2, 0.9).error)
+        assert np.isinf(largest_error(small(), row, (model, Quantity.PHASE), ratio, 0.2, 0.9).error)
 
 
 @pytest.mark.parametrize(("ratio", "expected"), [(27.0, 0.055), (100.0, 0.0147)])
@@ -50,7 +50,7 @@ def test_the_corrected_model_is_judged_below_the_saddle_node_of_the_restitution_
     small, ratio, expected
 ):
     """A referee's errors of the greatest height at r = 0.05, found with other programs."""
-    found = largest(small(), 0, ("corrected", Quantity.MAX_HEIGHT), ratio, 0.05)
+    found = largest_error(small(), 0, ("corrected", Quantity.MAX_HEIGHT), ratio, 0.05)
     assert found.error == pytest.approx(expected, rel=0.01)
     assert found.restitution == 0.05 and found.position < 1e-11
     contact = SpringDamper(ratio, float(damping_ratio(0.05)))
@@ -67,7 +67,7 @@ def test_the_corrected_model_is_judged_below_the_saddle_node_of_the_restitution_
 def test_below_the_failing_restitution_the_height_exceeds_the_tolerance(small):
     # At ϖ = 100 and the saddle-node; recomputed with Newton's method on Eqs. 21-26.
     plan = small()
-    at = partial(largest, plan, 0, ("restitution", Quantity.MAX_HEIGHT), 100.0)
+    at = partial(largest_error, plan, 0, ("restitution", Quantity.MAX_HEIGHT), 100.0)
     assert tolerated(lambda r: at(r).error, np.linspace(0.05, 0.95, 10), 0.01) == pytest.approx(
         0.54964, abs=5e-6
     )
@@ -80,7 +80,7 @@ def test_no_orbit_exceeds_the_largest_error(small, model, quantity):
     rng = np.random.default_rng(3)
     kind = (model, quantity)
     span = (0.05, 0.95)
-    found = largest(plan, 0, kind, 100.0, *span).error
+    found = largest_error(plan, 0, kind, 100.0, *span).error
     r = rng.uniform(*span, 300)
     place = rng.uniform(0, 1, 300) ** 2
     assert np.all(error(plan, 0, r, place, kind) < found)
@@ -97,7 +97,7 @@ def test_a_maximum_inside_is_found(small):
     other = minimize_scalar(
         lambda r: -float(error(plan, row, r, 1e-12, kind)), bounds=(0.2, 0.9), method="bounded"
     )
-    found = largest(plan, row, kind, 100.0, 0.2, 0.9)
+    found = largest_error(plan, row, kind, 100.0, 0.2, 0.9)
     assert 0.3 < other.x < 0.8 and found.error == pytest.approx(-other.fun, rel=1e-6)
     assert found.restitution == pytest.approx(other.x, abs=1e-3)
 
@@ -107,7 +107,7 @@ def test_crossings_are_looked_for_from_the_first_ratio_on(small, monkeypatch):
     first, second = plan.ratios[:2]
     middle = (first * second) ** 0.5
     monkeypatch.setattr(
-        "bouncing_ball.beyond.atlas.summary.largest",
+        "bouncing_ball.beyond.atlas.summary.largest_error",
         lambda _, row, kind, ratio, *span, **more: Largest(middle / ratio, 0.25, 0.5),
     )
     found = suprema(plan, 100.0, 1.0)

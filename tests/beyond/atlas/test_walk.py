@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.atlas.walk import REACHED, extrapolated, stiff_start, walk
+from bouncing_ball.beyond.atlas.walk import REACHED, extrapolated_values, stiff_start, walk
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
@@ -51,7 +51,8 @@ def test_what_the_walk_loses_is_looked_for(small, every_node, monkeypatch):
 def test_an_orbit_that_is_not_at_its_node_to_six_digits_is_lost(small, every_node, monkeypatch):
     # An extrapolation so bad that one correction leaves some orbits farther off, and others not.
     monkeypatch.setattr(
-        "bouncing_ball.beyond.atlas.walk.extrapolated", lambda *x: 0.8 * extrapolated(*x)
+        "bouncing_ball.beyond.atlas.walk.extrapolated_values",
+        lambda *x: 0.8 * extrapolated_values(*x),
     )
     plan = small()
     for row in rows(plan, 4):

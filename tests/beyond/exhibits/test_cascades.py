@@ -8,7 +8,7 @@ from bouncing_ball.accuracy.error_law import coefficients
 from bouncing_ball.beyond.exhibits import cascades_figures
 from bouncing_ball.beyond.exhibits.cascades import Cascades, cascades
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
-from bouncing_ball.pipeline.configuration import ConfigurationError, check, typed
+from bouncing_ball.pipeline.configuration import ConfigurationError, check_parameters, typed
 
 R = [0.5, 0.85]
 STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}
@@ -78,4 +78,4 @@ def test_more_doublings_of_a_textbook_than_are_computed_are_refused(refusal):
     run = create_model("Run", fig=(Cascades, ...))
     text = "textbook.amplitudes has 4 values, more than doublings = 3"
     with refusal(ConfigurationError, text):
-        check(run, {"fig": given | {"doublings": 3}})
+        check_parameters(run, {"fig": given | {"doublings": 3}})

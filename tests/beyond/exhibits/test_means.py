@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.exhibits.means import DECISIONS, MEANS, MeanMotions, mean_motions, needed
+from bouncing_ball.beyond.exhibits.means import (
+    DECISIONS,
+    MEANS,
+    MeanMotions,
+    mean_motions,
+    needed_index,
+)
 from bouncing_ball.models.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
@@ -18,7 +24,7 @@ def test_every_larger_ratio_must_be_right():
     # A column for each case, with a margin of the fifth.
     rows = [0.2, 1e-3, 1e-3, 1e-3, 0.2, 0.2], [0.02, 0.02, -1e-3, 1e-3, 0.011, np.nan]
     error = np.array([*rows, [1e-3, 1e-3, 1e-3, -0.02, 1e-3, 1e-3]])
-    place, known = needed(error, np.tile([0, 0, 0, 0, 0.005, 0], (3, 1)), 0.01)
+    place, known = needed_index(error, np.tile([0, 0, 0, 0, 0.005, 0], (3, 1)), 0.01)
     assert place.tolist() == [2, 2, 0, 3, 2, 2] and np.all(known[:2] == 0)
     assert [DECISIONS[k] for k in known[2:]] == list(DECISIONS)
 

@@ -11,7 +11,12 @@ from bouncing_ball.beyond.exhibits.certified_verdicts import (
     certified_verdicts,
 )
 from bouncing_ball.beyond.exhibits.certified_verdicts_figures import ext_verdicts
-from bouncing_ball.beyond.exhibits.proofs import Proofs, ToleratedError, proofs, thresholds
+from bouncing_ball.beyond.exhibits.proofs import (
+    Proofs,
+    ToleratedError,
+    certified_thresholds,
+    proofs,
+)
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claims import CLAIMS
@@ -65,7 +70,7 @@ def test_the_thresholds_are_those_of_double_precision(data, recorded):
 def test_an_error_without_a_threshold_says_that_none_was_found():
     """At Λ = 1000 the restitution model is not right within 15 % on any contact."""
     orbit = ToleratedError(n=16, restitution=0.65, amplitude=1000.0, tolerance=0.1545)
-    rows = list(thresholds(orbit, 20))
+    rows = list(certified_thresholds(orbit, 20))
     missing = [row for row in rows if row.ball is None]
     assert any("no threshold was found to start from" in row.what for row in missing)
 

@@ -12,7 +12,7 @@ from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.shards import part_of, shard_names
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.pipeline.configuration import read_yaml, typed
-from bouncing_ball.pipeline.jobs import joined
+from bouncing_ball.pipeline.jobs import joined_shards
 
 GIVEN = read_yaml(Path(__file__).parents[3] / "config/config.yaml")["beyond"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
@@ -47,6 +47,6 @@ def test_shards_give_the_dataset_of_one_job(name, recorded, tmp_path, refusal):
         part = {x: ([f"{x}_{k}" for k in range(y.ndim)], y) for x, y in found.items()}
         write_dataset(xr.Dataset(part), tmp_path / "part.nc")
         parts.append(read_dataset(tmp_path / "part.nc"))
-    assert study(**given, **read, found=joined(parts)).identical(study(**given, **read))
+    assert study(**given, **read, found=joined_shards(parts)).identical(study(**given, **read))
     with refusal(ParameterError, "shards: 2000 are more than the "):
         places(**given, part=part_of("0000-of-2000"))

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball import ModelError
-from bouncing_ball.beyond.proofs.bounces import hard, spring_damper, written
+from bouncing_ball.beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
 from bouncing_ball.models.damping import Release
 
 FOLDER = Path(__file__).parents[3] / "docs" / "bounces"
@@ -50,7 +50,7 @@ def integrated(rule, k, c, height):
 @pytest.mark.parametrize(("k", "c"), [("1e4", "20"), ("1e4", "60"), ("1e6", "200")])
 def test_certified_bounces_are_those_of_an_integration(rule, k, c):
     height = 1.0
-    for bounce in spring_damper(rule, ("1", k, c), "1", "9.81", 3):
+    for bounce in enclosed_rebounds(rule, ("1", k, c), "1", "9.81", 3):
         duration, rise = integrated(rule, float(k), float(c), height)
         assert float(bounce.release - bounce.impact) == pytest.approx(duration, abs=1e-12)
         assert float(bounce.height) == pytest.approx(rise, rel=1e-10)
@@ -73,12 +73,12 @@ def duration_depth(rule, k, c, bounce):
 
 def test_a_ball_that_does_not_leave_has_no_certificate():
     with pytest.raises(ModelError, match="does not leave"):
-        list(spring_damper("displacement", ("1", "1e4", "60"), "0.00001", "9.81", 1))
+        list(enclosed_rebounds("displacement", ("1", "1e4", "60"), "0.00001", "9.81", 1))
 
 
 def test_a_hard_ball_loses_the_square_of_r():
     first, second = hard("0.5", "2", "9.81", 2)
-    assert (written(first.height, 3), written(second.height, 3)) == ("0.500", "0.125")
+    assert (rounded_ball(first.height, 3), rounded_ball(second.height, 3)) == ("0.500", "0.125")
     assert float(second.impact - first.impact) == pytest.approx(2 * math.sqrt(2 * 0.5 / G))
 
 

@@ -10,13 +10,13 @@ from mpmath import mp, mpf
 from sixty_digits import Exact
 
 from bouncing_ball.beyond.proofs import certificates, newton
-from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision, rational
+from bouncing_ball.beyond.proofs.balls import ProofError, decimal_with_bound, precision, rational
 from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point, point
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,
+    certified_orbit,
     doubling_test,
     fold_test,
-    orbit_at,
     period_doubling,
     saddle_node,
 )
@@ -116,14 +116,14 @@ def test_both_limits_of_a_thousand_random_balls_are_right_or_refused_with_the_re
 def test_an_orbit_at_a_given_amplitude_has_this_amplitude():
     problem = RationalProblem(Fraction(10), restitution=Fraction(85, 100))
     for side in ("stable", "unstable"):
-        found = orbit_at(problem, Fraction(1), side)
+        found = certified_orbit(problem, Fraction(1), side)
         with precision(found.bits):
             assert found.amplitude.contains(1) and found.amplitude.rad() < 1e-29
 
 
 def test_the_determinant_of_the_return_map_is_that_of_the_contact():
     problem = RationalProblem(Fraction(2), restitution=Fraction(65, 100))
-    found = orbit_at(problem, Fraction(1))
+    found = certified_orbit(problem, Fraction(1))
     with precision(found.bits):
         contact = problem.contact()
         (a, b), (c, d) = return_map(contact, found.orbit).monodromy
@@ -421,7 +421,7 @@ def test_what_cannot_be_proved_is_refused_with_the_reason(given, reason):
 
 def test_below_the_saddle_node_no_orbit_is_certified():
     with pytest.raises(ProofError, match="no 1-T orbit"):
-        orbit_at(GIVEN, Fraction(1, 10))
+        certified_orbit(GIVEN, Fraction(1, 10))
 
 
 def test_beyond_the_last_admissible_orbit_nothing_is_certified():
@@ -436,17 +436,17 @@ def test_beyond_the_last_admissible_orbit_nothing_is_certified():
         low, high = (middle, high) if admissible(middle) else (low, middle)
     assert admissible(2.0) and not admissible(3.0)
     # Both sides of the last orbit are decided; nearer to it the search for an impact is too long.
-    assert Proved.ADMISSIBLE in orbit_at(GIVEN, Fraction(low - 1e-5), "unstable").proved
+    assert Proved.ADMISSIBLE in certified_orbit(GIVEN, Fraction(low - 1e-5), "unstable").proved
     with pytest.raises(ProofError, match="may be inadmissible"):
-        orbit_at(GIVEN, Fraction(high + 1e-5), "unstable")
+        certified_orbit(GIVEN, Fraction(high + 1e-5), "unstable")
 
 
 @pytest.mark.parametrize("side", ["stable", "unstable"])
 def test_the_stability_of_an_orbit_is_certified(side):
-    proved = orbit_at(GIVEN, Fraction(1, 2), side).proved
+    proved = certified_orbit(GIVEN, Fraction(1, 2), side).proved
     assert (Proved.STABLE in proved) is (side == "stable")
     assert (Proved.UNSTABLE in proved) is (side == "unstable")
-    beyond = orbit_at(GIVEN, Fraction(11, 10)).proved
+    beyond = certified_orbit(GIVEN, Fraction(11, 10)).proved
     assert Proved.UNSTABLE in beyond
 
 
@@ -454,7 +454,7 @@ def test_the_radius_covers_the_rounding_of_the_decimal_number():
     with precision(200):
         for number in (arb(2) / 3, arb("0.1"), arb(10) ** 20 / 7, arb(1) / 4):
             for digits in (1, 3, 10, 30):
-                text, radius = decimal(number, digits)
+                text, radius = decimal_with_bound(number, digits)
                 # Both texts are exact fractions; the number is a ball.
                 off = abs(rational(Fraction(text)) - number)
                 assert off <= rational(Fraction(radius)) + arb(2) ** -120

@@ -12,7 +12,7 @@ from sixty_digits import Exact
 from bouncing_ball.accuracy.corrected_errors import errors, search
 from bouncing_ball.beyond.proofs import newton
 from bouncing_ball.beyond.proofs import thresholds as proofs
-from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision
+from bouncing_ball.beyond.proofs.balls import ProofError, decimal_with_bound, precision
 from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point
 from bouncing_ball.beyond.proofs.certificates import Proved
 from bouncing_ball.beyond.proofs.newton import certified_box
@@ -72,7 +72,7 @@ def test_the_certified_threshold_is_that_of_double_precision(found, quantity, co
         compared(quantity, corrected), signed(quantity, corrected, start), start
     )
     with precision(proof.bits):
-        text, radius = decimal(proof.ball, 30)
+        text, radius = decimal_with_bound(proof.ball, 30)
     # The search in double precision ends at 1e-9 of ϖ, and balls at 2e-28 for the flattest error.
     assert abs(float(text) / start - 1) < 1e-9
     assert float(radius) < 2e-28
@@ -248,7 +248,7 @@ def test_the_corrected_model_without_delay_and_load_is_the_restitution_model():
 def test_the_threshold_of_permanent_contact_and_the_minimum_of_figure_11():
     threshold = permanent_contact_threshold(R, TOLERANCE)
     with precision(threshold.bits):
-        text, _ = decimal(threshold.ball, 20)
+        text, _ = decimal_with_bound(threshold.ball, 20)
         t = 1 / threshold.ball**2
         zeta = damping_of(R)
         # Eq. 33 at this ϖ gives 0.99.

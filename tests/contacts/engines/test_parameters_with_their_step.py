@@ -9,8 +9,8 @@ from asked_contacts import answered
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
-from bouncing_ball.cli.design_text import lines
-from bouncing_ball.contacts.engines.engine import filled, text_of
+from bouncing_ball.cli.design_text import design_lines
+from bouncing_ball.contacts.engines.engine import filled, text_to_paste
 from bouncing_ball.errors import ModelError
 
 M = 0.5
@@ -74,7 +74,7 @@ def test_another_contact_has_no_step_among_its_parameters(refusal):
 def test_the_engine_itself_has_this_range(name, parameters, step):
     only_if_installed(name)
     numbers = {"time_step": step, "mass": M, "stiffness": 0, "damping": 0, **parameters}
-    snippet = filled(text_of(name), {key: repr(value) for key, value in numbers.items()})
+    snippet = filled(text_to_paste(name), {key: repr(value) for key, value in numbers.items()})
     settings = SimpleNamespace(snippet=snippet, time_step=step)
     steps = round(0.05 / step) + 10
     found = []
@@ -91,7 +91,7 @@ def test_a_retuned_contact_is_said_in_parameters_that_have_its_r():
     """Gazebo's steps damp, so that its parameters have less damping than the contact."""
     given = {"mass": M, "from_engine": "gazebo", "parameters": {"kp": 1e5, "kd": 50.0}}
     answer = answered(**given, time_step=1e-3)
-    text = "\n".join(lines(answer))
+    text = "\n".join(design_lines(answer))
     found = re.search(
         r"the mean r is \S+ at this step, written as kp = (\S+) and kd = (\S+)\.", text
     )

@@ -10,7 +10,12 @@ from scipy.optimize import brentq
 
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims import formulas as checks
-from bouncing_ball.paper.claims.formulas import WEIGHTLESS, check, formulas, measured_restitution
+from bouncing_ball.paper.claims.formulas import (
+    WEIGHTLESS,
+    check,
+    formulas,
+    measured_restitution,
+)
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {"samples": 16, "seed": 2011}
@@ -135,7 +140,12 @@ def test_the_sign_of_a_term_is_seen(monkeypatch):
 
 
 def test_not_a_number_is_not_agreement(monkeypatch):
-    assert np.isnan([check("", [1.0, np.nan], 0.0)[1], check("", 0.0, [np.nan, 1.0])[1]]).all()
+    assert np.isnan(
+        [
+            check("", [1.0, np.nan], 0.0)[1],
+            check("", 0.0, [np.nan, 1.0])[1],
+        ]
+    ).all()
     monkeypatch.setattr(printed, "permanent_contact_minimum", lambda zeta: zeta * np.nan)
     data = typed(formulas)(PARAMETERS)
     assert np.isnan(data.disagreement.sel(formula="Eq. 36"))

@@ -15,7 +15,7 @@ from bouncing_ball.paper.claims.verdict import (
     at_least,
     at_most,
     below,
-    largest,
+    largest_number,
     smallest,
 )
 
@@ -126,7 +126,7 @@ def test_rounding_decides_nothing_on_a_bound():
     assert at_most(1e-12, 0).verdict is Verdict.CONTRADICTED
 
 
-@pytest.mark.parametrize("decide", [largest, smallest, lambda x: at_most(x, 1)])
+@pytest.mark.parametrize("decide", [largest_number, smallest, lambda x: at_most(x, 1)])
 @pytest.mark.parametrize("values", [[], [1.0, np.nan], xr.DataArray([np.nan], name="height")])
 def test_what_is_missing_is_not_passed_over(decide, values, refusal):
     with refusal(ModelError, "numbers missing"):

@@ -13,8 +13,8 @@ from bouncing_ball.paper.claims.tables import witness as rows
 from bouncing_ball.paper.claims.witness import (
     CLOSES,
     FORMULA,
+    all_orbits,
     formula_and_equations,
-    shown,
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
@@ -50,7 +50,7 @@ ORBITS = {name for name in ARTIFACTS["witness"].reads if name != "table1"}
 
 @pytest.mark.parametrize(("name", "k"), [*((name, 0) for name in sorted(ORBITS)), ("fig15", 1)])
 def test_the_multipliers_are_those_of_the_simulated_map(recorded, name, k):
-    found = [one for one in shown(name, recorded[name]) if not one.bifurcation]
+    found = [one for one in all_orbits(name, recorded[name]) if not one.bifurcation]
     assert len(found) == (2 if name == "fig15" else 1)
     orbit = found[k].orbit[found[k].admissible.astype(bool)]
     phase = orbit.phase
@@ -120,7 +120,7 @@ def test_formula_and_equations_each_see_what_is_off(
 
 def test_the_phase_of_a_bifurcation_is_compared_itself(recorded, monkeypatch):
     # The nearest point of the branch alone does not see what is off across the branch.
-    first = next(shown("table1", recorded["table1"]))
+    first = next(all_orbits("table1", recorded["table1"]))
     near = closed_forms.nearest(first.orbit)
     monkeypatch.setattr(closed_forms, "nearest", lambda orbit: near)
     moved = replace(first.orbit, phases=first.orbit.phases + 1e-9)

@@ -8,7 +8,7 @@ from pydantic import create_model
 import bouncing_ball as bb
 from bouncing_ball.paper.exhibits.continuation_of_orbits import BothDomains, Domains
 from bouncing_ball.paper.exhibits.time_histories import ContactHistory, Histories
-from bouncing_ball.pipeline.configuration import ConfigurationError, check
+from bouncing_ball.pipeline.configuration import ConfigurationError, check_parameters
 
 ORBIT = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "samples": 11}
 BRANCH = {"n": 1, "restitution": 0.85, "amplitude_max": 1.5, "points": 11}
@@ -20,7 +20,9 @@ def mistake(kind, release, ratio, **others):
     given = ORBIT if "amplitude" in kind.model_fields else BRANCH
     section = {name: x for name, x in given.items() if name in kind.model_fields}
     with pytest.raises(ConfigurationError) as error:
-        check(run, {"release": release, "fig": section | {"frequency_ratio": ratio} | others})
+        check_parameters(
+            run, {"release": release, "fig": section | {"frequency_ratio": ratio} | others}
+        )
     return str(error.value)
 
 

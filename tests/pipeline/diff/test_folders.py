@@ -17,9 +17,9 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff.budgets import PICTURE, PIXEL
 from bouncing_ball.pipeline.diff.folders import compare_folders, compare_pictures
 from bouncing_ball.pipeline.diff.outcome import Outcome
-from bouncing_ball.pipeline.diff.page import note, to_html, to_terminal
+from bouncing_ball.pipeline.diff.page import differences_html, greatest_difference, to_terminal
 from bouncing_ball.pipeline.diff.texts import compare_texts
-from bouncing_ball.pipeline.diff.words import headline
+from bouncing_ball.pipeline.diff.words import summary_of_changes
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -184,7 +184,9 @@ def test_a_vector_graphic_is_compared_with_its_curves_and_colours(pair):
     data.phase.values[1, 40] += 1e-15
     pair.write("fig05", data)
     part = pair.part("figures/fig05.svg")
-    assert part.outcome is Outcome.WITHIN and "only its words were compared" in note(part)
+    assert part.outcome is Outcome.WITHIN and "only its words were compared" in greatest_difference(
+        part
+    )
 
 
 def test_generated_names_and_last_digits_of_a_drawing_may_differ(pair):
@@ -207,7 +209,9 @@ def test_a_damaged_provenance_is_named_and_the_rest_is_compared(pair, side, text
     comparison = pair.compare()
     first, *others = comparison.parts
     assert first.name == "fig05" and first.outcome is Outcome.UNREADABLE
-    assert note(pair.part("figures/fig05.nc")) == f"{path}: its provenance is damaged"
+    assert (
+        greatest_difference(pair.part("figures/fig05.nc")) == f"{path}: its provenance is damaged"
+    )
     assert {found.outcome for found in others} == {Outcome.IDENTICAL}
 
 
@@ -239,7 +243,7 @@ def test_a_damaged_file_could_not_be_compared_and_the_others_are(pair, file, sid
     path.write_bytes(content[: len(content) // 2])
     part = pair.part(file)
     comparison = pair.compare()
-    assert part.outcome is Outcome.UNREADABLE and "\n" not in note(part)
+    assert part.outcome is Outcome.UNREADABLE and "\n" not in greatest_difference(part)
     assert comparison.outcome.status == 2
     others = {found.outcome for found in comparison.parts[1:]}
     assert others <= {Outcome.IDENTICAL, Outcome.EXTRA, Outcome.MISSING}
@@ -247,7 +251,7 @@ def test_a_damaged_file_could_not_be_compared_and_the_others_are(pair, file, sid
 
 def test_markup_in_a_text_is_shown_as_text(pair):
     (pair.new / "paper.md").write_text("<script>\n", encoding="utf-8")
-    assert "<script" not in to_html(pair.compare())
+    assert "<script" not in differences_html(pair.compare())
 
 
 def remade(pair, name, **attributes):
@@ -341,15 +345,17 @@ def test_an_artifact_of_older_code_is_stale_even_if_it_agrees(pair):
 
 
 def test_the_page_says_first_what_moved_each_thing_once_and_is_small_if_nothing_did(pair):
-    assert len(to_html(pair.compare())) < 20_000 and headline(pair.compare()) == []
+    assert (
+        len(differences_html(pair.compare())) < 20_000 and summary_of_changes(pair.compare()) == []
+    )
     data = pair.dataset("table1")
     data.computed.values[0, 0, 0] *= 1.01
     pair.write("table1", data)
     pair.rewrite("figures/table1.md", "1.03830", "1.04830")
     comparison = pair.compare()
-    (line,) = headline(comparison)
+    (line,) = summary_of_changes(comparison)
     assert line.startswith("table1: +1 % in end of the stability range") and " → " in line
-    page = to_html(comparison)
+    page = differences_html(comparison)
     assert page.index(line.partition(" at ")[0]) < page.index('id="table1"')
     # The table follows its dataset; pictures that agree are not embedded.
     assert "1.04830" not in page and "1.04830" not in to_terminal(comparison)
@@ -361,7 +367,7 @@ def test_a_page_with_pictures_is_small_enough_to_load_at_once(pair):
     sizes = [
         (folder / "figures" / "fig09.png").stat().st_size for folder in (pair.record, pair.new)
     ]
-    page = to_html(pair.compare())
+    page = differences_html(pair.compare())
     assert page.count("data:image") == 2 and len(page) < 0.5 * sum(sizes)
 
 
@@ -370,7 +376,7 @@ def test_artifacts_with_the_same_change_share_a_line(pair):
         for folder, ratio in ((pair.record, 0.125), (pair.new, 0.25)):
             data = xr.Dataset({"damping_ratio": ((), ratio, {"long_name": "damping"})})
             write_dataset(data, folder / "figures" / f"{name}.nc")
-    assert headline(pair.compare()) == ["fig05, fig08: +100 % in damping: 0.125 → 0.250"]
+    assert summary_of_changes(pair.compare()) == ["fig05, fig08: +100 % in damping: 0.125 → 0.250"]
 
 
 def test_words_that_changed_are_counted_and_named(pair):
@@ -381,7 +387,9 @@ def test_words_that_changed_are_counted_and_named(pair):
     )
     for folder, content in ((pair.record, record), (pair.new, new)):
         write_dataset(content.assign_attrs(data.attrs), folder / "figures" / "claims.nc")
-    assert headline(pair.compare()) == ["claims: 1 changed in verdict: b, c: close → contradicted"]
+    assert summary_of_changes(pair.compare()) == [
+        "claims: 1 changed in verdict: b, c: close → contradicted"
+    ]
 
 
 def test_a_large_relative_change_does_not_hide_in_an_absolute_budget(pair):
@@ -390,7 +398,7 @@ def test_a_large_relative_change_does_not_hide_in_an_absolute_budget(pair):
         data = xr.Dataset({"share": ("t", [share, 1.0, 1e-13 * share], budget)})
         write_dataset(data, folder / "figures" / "beyond" / "ext_shares.nc")
     comparison = pair.compare()
-    (line,) = headline(comparison)
+    (line,) = summary_of_changes(comparison)
     assert line.startswith("ext_shares: within its budget, +800 % in share at t = 0: ")
     assert comparison.outcome.status == 0
 
@@ -407,7 +415,7 @@ def test_what_was_not_made_has_its_reason_even_if_an_older_version_or_nothing_is
     (pair.new / "paper.md").unlink()
     found = compare_folders(pair.record, pair.new, ["fig05"], files)
     assert to_terminal(found).startswith("fig05: not made, fig05: no orbit\n")
-    assert "not made, fig05: no orbit" in to_html(found)
+    assert "not made, fig05: no orbit" in differences_html(found)
 
 
 @pytest.mark.parametrize(
@@ -438,7 +446,7 @@ def test_the_reports_name_the_worst_first_with_its_cause_and_place(pair):
     assert lines[2] == "paper: made from fig05"
     assert lines[3].startswith("  paper.md          drifted ") and "contradicted" in lines[3]
     assert lines[4:] == ["2 drifted, 5 identical. The new artifacts differ from the record."]
-    page = to_html(comparison)
+    page = differences_html(comparison)
     assert "<mark>*contradicted*</mark>" in page and "frequency_ratio = 2.51189" in page
     assert page.index('id="fig05"') < page.index('id="paper"') < page.index('id="fig01"')
     assert compare_folders(pair.record, pair.new, ["fig08"]).outcome is Outcome.IDENTICAL
@@ -453,9 +461,9 @@ def test_the_page_names_first_the_code_that_most_of_what_differs_has_in_common(p
             if folder == pair.new and name != "fig09":
                 data.phase.values[1, 40] += 1e-3
             write_dataset(data, folder / "figures" / f"{name}.nc")
-    first, *_ = headline(pair.compare())
+    first, *_ = summary_of_changes(pair.compare())
     assert first.startswith("changed code (") and first.endswith(
         "a.py (2, 0), b.py (1, 1), c.py (1, 1)"
     )
-    page = to_html(pair.compare())
+    page = differences_html(pair.compare())
     assert page.index(first) < page.index('id="fig05"')

@@ -11,7 +11,7 @@ import shutil
 import pytest
 from PIL import Image
 
-from bouncing_ball.pipeline.diff.page import to_html
+from bouncing_ball.pipeline.diff.page import differences_html
 
 pytestmark = pytest.mark.slow
 
@@ -87,7 +87,7 @@ def test_a_browser_shows_all_pictures_and_columns_of_the_page(pair, tmp_path, br
     pair.write("fig05", data)
     shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
     (pair.new / "figures" / "fig01.svg").unlink()
-    (tmp_path / "page.html").write_text(to_html(pair.compare()), encoding="utf-8")
+    (tmp_path / "page.html").write_text(differences_html(pair.compare()), encoding="utf-8")
     seen = observe(browse, tmp_path, 1300)
     # All columns are within the window, in rows as tall as their text.
     assert seen["overflow"] == 0 and seen["tables"] and max(seen["tables"]) == 0

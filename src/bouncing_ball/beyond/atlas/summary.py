@@ -101,7 +101,7 @@ class Largest(NamedTuple):
     position: float
 
 
-def compared(plan: Plan, row: int, model: str, ratio: float, r: np.ndarray) -> list[Model]:
+def compared_models(plan: Plan, row: int, model: str, ratio: float, r: np.ndarray) -> list[Model]:
     """The exact and a simple model of the contacts of a row that have r, at one ϖ."""
     contact = plan.placed(row, r, np.zeros_like(r)).contact(ratio)
     exact, *simple = exact_and_simple_models(contact)
@@ -131,14 +131,15 @@ def in_common_range(
     each, where = np.unique(r, return_inverse=True)
     nodes = plan.placed(row, r, np.zeros_like(r))
     exact, simple = (
-        n_t.saddle_node(one, nodes.n).amplitude for one in compared(plan, row, model, ratio, each)
+        n_t.saddle_node(one, nodes.n).amplitude
+        for one in compared_models(plan, row, model, ratio, each)
     )
     low = np.fmax(exact, simple)[where.reshape(r.shape)]
     high = restitution_orbit.period_doubling(nodes.n, r)
     return Nodes(nodes.release, nodes.n, r, low + p * (high - low))
 
 
-def largest(
+def largest_error(
     plan: Plan, row: int, kind: tuple[str, Quantity], ratio: float, low: float, high: float = 0.0
 ) -> Largest:
     """The largest error at ϖ over p and a range of r, or at one r, for the rule and n of a row.
@@ -159,7 +160,7 @@ def largest(
         nodes = in_common_range(plan, row, model, ratio, r, root**2)
         exact, simple = (
             values(one, nodes.n, nodes.amplitude, [quantity])[0]
-            for one in compared(plan, row, model, ratio, r)
+            for one in compared_models(plan, row, model, ratio, r)
         )
         size = modulus(relative(exact, simple))
         best = int(size.argmax())
@@ -219,7 +220,7 @@ def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
         edges = _BELOW * plan.edges[np.append(np.isin(rows, plan.rows), True)]
         for model, quantity in np.ndindex(shape[2:]):
             at = (*place, model, quantity)
-            worst = partial(largest, plan, rows[0], (SIMPLE[model], quantities[quantity]))
+            worst = partial(largest_error, plan, rows[0], (SIMPLE[model], quantities[quantity]))
             along_ratio = partial(worst, low=edges[0], high=edges[-1])
             for name, value in zip(names, along_ratio(rule), strict=True):
                 found[name][at] = value
@@ -227,7 +228,9 @@ def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
             last = along_ratio(needed).restitution if np.isfinite(needed) else np.nan
             found["supremum_needed"][at] = needed
             found["needed_restitution"][at] = last
-        of_height = partial(largest, plan, rows[0], ("restitution", Quantity.MAX_HEIGHT), rule)
+        of_height = partial(
+            largest_error, plan, rows[0], ("restitution", Quantity.MAX_HEIGHT), rule
+        )
         failing[place] = tolerated(_error(of_height), edges, tolerance)
     dims = ("release", "n", "model", "supremum_quantity")
     return {

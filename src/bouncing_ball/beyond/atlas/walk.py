@@ -82,7 +82,7 @@ def stiff_start(nodes: Nodes) -> np.ndarray:
     return root * (1 + r) ** 2 * (1 - lift) / (2 * nodes.n * np.pi * r)
 
 
-def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray:
+def extrapolated_values(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray:
     """Values of the Lagrange polynomial through known values, at other points.
 
     Parameters
@@ -98,7 +98,8 @@ def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray
 
     Examples
     --------
-    >>> extrapolated(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 4.0]), np.array([3.0])).tolist()
+    >>> at, past = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 4.0])
+    >>> extrapolated_values(at, past, np.array([3.0])).tolist()
     [9.0]
     """
     places = range(len(at))
@@ -144,7 +145,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Stride]:
         ratio = down[k : k + TOGETHER, np.newaxis]
         contact = nodes.contact(ratio)
         along = np.log(ratio[:, 0])
-        excess = extrapolated(at, past, along) / ratio
+        excess = extrapolated_values(at, past, along) / ratio
         for _ in range(1 if k else _FIRST_CORRECTIONS):
             excess = excess + correction(branch_point(excess, contact, nodes.n), nodes.amplitude)
         point = branch_point(excess, contact, nodes.n)

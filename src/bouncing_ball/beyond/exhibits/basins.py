@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.exhibits.lives import Place, columns
+from bouncing_ball.beyond.exhibits.lives import Place, columns_of_cases
 from bouncing_ball.beyond.exhibits.motion_samples import (
     MODELS,
     Confidence,
@@ -101,7 +101,7 @@ def destinations(parameters: BasinStarts, release: Release, part: Part = np.asar
     """
     starts = np.concatenate([_picture_starts(parameters), _random_starts(parameters)], axis=1)
     phase, speed = part(starts)
-    r, lam, ratio = columns(parameters.cases)[..., np.newaxis]
+    r, lam, ratio = columns_of_cases(parameters.cases)[..., np.newaxis]
     velocity = lam * np.cos(phase) - speed
     ends = []
     for model in three_models(r, ratio, release):
@@ -136,7 +136,7 @@ def basins(parameters: BasinStarts, release: Release, found: Found = None) -> xr
     (case, model) is the exponent of this share. Each has limits, ``_low`` and ``_high``.
     ``restitution``, ``frequency_ratio`` and ``amplitude`` are coordinates of the case.
     """
-    r, lam, ratio = columns(parameters.cases)
+    r, lam, ratio = columns_of_cases(parameters.cases)
     phase, speed = parameters.grid()
     level = parameters.confidence
     shifts = np.array(parameters.shifts)

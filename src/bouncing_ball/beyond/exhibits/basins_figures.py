@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from bouncing_ball.drawing.canvas import WIDE, canvas, image, legend_below
-from bouncing_ball.drawing.labels import number
+from bouncing_ball.drawing.labels import number_label
 from bouncing_ball.drawing.style import Look
 
 # Colours in the order of the motions; they are five steps of grey.
@@ -35,9 +35,9 @@ def basins(data: xr.Dataset) -> Figure:
         axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({low} to {high})", fontsize=8)
     for row, case in zip(rows, data.case.values, strict=True):
         place = data.sel(case=case)
-        r = number(float(place.restitution))
-        ratio = number(float(place.frequency_ratio))
-        lam = number(float(place.amplitude))
+        r = number_label(float(place.restitution))
+        ratio = number_label(float(place.frequency_ratio))
+        lam = number_label(float(place.amplitude))
         name = rf"$r={r}$, $\varpi={ratio}$, $\Lambda={lam}$"
         row[0].set_ylabel(f"{name}\nspeed of impact $-\\delta′$")
     for axes in rows[-1]:

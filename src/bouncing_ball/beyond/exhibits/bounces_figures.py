@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.tables import Columns, TextTable, table, text, to_markdown, value
+from bouncing_ball.drawing.tables import Columns, TextTable, text, text_table, to_markdown, value
 
 _MARKERS = "os^xD+v*<1"
 # Bars beyond this range are cut off; the table has them.
@@ -62,7 +62,7 @@ def ext_bounces(data: xr.Dataset) -> TextTable:
         "least": value("got_least", ".4f"),
         "greatest": value("got_most", ".4f"),
     }
-    return table(each(data, "engine", "time_step", "drop_height", "asked"), columns)
+    return text_table(each(data, "engine", "time_step", "drop_height", "asked"), columns)
 
 
 def settings(data: xr.Dataset) -> Figure:
@@ -104,7 +104,7 @@ def ext_bounce_settings(data: xr.Dataset) -> TextTable:
         "least": value("got_least", ".4f"),
         "greatest": value("got_most", ".4f"),
     }
-    return table(each(data, "setting", "drop_height", "asked"), columns)
+    return text_table(each(data, "setting", "drop_height", "asked"), columns)
 
 
 def drivers(data: xr.Dataset) -> str:
@@ -116,7 +116,7 @@ def drivers(data: xr.Dataset) -> str:
         "measured": value("driver_height", ".4f"),
         "certified": value("driver_certified", ".4f"),
     }
-    return to_markdown(*table(each(data, "driver"), columns))
+    return to_markdown(*text_table(each(data, "driver"), columns))
 
 
 def rapier_974(lines: Iterable[str]) -> str:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below, logarithmic
-from bouncing_ball.drawing.labels import number, parameters
+from bouncing_ball.drawing.labels import number_label, parameters
 from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS, Look
 from bouncing_ball.drawing.thresholds import with_zeros
 
@@ -37,7 +37,7 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
         limit: Look = {"marker": "<", "markersize": 4, "color": colour, "clip_on": False}
         left.plot(1.02, one.stiff_opening, transform=left.get_yaxis_transform(), **limit)
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
-    title = rf"flights in a period, $r={number(float(shown.restitution))}$"
+    title = rf"flights in a period, $r={number_label(float(shown.restitution))}$"
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
     if np.any(np.isfinite(excess)):
         left.legend(loc="upper left", markerscale=2)
@@ -50,7 +50,7 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
         limits = one.stiff_opening.values
         ratios = r**2 * limits[1:] / limits[:-1]
         look = {"color": colour, "marker": mark, "markersize": 3.5, "linewidth": 0.9}
-        right.plot(data.flights[:-1], ratios, label=number(r), **look)
+        right.plot(data.flights[:-1], ratios, label=number_label(r), **look)
     right.axhline(1, **GUIDE)
     right.set(xlabel="opening $k$", ylabel=r"$r^2 E_{k+1}/E_k$ for $\varpi\to\infty$")
     right.set(xticks=data.flights.values[:-1], title="ratios of the limits; dotted: 1")

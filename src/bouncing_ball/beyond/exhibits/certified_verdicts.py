@@ -15,7 +15,7 @@ import xarray as xr
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claim import Claim, Data
-from bouncing_ball.paper.claims.claims import CLAIMS, assess
+from bouncing_ball.paper.claims.claims import CLAIMS, judged_claims
 from bouncing_ball.paper.claims.parameters import Digests
 from bouncing_ball.paper.claims.verdict import Verdict
 
@@ -87,8 +87,8 @@ def certified_verdicts(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        That of :func:`~bouncing_ball.paper.claims.claims.assess`; ``low`` and ``high`` are limits
-        between which the exact number lies.
+        That of :func:`~bouncing_ball.paper.claims.claims.judged_claims`; ``low`` and ``high`` are
+        limits between which the exact number lies.
 
     Raises
     ------
@@ -96,6 +96,6 @@ def certified_verdicts(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         If a printed number has no certificate, or another verdict than in the ledger.
     """
     printed = [by_certificate(claim) for claim in CLAIMS if claim.printed]
-    certified = assess(printed, {"ext_proofs": data["ext_proofs"]}, PARAMETERS)
+    certified = judged_claims(printed, {"ext_proofs": data["ext_proofs"]}, PARAMETERS)
     require_agreement(certified, data["claims"])
     return certified

@@ -3,7 +3,7 @@
 import xarray as xr
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, table, text
+from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, text, text_table
 from bouncing_ball.paper.claims.tables import deviation_text
 
 
@@ -17,4 +17,4 @@ def ext_verdicts(data: xr.Dataset) -> TextTable:
         "above": lambda part: entry_of(part.low, ".17g"),
         "below": lambda part: entry_of(part.high, ".17g"),
     }
-    return table(each(data, "claim"), columns)
+    return text_table(each(data, "claim"), columns)

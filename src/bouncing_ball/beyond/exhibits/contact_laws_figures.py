@@ -15,7 +15,7 @@ from bouncing_ball.drawing.tables import (
     entry_of,
     law_name,
     quantity_in_words,
-    table,
+    text_table,
     value,
 )
 from bouncing_ball.drawing.thresholds import with_zeros
@@ -71,7 +71,7 @@ def ext_laws(data: xr.Dataset) -> TextTable:
             error = at(value("relative_error", ".2g"), model=model, centroid_ratio=ratio)
             columns[f"{model}, π/(D + κ) = {ratio:.3g}"] = error
     columns[f"π/(D + κ) for {100 * data.attrs['tolerance']:g} %"] = _threshold
-    return table(each(data, "quantity", "law"), columns)
+    return text_table(each(data, "quantity", "law"), columns)
 
 
 def _threshold(part: xr.Dataset) -> str:

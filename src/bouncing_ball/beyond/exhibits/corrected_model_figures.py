@@ -13,7 +13,7 @@ from bouncing_ball.drawing.tables import (
     at,
     entry_of,
     quantity_in_words,
-    table,
+    text_table,
     threshold,
     value,
 )
@@ -99,7 +99,7 @@ def ext_orders(data: xr.Dataset) -> TextTable:
         **{str(model): at(found, model=model) for model in data.model.values},
         "error zero at": value("error_zero", ".3g"),
     }
-    header, body = table(each(data, "quantity"), columns)
+    header, body = text_table(each(data, "quantity"), columns)
     coefficient = entry_of(data.permanent_coefficient, ".4f")
     law = entry_of(data.permanent_law, ".4g")
     exact = entry_of(data.permanent_threshold, ".4g")

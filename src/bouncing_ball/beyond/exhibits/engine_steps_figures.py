@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.labels import number, parameters
+from bouncing_ball.drawing.labels import number_label, parameters
 from bouncing_ball.drawing.style import COLOURS, MODELS, Look
-from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
 
 _IMPLICIT: Look = {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))}
 # Dashes distinguish the schemes of time stepping, and markers the engines.
@@ -66,7 +66,7 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
     level = abs(float(part.model_error.sel(model="corrected")))
     axes.plot(end, level, marker="|", markersize=9, color="black")
     if scheme == "semi-implicit Euler":
-        name = f"${number(float(f'{end:.2g}'))}$ times fewer steps"
+        name = f"${number_label(float(f'{end:.2g}'))}$ times fewer steps"
         axes.text(0.04, 0.06, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
 
 
@@ -110,7 +110,7 @@ def ext_engines(data: xr.Dataset) -> TextTable:
             }
             blank = dict.fromkeys(_OF_ENGINES, np.nan)
             parts.append(one.isel(engine=0, drop=True).assign(blank | of_model))
-    return table(parts, columns)
+    return text_table(parts, columns)
 
 
 def _listed(values: xr.DataArray, form: str) -> str:

@@ -112,7 +112,7 @@ class Transients(Sharded):
     seed: Seed
 
 
-def columns(cases: Sequence[Place]) -> np.ndarray:
+def columns_of_cases(cases: Sequence[Place]) -> np.ndarray:
     """The values of cases in the order of their fields, shape (values, cases)."""
     return np.array([[value for _, value in case] for case in cases]).T
 
@@ -208,7 +208,7 @@ def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> 
     )
     phase, speed = part(np.stack([phases, speeds]))
     # Arrays over the case, ϖ and the ball.
-    r, lam = columns(parameters.cases)[..., np.newaxis, np.newaxis]
+    r, lam = columns_of_cases(parameters.cases)[..., np.newaxis, np.newaxis]
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
     models = three_models(r, ratios, release)
     velocity = lam * np.cos(phase) - speed
@@ -240,7 +240,7 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
     and ``amplitude`` are coordinates of the case.
     """
     found = found or lives(parameters, release)
-    r, lam = columns(parameters.cases)
+    r, lam = columns_of_cases(parameters.cases)
     life = found["life"]
     kind = found["life_kind"]
     sticks = np.isfinite(life)

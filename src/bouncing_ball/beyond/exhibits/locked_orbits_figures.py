@@ -11,7 +11,7 @@ from matplotlib.figure import Figure, SubFigure
 from bouncing_ball.beyond.exhibits.motion_maps import bars
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import legend_below, logarithmic, stacked
-from bouncing_ball.drawing.labels import number
+from bouncing_ball.drawing.labels import number_label
 from bouncing_ball.drawing.style import COLOURS, Look
 
 # The restitution model has a solid black line. The stiffer a contact, the shorter are its dashes,
@@ -61,9 +61,9 @@ def _draw_survival(part: SubFigure, data: xr.Dataset) -> None:
         for curve, shade, dashes in zip(
             each(contacts, "life_ratio"), shades, cycle(_DASHES), strict=False
         ):
-            name = rf"$\varpi={number(float(curve.life_ratio))}$"
+            name = rf"$\varpi={number_label(float(curve.life_ratio))}$"
             _draw_curve(axes, curve, name, color=shade, linestyle=dashes)
-        r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
+        r, lam = (number_label(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
         axes.set(xlabel=r"time in $T$", title=rf"transients, $r={r}$, $\Lambda={lam}$")
     panels[0].set(xscale="log", yscale="log", ylim=(_LOWEST, 1.3))
     panels[0].set_ylabel("share of balls not stuck")

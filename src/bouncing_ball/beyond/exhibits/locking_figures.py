@@ -21,7 +21,7 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     stacked_shares,
 )
 from bouncing_ball.drawing.canvas import legend_below, stacked
-from bouncing_ball.drawing.labels import number
+from bouncing_ball.drawing.labels import number_label
 from bouncing_ball.drawing.style import Look
 
 # The corrected model's maps look like those of the restitution model; its shares are below.
@@ -42,7 +42,7 @@ def locking(data: xr.Dataset) -> Figure:
     figure, (maps, exponents, below) = stacked(9.5, (3.6, 3.4, 2.5))
     kinds = maps.subplots(1, len(_SHOWN), sharex=True, sharey=True)
     rates = exponents.subplots(1, len(_SHOWN), sharex=True, sharey=True)
-    ratio = number(float(data.frequency_ratio[0]))
+    ratio = number_label(float(data.frequency_ratio[0]))
     look: Look = {"cmap": RATES, "vmin": LOWEST_RATE, "vmax": HIGHEST_RATE}
     for model, upper, lower in zip(_SHOWN, kinds, rates, strict=True):
         one = data.sel(model=model)

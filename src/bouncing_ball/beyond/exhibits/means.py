@@ -66,7 +66,7 @@ def settled(
     return size + margin <= tolerance, size - margin > tolerance
 
 
-def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.ndarray, ...]:
+def needed_index(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.ndarray, ...]:
     """The index of the smallest ϖ above which an error is within the tolerance, and whether it is
     known, as an index into :data:`DECISIONS`.
 
@@ -78,7 +78,7 @@ def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.
     Examples
     --------
     >>> error = np.array([[0.3], [0.02], [0.001]])
-    >>> [x.tolist() for x in needed(error, np.full((3, 1), 0.005), 0.01)]
+    >>> [x.tolist() for x in needed_index(error, np.full((3, 1), 0.005), 0.01)]
     [[2], [0]]
     """
     ratios = len(error)
@@ -176,7 +176,7 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     found = found or errors_at_nodes(parameters, release)
     error = parameters.unfolded(found["mean_error"])
     margin = parameters.unfolded(found["mean_margin"])
-    place, decision = needed(
+    place, decision = needed_index(
         np.moveaxis(error, 2, 0), np.moveaxis(margin, 2, 0), parameters.tolerance
     )
     known = decision == DECISIONS.index("from this on")

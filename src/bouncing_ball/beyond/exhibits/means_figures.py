@@ -14,7 +14,7 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     plane_map,
 )
 from bouncing_ball.drawing.canvas import legend_below, stacked
-from bouncing_ball.drawing.labels import number
+from bouncing_ball.drawing.labels import number_label
 from bouncing_ball.drawing.style import COLOURS, GUIDE, Look
 
 # The other means are known at few nodes only.
@@ -48,7 +48,7 @@ def mean_motions(data: xr.Dataset) -> Figure:
         axes.set(title=f"mean {mean},\n{simple} model", xlabel=r"amplitude $\Lambda$")
     row[0].set_ylabel("restitution coefficient $r$")
     words = {"not at any": "at no $\\varpi$ tried (white dot)"}
-    names = [rf"$\varpi\geq{number(float(ratio))}$" for ratio in ratios]
+    names = [rf"$\varpi\geq{number_label(float(ratio))}$" for ratio in ratios]
     shown = data.decision.sel(mean=list(_MEANS)).values
     found = zip([*names, *UNKNOWN], fills, strict=True)
     present = [(name, fill) for name, fill in found if name in names or name in shown]

@@ -19,8 +19,8 @@ from bouncing_ball.drawing.tables import (
     TextTable,
     at,
     law_name,
-    table,
     text,
+    text_table,
     value,
     words,
 )
@@ -152,7 +152,7 @@ def ext_measured(data: xr.Dataset) -> TextTable:
         "p of it": _probability("extrapolation_probability"),
     }
     shown = _with_several_speeds(data).sel(fitted_law=list(_DRAWN))
-    return table(each(shown, "experiment", "fitted_law"), columns)
+    return text_table(each(shown, "experiment", "fitted_law"), columns)
 
 
 def _probability(name: str) -> Column:
@@ -192,7 +192,7 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
     varies = data.shaker_law != _CONSTANT
     timed = data.shaker_ratio.notnull().any(["n", "shaker_frequency"])
     shown = data.isel(experiment=np.flatnonzero(varies | timed))
-    return table(each(shown, "experiment", "shaker_frequency"), columns)
+    return text_table(each(shown, "experiment", "shaker_frequency"), columns)
 
 
 def _orbits(n: int) -> Columns:

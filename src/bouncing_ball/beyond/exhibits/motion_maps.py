@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.drawing.canvas import image, legend_below, logarithmic
-from bouncing_ball.drawing.labels import number
+from bouncing_ball.drawing.labels import number_label
 from bouncing_ball.drawing.style import COLOURS, Look
 
 # The lowest period of each colour for locked motions.
@@ -163,7 +163,7 @@ def stacked_shares(part: Any, data: xr.Dataset, groups: Mapping[str, str], title
         for size, bottom, look in zip(sizes, bottoms, _PARTS, strict=True):
             drawn: Look = {"edgecolor": "#000000", "linewidth": 0.4, "width": 0.9} | look
             axes.bar(place.ravel(), size.ravel(), bottom=bottom.ravel(), **drawn)
-        names = [f"${number(float(x))}$" for x in ratios]
+        names = [f"${number_label(float(x))}$" for x in ratios]
         axes.set_xticks(place.ravel(), names * len(groups))
         axes.tick_params(axis="x", labelsize=5.5, length=0)
         for middle, group in zip(place.mean(axis=1), groups.values(), strict=True):

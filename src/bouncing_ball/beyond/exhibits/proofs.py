@@ -10,10 +10,10 @@ import xarray as xr
 from flint import arb
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
-from bouncing_ball.beyond.proofs.balls import ProofError, decimal, exactly, precision
+from bouncing_ball.beyond.proofs.balls import ProofError, decimal_with_bound, exactly, precision
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,
-    orbit_at,
+    certified_orbit,
     period_doubling,
     saddle_node,
 )
@@ -130,7 +130,7 @@ def dampings(parameters: Proofs) -> Iterator[CertifiedRow]:
         yield _row(f"ζ of r = {r:g}", prove, f"damping of {r:g}")
 
 
-def apparent(parameters: Apparent, digits: int) -> CertifiedRow:
+def certified_apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     """The apparent restitution of an orbit at a given Λ."""
     ratio = exactly(parameters.frequency_ratio)
     r = exactly(parameters.restitution)
@@ -138,7 +138,7 @@ def apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     problem = RationalProblem(ratio, restitution=r, n=parameters.n)
 
     def prove() -> CertifiedNumber:
-        found = orbit_at(problem, exactly(lam), digits=digits)
+        found = certified_orbit(problem, exactly(lam), digits=digits)
         with precision(found.bits):
             ball = apparent_restitution(problem, found.excess)
         return CertifiedNumber(ball, found.bits, found.proved)
@@ -189,7 +189,7 @@ def comparisons(parameters: ToleratedError) -> Iterator[tuple[str, Comparison, f
             yield f"ϖ where the error of {words} is 0", comparison, zero, Fraction(0)
 
 
-def thresholds(parameters: ToleratedError, digits: int) -> Iterator[CertifiedRow]:
+def certified_thresholds(parameters: ToleratedError, digits: int) -> Iterator[CertifiedRow]:
     """The ϖ at which errors of the simple models have certain values, and permanent contact."""
     for name, comparison, start, error in comparisons(parameters):
 
@@ -222,15 +222,15 @@ def proofs(parameters: Proofs) -> xr.Dataset:
     rows = [
         *ends_of_table_1(parameters),
         *dampings(parameters),
-        apparent(parameters.apparent, digits),
-        *thresholds(parameters.thresholds, digits),
+        certified_apparent(parameters.apparent, digits),
+        *certified_thresholds(parameters.thresholds, digits),
     ]
     columns: dict[str, Any] = {name: [] for name in VARIABLES if name != "certificate"}
     for row in rows:
         text = radius = ""
         if row.ball is not None:
             with precision(row.bits):
-                text, radius = decimal(row.ball, digits)
+                text, radius = decimal_with_bound(row.ball, digits)
         columns["certified"].append(text)
         columns["certified_radius"].append(radius)
         columns["certified_bits"].append(row.bits)

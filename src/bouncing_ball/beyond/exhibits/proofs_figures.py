@@ -3,7 +3,7 @@
 import xarray as xr
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.tables import TextTable, table, text
+from bouncing_ball.drawing.tables import TextTable, text, text_table
 
 
 def ext_proofs(data: xr.Dataset) -> TextTable:
@@ -15,4 +15,4 @@ def ext_proofs(data: xr.Dataset) -> TextTable:
         "bits": text("certified_bits"),
         "what is proved": text("certified_what"),
     }
-    return table(each(data, "certificate"), columns)
+    return text_table(each(data, "certificate"), columns)

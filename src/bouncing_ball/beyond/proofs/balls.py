@@ -45,7 +45,7 @@ def rational(value: Fraction) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
-def decimal(ball: arb, digits: int) -> tuple[str, str]:
+def decimal_with_bound(ball: arb, digits: int) -> tuple[str, str]:
     """A decimal number near the middle of a ball, and a bound of its distance to the ball's points.
 
     The bound includes the rounding of the decimal number and of the bound's own text.
@@ -53,7 +53,7 @@ def decimal(ball: arb, digits: int) -> tuple[str, str]:
     Examples
     --------
     >>> with precision(100):
-    ...     text, radius = decimal(arb(2).sqrt(), 20)
+    ...     text, radius = decimal_with_bound(arb(2).sqrt(), 20)
     >>> text, float(radius) < 1e-19
     ('1.4142135623730950488', True)
     """

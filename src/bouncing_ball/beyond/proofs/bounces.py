@@ -52,7 +52,7 @@ def hard(restitution: str, height: str, gravity: str, count: int) -> Iterator[Bo
 
     Examples
     --------
-    >>> [written(bounce.height) for bounce in hard("0.5", "1", "9.81", 2)]
+    >>> [rounded_ball(bounce.height) for bounce in hard("0.5", "1", "9.81", 2)]
     ['0.250000000000000', '0.0625000000000000']
     """
     ctx.prec = _BITS
@@ -91,7 +91,7 @@ class _Contact:
         return x, rate
 
 
-def spring_damper(
+def enclosed_rebounds(
     release: str, contact: tuple[str, str, str], height: str, gravity: str, count: int
 ) -> Iterator[Bounce]:
     """The rebounds of a ball on an underdamped spring-damper, all numbers given as decimals.
@@ -114,8 +114,8 @@ def spring_damper(
 
     Examples
     --------
-    >>> elastic = spring_damper("force", ("1", "1e4", "0"), "1", "9.81", 2)
-    >>> [written(bounce.height) for bounce in elastic]
+    >>> elastic = enclosed_rebounds("force", ("1", "1e4", "0"), "1", "9.81", 2)
+    >>> [rounded_ball(bounce.height) for bounce in elastic]
     ['1.00000000000000', '1.00000000000000']
     """
     ctx.prec = _BITS
@@ -215,7 +215,7 @@ def _require_positive(function: Callable[[Any], Any], low: float, high: float) -
         parts += [(start, centre, halves + 1), (centre, end, halves + 1)]
 
 
-def written(ball: Any, digits: int = DIGITS) -> str:
+def rounded_ball(ball: Any, digits: int = DIGITS) -> str:
     """The number that a ball encloses, rounded to so many digits.
 
     Raises
@@ -225,7 +225,7 @@ def written(ball: Any, digits: int = DIGITS) -> str:
 
     Examples
     --------
-    >>> written(arb(2).sqrt(), 5)
+    >>> rounded_ball(arb(2).sqrt(), 5)
     '1.4142'
     """
     rounded = Context(prec=digits)

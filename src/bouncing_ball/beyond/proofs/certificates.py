@@ -18,7 +18,7 @@ from bouncing_ball.beyond.proofs.admissibility import contact_holds, flight_is_f
 from bouncing_ball.beyond.proofs.balls import (
     NoStartError,
     ProofError,
-    decimal,
+    decimal_with_bound,
     precision,
     rational,
 )
@@ -70,7 +70,7 @@ class Certificate:
     def texts(self, digits: int = 30) -> tuple[str, str]:
         """Λ as a decimal number of so many digits, and a bound of its error, as texts."""
         with precision(self.bits):
-            return decimal(self.amplitude, digits)
+            return decimal_with_bound(self.amplitude, digits)
 
 
 # The equations that vanish at a bifurcation, as series in ε of order 1.
@@ -123,7 +123,7 @@ def period_doubling(problem: RationalProblem, digits: int = 30) -> Certificate:
     return _certified(problem, digits, doubling_test, start, period_doubling_properties, what)
 
 
-def orbit_at(
+def certified_orbit(
     problem: RationalProblem, amplitude: Fraction, side: str = "stable", digits: int = 30
 ) -> Certificate:
     """The certified orbit at a rational Λ, on one side of the saddle-node.

@@ -34,7 +34,7 @@ def written(value: float) -> float:
     return float(f"{value:.12g}")
 
 
-def text_of(name: str) -> str:
+def text_to_paste(name: str) -> str:
     """The text to paste of an engine, from its file, with placeholders for the numbers."""
     return files(__package__).joinpath(f"snippets/{name}.txt").read_text("utf-8")
 
@@ -114,7 +114,9 @@ class Engine(ABC):
 
         A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
         """
-        lines = (line.rpartition("|") for line in text_of(self.text or self.name).splitlines())
+        lines = (
+            line.rpartition("|") for line in text_to_paste(self.text or self.name).splitlines()
+        )
         return "\n".join(line for rule, _, line in lines if rule in ("", release))
 
     def snippet(

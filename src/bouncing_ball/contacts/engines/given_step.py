@@ -28,8 +28,8 @@ import scipy
 from bouncing_ball.contacts.engines.impacts import (
     FEWEST,
     fewest_steps,
+    has_stable_steps,
     impacts_in_steps,
-    is_stable,
 )
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import Scheme
@@ -198,7 +198,7 @@ def retuned(
         return spread_in_steps(scheme, ratio, release, step).mean - restitution
 
     most = min(2 * zeta + 0.5, 1 - 1e-6 if release is Release.DISPLACEMENT else math.inf)
-    stable = [ratio for ratio in np.linspace(0.0, most, 9) if is_stable(scheme, ratio, step)]
+    stable = [ratio for ratio in np.linspace(0.0, most, 9) if has_stable_steps(scheme, ratio, step)]
     over = [surplus(ratio) for ratio in stable]
     for k in range(len(stable) - 1):
         if over[k] >= 0 > over[k + 1]:
@@ -321,7 +321,7 @@ def at_step(
     zeta = contact.damping_ratio
     found = spread_in_steps(scheme, zeta, release, step)
     off = found.error(r)
-    stable = is_stable(scheme, zeta, step)
+    stable = has_stable_steps(scheme, zeta, step)
     within = stable and off <= error
     # A compensated scheme is told the contact that was asked for, with another damping.
     tuned = wanted if scheme is Scheme.COMPENSATED else contact

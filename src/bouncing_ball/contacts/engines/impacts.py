@@ -146,14 +146,14 @@ def _ended(matrix: np.ndarray, ending: np.ndarray, state: np.ndarray, most: int)
     return matrix @ state
 
 
-def is_stable(scheme: Scheme, damping_ratio: float, step: float) -> bool:
+def has_stable_steps(scheme: Scheme, damping_ratio: float, step: float) -> bool:
     """Whether the steps h = ωΔt of a lasting contact do not grow: no eigenvalue of a step above 1.
 
     For semi-implicit Euler the limit is ``h = 2(√(1 + ζ²) - ζ)``; the others have none.
 
     Examples
     --------
-    >>> [is_stable(Scheme.SEMI_IMPLICIT, 0.75, h) for h in (0.999, 1.001)]
+    >>> [has_stable_steps(Scheme.SEMI_IMPLICIT, 0.75, h) for h in (0.999, 1.001)]
     [True, False]
     """
     linear = LinearStep.of(scheme, 1.0, 2 * float(damping_ratio), Release.FORCE, step)

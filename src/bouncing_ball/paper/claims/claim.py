@@ -72,7 +72,7 @@ def name_of(function: Callable[..., Any]) -> str:
     return function.__name__.replace("_", " ")
 
 
-def checked(explanation: Explanation, data: Data) -> tuple[bool, str]:
+def checks_hold(explanation: Explanation, data: Data) -> tuple[bool, str]:
     """Whether all checks of an explanation hold, and a text: the checks, or why none were made.
 
     Raises

@@ -14,7 +14,7 @@ from bouncing_ball.paper.claims import (
     impact_models,
     periodic_orbits,
 )
-from bouncing_ball.paper.claims.claim import Claim, checked, defined_in, name_of, paragraphs
+from bouncing_ball.paper.claims.claim import Claim, checks_hold, defined_in, name_of, paragraphs
 from bouncing_ball.paper.claims.parameters import Digests, PaperData
 from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
@@ -110,7 +110,7 @@ def _row(
     }
 
 
-def assess(
+def judged_claims(
     claims: Sequence[Claim],
     data: Mapping[str, xr.Dataset],
     required: Digests | None = None,
@@ -125,7 +125,7 @@ def assess(
         If a dataset that decides a claim or an explanation, or a variable of it, is missing.
     """
     why = {name_of(one.explanation): one.explanation for one in claims if one.explanation}
-    checks = {name: checked(explanation, data) for name, explanation in why.items()}
+    checks = {name: checks_hold(explanation, data) for name, explanation in why.items()}
     holding = {name for name, (holds, _) in checks.items() if holds}
     rows = [_row(claim, data, holding, required) for claim in claims]
     return described(
@@ -175,9 +175,9 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The dataset of :func:`assess`, and results of :mod:`~bouncing_ball.paper.claims.evidence`
-        under the names of the functions. The attributes are the paper's limits and the bound within
-        which a number is close.
+        The dataset of :func:`judged_claims`, and results of
+        :mod:`~bouncing_ball.paper.claims.evidence` under the names of the functions. The
+        attributes are the paper's limits and the bound within which a number is close.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
-    verdicts = assess(CLAIMS, data)
+    verdicts = judged_claims(CLAIMS, data)
     beyond = {"numbers_beyond": ("unit_bound", numbers_beyond(verdicts, _BOUNDS))}
     bounds = described(beyond, coords={"unit_bound": list(_BOUNDS)}, variables=VARIABLES)
     evident = described(numbers, variables=VARIABLES)

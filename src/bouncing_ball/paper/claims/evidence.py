@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.claims.verdict import largest
+from bouncing_ball.paper.claims.verdict import largest_number
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -202,4 +202,4 @@ def permanent_contact_error(data: Data) -> float:
 def route_disagreement(data: Data) -> tuple[float, xr.DataArray]:
     """The largest disagreement of continuation and formula, and its budget."""
     both = data["witness"].sel(comparison="continuation and formula")
-    return largest(both.disagreement), both.budget
+    return largest_number(both.disagreement), both.budget

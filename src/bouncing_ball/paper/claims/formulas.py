@@ -26,7 +26,7 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest
+from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest_defect
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -72,7 +72,7 @@ def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, flo
     >>> check("a root", [0.5, -2.0], 1.0, budget=1e-8)
     ('a root', 2.0, 1e-08)
     """
-    return comparison, largest(*defects), budget
+    return comparison, largest_defect(*defects), budget
 
 
 def slopes(motion, time):

@@ -57,16 +57,18 @@ Rows = dict[str, InUse]
 
 def _used(*functions: str, defects: tuple) -> InUse:
     """A row from the names of functions and from the defects of all of them."""
-    return InUse(", ".join(functions), largest(*defects))
+    return InUse(", ".join(functions), largest_defect(*defects))
 
 
-def largest(*defects) -> float:
+def largest_defect(*defects) -> float:
     """The largest modulus among the entries of all defects, NaN if one of them is NaN or has none.
 
     Examples
     --------
-    >>> largest([0.5, -2.0], 1.0), largest([0.5], float("nan")), largest([0.5], [])
-    (2.0, nan, nan)
+    >>> largest_defect([0.5, -2.0], 1.0), largest_defect([0.5], float("nan"))
+    (2.0, nan)
+    >>> largest_defect([0.5], [])
+    nan
     """
     moduli = [np.abs(x) for x in defects]
     return float(np.max([np.max(x) if np.size(x) else np.nan for x in moduli]))

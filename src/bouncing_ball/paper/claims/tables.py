@@ -14,7 +14,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
 
 
 def formulas(data: xr.Dataset) -> TextTable:
@@ -41,7 +41,7 @@ def formulas(data: xr.Dataset) -> TextTable:
         "their disagreement": in_use,
         "allowed": value("budget", ".0e"),
     }
-    return table(each(data, "formula"), columns)
+    return text_table(each(data, "formula"), columns)
 
 
 def forensics(data: xr.Dataset) -> TextTable:
@@ -58,7 +58,7 @@ def forensics(data: xr.Dataset) -> TextTable:
             lambda part: f"{int(part.reproduced)} of {int(part.entries)}", rows=name
         )
     columns["printed below every orbit"] = text("unreachable")
-    return table(each(data, "reading"), columns)
+    return text_table(each(data, "reading"), columns)
 
 
 def witness(data: xr.Dataset) -> TextTable:
@@ -76,7 +76,7 @@ def witness(data: xr.Dataset) -> TextTable:
         return f"{text} ({int(part.orbits)})" if part.orbits else "–"
 
     kinds = {str(kind): at(entry, comparison=kind) for kind in data.comparison.values}
-    header, body = table(each(data, "artifact"), {"artifact": text("artifact"), **kinds})
+    header, body = text_table(each(data, "artifact"), {"artifact": text("artifact"), **kinds})
     return header, [["budget", *(f"{float(value):.0e}" for value in data.budget.values)], *body]
 
 
@@ -95,7 +95,7 @@ def claims(data: xr.Dataset) -> TextTable:
         "deviation": deviation_text,
         "verdict": text("verdict"),
     }
-    return table(each(data, "claim"), columns)
+    return text_table(each(data, "claim"), columns)
 
 
 def found_text(claim: xr.Dataset) -> str:

@@ -75,7 +75,7 @@ def _finite(values: ArrayLike | xr.DataArray) -> np.ndarray:
     return numbers
 
 
-def largest(values: ArrayLike | xr.DataArray) -> float:
+def largest_number(values: ArrayLike | xr.DataArray) -> float:
     """The largest of some numbers.
 
     Raises
@@ -85,7 +85,7 @@ def largest(values: ArrayLike | xr.DataArray) -> float:
 
     Examples
     --------
-    >>> largest([1.0, 3.0])
+    >>> largest_number([1.0, 3.0])
     3.0
     """
     return float(_finite(values).max())
@@ -127,7 +127,7 @@ def at_most(values, bound) -> Finding:
     >>> [str(at_most(x, 0.01).verdict) for x in (0.009, 0.01, [0.009, 0.011])]
     ['reproduced', 'reproduced', 'contradicted']
     """
-    value = largest(values)
+    value = largest_number(values)
     limit = smallest(bound)
     return _condition(value, "≤", limit, value <= limit + _ROUNDING * abs(limit))
 
@@ -143,7 +143,7 @@ def at_least(values, bound) -> Finding:
     ['reproduced', 'reproduced', 'contradicted']
     """
     value = smallest(values)
-    limit = largest(bound)
+    limit = largest_number(bound)
     return _condition(value, "≥", limit, value >= limit - _ROUNDING * abs(limit))
 
 
@@ -155,7 +155,7 @@ def below(values, bound) -> Finding:
     >>> [str(below(x, 2).verdict) for x in (1, 2)]
     ['reproduced', 'contradicted']
     """
-    value = largest(values)
+    value = largest_number(values)
     limit = smallest(bound)
     return _condition(value, "<", limit, value < limit)
 
@@ -169,7 +169,7 @@ def above(values, bound) -> Finding:
     ['reproduced', 'contradicted']
     """
     value = smallest(values)
-    limit = largest(bound)
+    limit = largest_number(bound)
     return _condition(value, ">", limit, value > limit)
 
 

@@ -51,7 +51,9 @@ def _columns(data: xr.Dataset, *names: str) -> Iterator[np.ndarray]:
     return (array.values.ravel()[present] for array in arrays)
 
 
-def contacts(data: xr.Dataset, prefix: str = "", kind: Bifurcation | None = None) -> Shown:
+def spring_damper_model_orbits(
+    data: xr.Dataset, prefix: str = "", kind: Bifurcation | None = None
+) -> Shown:
     """Orbits of the spring-damper model; of a bifurcation a dataset does not have z′_i."""
     names = [prefix + name for name in ("contact_duration", "amplitude", "phase", "admissible")]
     names += ["restitution", "frequency_ratio", "n"]
@@ -61,7 +63,9 @@ def contacts(data: xr.Dataset, prefix: str = "", kind: Bifurcation | None = None
     return Shown(Orbit.of(model, n, lam, phase, duration, *velocity), admissible, kind)
 
 
-def impacts(data: xr.Dataset, prefix: str = "", kind: Bifurcation | None = None) -> Shown:
+def restitution_model_orbits(
+    data: xr.Dataset, prefix: str = "", kind: Bifurcation | None = None
+) -> Shown:
     """Orbits of the restitution model."""
     names = [prefix + name for name in ("phase", "amplitude", "admissible")]
     phase, lam, admissible, r, n = _columns(data, *names, "restitution", "n")
@@ -69,22 +73,26 @@ def impacts(data: xr.Dataset, prefix: str = "", kind: Bifurcation | None = None)
     return Shown(Orbit.of(model, n, lam, phase), admissible, kind)
 
 
-def shown(name: str, data: xr.Dataset) -> Iterator[Shown]:
+def all_orbits(name: str, data: xr.Dataset) -> Iterator[Shown]:
     """All orbits and bifurcations in the dataset of a figure or of Table 1."""
     if name in ("fig02", "fig03", "fig15"):
-        yield impacts(data, "restitution_" if name == "fig15" else "")
+        yield restitution_model_orbits(data, "restitution_" if name == "fig15" else "")
     if name not in ("fig02", "fig03", "table1"):
-        yield contacts(data)
+        yield spring_damper_model_orbits(data)
     for kind in Bifurcation:
         if name in ("fig03", "fig15"):
             exact = data.sel(impact_map="exact") if name == "fig03" else data
-            yield impacts(exact, f"{kind.name.lower()}_", kind)
+            yield restitution_model_orbits(exact, f"{kind.name.lower()}_", kind)
         if name in ("fig08", "fig09", "fig15"):
             here = data.special_contact_duration.where(data.special_kind == kind)
-            yield contacts(data.assign(special_contact_duration=here), "special_", kind)
+            yield spring_damper_model_orbits(
+                data.assign(special_contact_duration=here), "special_", kind
+            )
         if name == "table1":
             table = data.sel(bound=kind)
-            yield contacts(table.assign(special_amplitude=table["computed"]), "special_", kind)
+            yield spring_damper_model_orbits(
+                table.assign(special_amplitude=table["computed"]), "special_", kind
+            )
 
 
 def formula_and_equations(shown: Shown) -> np.ndarray:
@@ -118,10 +126,10 @@ def simulation_returns(orbit: Orbit) -> np.ndarray:
     return np.max(np.abs([late, turned, cycle.relative_velocity - speed]), axis=0)
 
 
-def compared(name: str, data: xr.Dataset) -> list[np.ndarray]:
+def disagreements(name: str, data: xr.Dataset) -> list[np.ndarray]:
     """The disagreements of each kind for all orbits of a dataset; inf where a route fails."""
     found: dict[str, list] = {kind: [[]] for kind in BUDGETS}
-    for one in shown(name, data):
+    for one in all_orbits(name, data):
         size = np.maximum(one.orbit.amplitude, one.orbit.n)
         found[FORMULA].append(formula_and_equations(one) / size)
         if not one.bifurcation:
@@ -134,7 +142,7 @@ def witness(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Largest ``disagreement`` of each kind, its ``budget``, and the number of ``orbits`` compared,
     over (artifact, comparison); NaN for a kind without orbits.
     """
-    found = [compared(*item) for item in data.items()]
+    found = [disagreements(*item) for item in data.items()]
     worst = [[np.max(values) if values.size else np.nan for values in kinds] for kinds in found]
     return described(
         {

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bouncing_ball.drawing.canvas import canvas, coloured, draw_curve, legend_below, logarithmic
-from bouncing_ball.drawing.labels import note_beside, number, parameters
+from bouncing_ball.drawing.labels import note_beside, number_label, parameters
 from bouncing_ball.drawing.style import GUIDE, RESTITUTION, Look
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
@@ -58,7 +58,7 @@ def poincare_map(data: xr.Dataset) -> Figure:
         phase = curve.restitution_phase / np.pi
         limits = data.restitution_bounce_velocity, data.restitution_impact_velocity
         axes.plot([phase] * 2, np.array(limits) / np.pi, "*", **_LIMIT | {"color": colour})
-        name = rf"$\Lambda={number(float(curve['amplitude']))}${_absence(curve)}"
+        name = rf"$\Lambda={number_label(float(curve['amplitude']))}${_absence(curve)}"
         cases.append(Line2D([], [], **_COLOUR, color=colour, label=name))
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
     title = parameters(data, "n", "restitution")
@@ -91,8 +91,8 @@ def _absence(curve: xr.Dataset) -> str:
 def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
     """One curve of a variable for each case, named by its r and Λ."""
     for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
-        r = number(float(one["restitution"]))
-        lam = number(float(one["amplitude"]))
+        r = number_label(float(one["restitution"]))
+        lam = number_label(float(one["amplitude"]))
         label = rf"$r={r}$, $\Lambda={lam}${_absence(one)}"
         look: Look = {"color": colour, "linestyle": dashes, "label": label}
         draw_curve(axes, one.frequency_ratio, one[name], one.admissible, **look)
@@ -115,4 +115,4 @@ def _name_ratios(
         ratio = float(curve.frequency_ratio[at])
         if ratio <= _NAMED_UP_TO:
             place = float(phase[at]) / np.pi, float(velocity[at]) / np.pi
-            note_beside(axes, rf"$\varpi={number(ratio)}$", place, fontsize=8)
+            note_beside(axes, rf"$\varpi={number_label(ratio)}$", place, fontsize=8)

@@ -16,7 +16,7 @@ from bouncing_ball.drawing.branches import (
 from bouncing_ball.drawing.canvas import legend_below
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import COLOURS
-from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, text, text_table, value
 
 
 def domains(data: xr.Dataset) -> Figure:
@@ -58,7 +58,7 @@ def table1(data: xr.Dataset) -> TextTable:
         "printed": value("printed", ".3f", ""),
         "difference": lambda part: entry_of(part.computed - part.printed, "+.5f", ""),
     }
-    header, body = table(each(data, "frequency_ratio", *ends), contacts)
+    header, body = text_table(each(data, "frequency_ratio", *ends), contacts)
     for part in each(data, "impact_map", *ends):
         place = [column(part) for column in ends.values()]
         name = f"restitution ({part.impact_map.item()} map)"

@@ -7,7 +7,7 @@ from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import canvas, draw_curve, legend_below, logarithmic
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import CONTACT, LIMIT
-from bouncing_ball.drawing.tables import TextTable, at, quantity_in_words, table, threshold
+from bouncing_ball.drawing.tables import TextTable, at, quantity_in_words, text_table, threshold
 from bouncing_ball.drawing.thresholds import draw_relative_error
 
 
@@ -34,4 +34,4 @@ def thresholds(data: xr.Dataset) -> TextTable:
     high = float(data.frequency_ratio[-1])
     found = threshold(".5g", f"< {low:g}", f"> {high:g}")
     columns = {f"{100 * each:g} %": at(found, tolerance=each) for each in data.tolerance.values}
-    return table(each(data, "quantity"), {"quantity": quantity_in_words, **columns})
+    return text_table(each(data, "quantity"), {"quantity": quantity_in_words, **columns})

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
-from bouncing_ball.drawing.labels import note, note_beside, number, parameters
+from bouncing_ball.drawing.labels import note, note_beside, number_label, parameters
 from bouncing_ball.drawing.style import ARROW, CONTACT, GUIDE, TABLE, Look
 
 # From the stiffest contact to the most compliant.
@@ -122,7 +122,7 @@ def _draw_both_models(axes: Axes, data: xr.Dataset) -> None:
     for k, ((curve, colour), dashes) in enumerate(zip(stiffest_first, cycle(_DASHES))):
         flight = _three_cycles(phase, curve.ball.values, n)
         look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 10}
-        axes.plot(*flight, label=rf"$\varpi={number(curve.frequency_ratio.item())}$", **look)
+        axes.plot(*flight, label=rf"$\varpi={number_label(curve.frequency_ratio.item())}$", **look)
 
 
 def _three_cycles(

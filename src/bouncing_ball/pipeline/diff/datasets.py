@@ -239,7 +239,7 @@ def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> n
     return np.moveaxis(distance, -1, axis)
 
 
-def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
+def drift_over_budget(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
     """Drift of each entry of a variable over the budget; ∞ for a change where none is allowed.
 
     Parameters
@@ -258,16 +258,18 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
     Examples
     --------
     >>> record = xr.Dataset({"x": ("t", [0.0, 1.0, 2.0])})
-    >>> shares("x", record, record + 0.5, Budget(0.25)).tolist()
+    >>> drift_over_budget("x", record, record + 0.5, Budget(0.25)).tolist()
     [1.0, 1.0, 1.0]
-    >>> shares("x", record, record + 0.5, Budget(0.25, scale="1")).tolist()
+    >>> drift_over_budget("x", record, record + 0.5, Budget(0.25, scale="1")).tolist()
     [2.0, 2.0, 2.0]
     """
     old = record[name]
     if budget.size == IGNORED:
         return np.zeros(old.shape)
     if budget.share:
-        return _allowed(shares(name, record, new, budget._replace(share=0.0)), budget.share)
+        return _allowed(
+            drift_over_budget(name, record, new, budget._replace(share=0.0)), budget.share
+        )
     if budget.over:
         return _curve_drift(name, record, new, budget.over) / budget.size
     if old.dtype.kind != "f":
@@ -339,7 +341,7 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
     unmoved = same(old.values, now.values)
     if unmoved.all():
         return ComparedItem(name, Outcome.IDENTICAL, entries=old.size)
-    share = shares(name, record, new, budget_of(artifact, name, now.attrs))
+    share = drift_over_budget(name, record, new, budget_of(artifact, name, now.attrs))
     # Among the entries that moved, because several may have the same share.
     order = np.where((share > 0) | ~unmoved, share, -1.0)
     place = tuple(int(k) for k in np.unravel_index(np.argmax(order), order.shape))

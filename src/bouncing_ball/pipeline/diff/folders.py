@@ -117,7 +117,7 @@ def _content(path: Path) -> bytes | None:
 
 
 def _rows(old: Path, now: Path, data: Outcome | None) -> list[ComparedItem]:
-    """The rows of a file, see :func:`judge`; the library that reads it may raise an error."""
+    """The rows of a file, see :func:`compared_file`; the library that reads it may raise errors."""
     record = _content(old)
     new = _content(now)
     if record == new:
@@ -172,7 +172,7 @@ class Compared:
         return self.record, self.new
 
 
-def judge(file: str, compared: Compared, data: Outcome | None) -> Whole:
+def compared_file(file: str, compared: Compared, data: Outcome | None) -> Whole:
     """The comparison of a file that is in the record, in the new folder, or in both.
 
     This function raises no error; an error of the comparison becomes the outcome.
@@ -224,7 +224,7 @@ class _Judged:
 
 
 def _judged(artifact: ArtifactFiles, compared: Compared) -> _Judged:
-    data = judge(artifact.dataset, compared, None) if artifact.dataset else None
+    data = compared_file(artifact.dataset, compared, None) if artifact.dataset else None
     # A schematic has no dataset, and a text says nothing about its making.
     carriers = [file for file in artifact.files if file.endswith((DATASET, ".png"))]
     if not carriers:
@@ -337,7 +337,7 @@ def compare_folders(
         data = judged[name].data
         made_of = _inputs(judged[name], artifacts) if artifact.is_text else [name]
         outcome = worst(judged[source].outcome for source in made_of)
-        others = [judge(file, compared, outcome) for file in artifact.others]
+        others = [compared_file(file, compared, outcome) for file in artifact.others]
         whole = Whole(name, tuple([data, *others] if data else others))
         origins = _origins(whole, judged[name], compared)
         whole = replace(whole, code=code_changes(*origins))

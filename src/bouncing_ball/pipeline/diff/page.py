@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome, Whole
-from bouncing_ball.pipeline.diff.words import headline, moved_by, numbers
+from bouncing_ball.pipeline.diff.words import both_contents, moved_by, summary_of_changes
 
 _SENTENCES = (
     "The new artifacts agree with the record.",
@@ -91,12 +91,13 @@ def _change(row: ComparedItem) -> str:
     return f"{_excerpt(row.record, start)} → {_excerpt(row.new, start)}"
 
 
-def note(file: Whole) -> str:
+def greatest_difference(file: Whole) -> str:
     """The place where a file differs most, with the difference there.
 
     Examples
     --------
-    >>> note(Whole("paper.md", (ComparedItem("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26"),)))
+    >>> row = ComparedItem("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26")
+    >>> greatest_difference(Whole("paper.md", (row,)))
     'line 1: r = 0.25 → r = 0.26'
     """
     rows = file.moved
@@ -113,7 +114,7 @@ def note(file: Whole) -> str:
     place = f" at {first.at}" if first.at else ""
     if first.entries:
         change = f" ({found})" if (found := moved_by(first)) else ""
-        both = numbers(first) + change
+        both = both_contents(first) + change
     else:
         both = _change(first) or first.note
     what = ": ".join(filter(None, [first.name + place, both]))
@@ -157,7 +158,7 @@ def to_terminal(comparison: Whole) -> str:
         for file in shown[artifact.name]:
             name = f"{file.name:<{name_width}}"
             outcome = f"{outcomes[file.name]:<{outcome_width}}"
-            lines.append(f"  {name}  {outcome}  {note(file)}".rstrip())
+            lines.append(f"  {name}  {outcome}  {greatest_difference(file)}".rstrip())
     return "".join(f"{line}\n" for line in [*lines, sentence(comparison)])
 
 
@@ -227,7 +228,7 @@ def _shown_pictures(artifact: Whole) -> list[Whole]:
     return [file for file in artifact.parts if any(file.pictures) and not file.outcome.agrees]
 
 
-def to_html(comparison: Whole) -> str:
+def differences_html(comparison: Whole) -> str:
     """The page: artifacts worst first, with the record's and the new version of each picture.
 
     The pictures that do not agree with the record are embedded, with fewer pixels and colours.
@@ -235,7 +236,7 @@ def to_html(comparison: Whole) -> str:
 
     Examples
     --------
-    >>> "<h1>Artifacts against the record</h1>" in to_html(Whole(""))
+    >>> "<h1>Artifacts against the record</h1>" in differences_html(Whole(""))
     True
     """
     # Imported here, because the lines for the terminal do not need it.
@@ -252,13 +253,13 @@ def to_html(comparison: Whole) -> str:
     return environment.get_template("page.html.j2").render(
         comparison=comparison,
         sentence=sentence(comparison),
-        headline=headline(comparison),
+        headline=summary_of_changes(comparison),
         told_files=told_files,
         shown_pictures=_shown_pictures,
-        numbers=numbers,
+        numbers=both_contents,
         moved_by=moved_by,
         marked=marked,
-        note=note,
+        note=greatest_difference,
         anchor=quote,
         share=share_text,
         entries=entries_text,

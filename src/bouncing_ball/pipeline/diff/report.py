@@ -5,9 +5,9 @@ from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.diff.folders import compare_folders
-from bouncing_ball.pipeline.diff.page import sentence, to_html, to_terminal
+from bouncing_ball.pipeline.diff.page import differences_html, sentence, to_terminal
 from bouncing_ball.pipeline.diff.targets import report_paths
-from bouncing_ball.pipeline.diff.words import headline
+from bouncing_ball.pipeline.diff.words import summary_of_changes
 
 
 def write_reports(
@@ -35,9 +35,9 @@ def write_reports(
     comparison = compare_folders(record, Path("results"), artifacts, missing)
     text = to_terminal(comparison)
     lines, page = report_paths(name)
-    head = "".join(f"{line}\n" for line in headline(comparison))
+    head = "".join(f"{line}\n" for line in summary_of_changes(comparison))
     write_text(lines, f"{sentence(comparison)}\n{head}\n{text}")
-    write_text(page, to_html(comparison))
+    write_text(page, differences_html(comparison))
     print(text, end="", flush=True)
     if not comparison.outcome.status:
         return ""

@@ -26,13 +26,13 @@ _FACTOR = 10.0
 _FROM_NOTHING = 1e6
 
 
-def percent(change: float) -> str:
+def change_in_percent(change: float) -> str:
     """A relative change with two digits, as a factor if it is large; empty if there is none, and
     for a change from rounding to a number, of which a factor says nothing.
 
     Examples
     --------
-    >>> [percent(change) for change in (0.000941, -0.25, 8.0, 41.0, 0.0, 1e10)]
+    >>> [change_in_percent(change) for change in (0.000941, -0.25, 8.0, 41.0, 0.0, 1e10)]
     ['+0.094 %', '-25 %', '+800 %', '× 42', '', '']
     """
     if not math.isfinite(change) or change == 0 or change > _FROM_NOTHING:
@@ -53,7 +53,7 @@ def moved_by(row: ComparedItem) -> str:
     >>> moved_by(ComparedItem("level", Outcome.DRIFTED, "2e-14", "5.6", change=0.52))
     '+52 % of the range'
     """
-    change = percent(row.change)
+    change = change_in_percent(row.change)
     if not change:
         return ""
     record = float(row.record or 0)
@@ -64,16 +64,17 @@ def moved_by(row: ComparedItem) -> str:
     return f"{100 * row.change:+.2g} % of the range" if row.change <= _FACTOR else ""
 
 
-def numbers(row: ComparedItem) -> str:
+def both_contents(row: ComparedItem) -> str:
     """Both contents of a row; of numbers the digits that differ, and one more.
 
     Examples
     --------
-    >>> numbers(ComparedItem("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041"))
+    >>> row = ComparedItem("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041")
+    >>> both_contents(row)
     '0.84032 → 0.83950'
-    >>> numbers(ComparedItem("orbits", Outcome.DRIFTED, "1204", "1187"))
+    >>> both_contents(ComparedItem("orbits", Outcome.DRIFTED, "1204", "1187"))
     '1204 → 1187'
-    >>> numbers(ComparedItem("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
+    >>> both_contents(ComparedItem("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
     '0.15487 → nan'
     """
     record = str(row.record)
@@ -104,7 +105,9 @@ def _told(row: ComparedItem) -> str:
     others = f" and {row.beyond - 1} more" if row.beyond > 1 else ""
     place = f" at {row.at}{others}" if row.at else ""
     change = moved_by(row)
-    return f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {numbers(row)}"
+    return (
+        f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {both_contents(row)}"
+    )
 
 
 def _telling(rows: list[ComparedItem]) -> ComparedItem:
@@ -162,7 +165,7 @@ def changed_code(comparison: Whole) -> str:
     return f"{_CODE}: {', '.join(named)}{rest}" if named else ""
 
 
-def headline(comparison: Whole) -> list[str]:
+def summary_of_changes(comparison: Whole) -> list[str]:
     """The code that changed, and a line for each change from the record: what moved, how much.
 
     Artifacts with the same change share a line.
@@ -172,7 +175,7 @@ def headline(comparison: Whole) -> list[str]:
     >>> row = ComparedItem("level", Outcome.DRIFTED, "82.2", "83.0", entries=1, title="threshold",
     ...     change=0.00973)
     >>> fig14 = Whole("fig14", (Whole("figures/fig14.nc", (row,)),), cause="numbers moved")
-    >>> headline(Whole("", (fig14,)))
+    >>> summary_of_changes(Whole("", (fig14,)))
     ['fig14: +0.97 % in threshold: 82.20 → 83.00']
     """
     found: dict[str, tuple[tuple[int, int, float], list[str]]] = {}

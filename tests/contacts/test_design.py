@@ -11,10 +11,11 @@ from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.cli.design import design_document
-from bouncing_ball.contacts import verdict
 from bouncing_ball.contacts.drop_test import rebound
+from bouncing_ball.contacts.judgement import OrbitJudgement
 from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.contacts.notes import notes
+from bouncing_ball.contacts.verdict import said_of_orbit
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.signature import Signature
@@ -253,16 +254,17 @@ def test_an_orbit_that_is_stable_in_the_simple_model_alone():
 def test_each_disagreement_alone_is_not_good_enough(steel, name):
     one = steel.orbits[1]
     need = dataclasses.replace(steel.needed, tolerance=0.007)
-    assert verdict.assessed(one, need, 71.0).is_good_enough
+    assert OrbitJudgement(one, need).is_good_enough
     simple = dataclasses.replace(one.standing["restitution"], **{name: False})
     other = dataclasses.replace(one, standing=one.standing | {"restitution": simple})
-    judged = verdict.assessed(other, need, 71.0)
-    assert not judged.is_good_enough and "2-T orbit" in judged.verdict
+    judged = OrbitJudgement(other, need)
+    said = said_of_orbit(judged, 71.0).verdict
+    assert not judged.is_good_enough and "2-T orbit" in said
     # The corrected model agrees with the contact, and its error is within the tolerance.
-    assert "the corrected restitution model is" in judged.verdict
+    assert judged.is_corrected_model_good_enough and "the corrected restitution model is" in said
     wrong = dataclasses.replace(one.standing["corrected"], is_stable=False)
     other = dataclasses.replace(other, standing=other.standing | {"corrected": wrong})
-    assert "nor is the corrected one" in verdict.assessed(other, need, 71.0).verdict
+    assert "nor is the corrected one" in said_of_orbit(OrbitJudgement(other, need), 71.0).verdict
 
 
 def test_the_tolerance_itself_is_within_the_tolerance(steel):
@@ -270,11 +272,12 @@ def test_the_tolerance_itself_is_within_the_tolerance(steel):
     error = one.errors["max_height"]
     for tolerance, good in ((error, True), (math.nextafter(error, 0), False)):
         need = dataclasses.replace(steel.needed, tolerance=tolerance)
-        assert verdict.assessed(one, need, 71.0).is_good_enough is good
+        assert OrbitJudgement(one, need).is_good_enough is good
     # Within it below the last crossing: the error passes through zero.
     need = dataclasses.replace(steel.needed, tolerance=error, frequency_ratio=80.0)
-    assert "passes through zero near this ϖ" in verdict.assessed(one, need, 71.0).reason
-    assert "zero" not in verdict.assessed(one, need, 80.0).reason
+    judged = OrbitJudgement(one, need)
+    assert "passes through zero near this ϖ" in said_of_orbit(judged, 71.0).reason
+    assert "zero" not in said_of_orbit(judged, 80.0).reason
 
 
 def test_the_verdict_is_about_the_first_stable_family():

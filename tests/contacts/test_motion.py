@@ -10,11 +10,12 @@ from asked_contacts import assessed
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.ends import Ending, EndingKind
 from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.contacts.judgement import judged_by_motion
 from bouncing_ball.contacts.means import Mean, _changed, _law
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.table import Table
-from bouncing_ball.contacts.verdict_on_motion import aside, judged_by_motion
+from bouncing_ball.contacts.verdict_on_motion import aside, said_of_motion
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
@@ -208,8 +209,9 @@ LOCKED = ("locked", "locked")
     ],
 )
 def test_the_verdict_on_a_motion(found, good, says):
-    verdict = judged_by_motion(found, 0.05, 1)
-    assert verdict.is_good_enough is good and says in verdict.verdict
+    judged = judged_by_motion(found, 0.05, 1)
+    assert judged.is_good_enough is good and says in said_of_motion(judged).verdict
+    assert judged.is_decided is not any(word in says for word in ("not decided", "not known"))
 
 
 @pytest.mark.parametrize(
@@ -222,7 +224,7 @@ def test_the_verdict_on_a_motion(found, good, says):
     ],
 )
 def test_an_undecided_verdict_says_how_many_balls_would_decide(found, advice):
-    assert advice in judged_by_motion(found, 0.05, 1).reason
+    assert advice in said_of_motion(judged_by_motion(found, 0.05, 1)).reason
 
 
 def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage():
@@ -254,19 +256,17 @@ def with_changes(error, **heights):
 def test_for_a_law_the_changes_of_the_linear_contact_are_added_to_its_own_error():
     """The linear contact changes from -4 % to 2 %, and the law so from 3 % to 9 %."""
     found = with_changes(0.03, no_change=-0.04, r=0.02)
-    assert judged_by_motion(found, 0.01, 1).verdict.startswith("The restitution model is not good")
-    decided = judged_by_motion(found, 0.05, 1)
+    beyond = said_of_motion(judged_by_motion(found, 0.01, 1)).verdict
+    assert beyond.startswith("The restitution model is not good")
+    decided = said_of_motion(judged_by_motion(found, 0.05, 1))
     assert "at 5 % is decided by changes of 0.1 % in r, k or g" in decided.verdict
     assert "with the changes of the linear contact with this r and duration" in decided.verdict
     assert "-4 % ± 0.1 % with no change, +2 % ± 0.1 % with r" in decided.reason
     # Without a linear contact in its place they are errors of the contact itself.
     own = with_changes(0.03, r=0.02)
-    assert "of the linear contact" not in judged_by_motion(own, 0.025, 1).verdict
-    unknown = replace(found, changes=None)
-    assert (
-        "what changes of 0.1 % in r, k and g do is not known"
-        in judged_by_motion(unknown, 0.05, 1).reason
-    )
+    assert "of the linear contact" not in said_of_motion(judged_by_motion(own, 0.025, 1)).verdict
+    unknown = said_of_motion(judged_by_motion(replace(found, changes=None), 0.05, 1))
+    assert "what changes of 0.1 % in r, k and g do is not known" in unknown.reason
 
 
 @pytest.mark.long

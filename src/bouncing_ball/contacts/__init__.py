@@ -9,15 +9,15 @@ The way of a contact through the modules:
     its SI scales. ``loss``, ``drop_test`` and ``hertz`` have the formulas
 ``assess``
     is a restitution coefficient good enough? By the orbits in all models (``families``) and the
-    motion on which most balls end (``motion``, ``starts``)
+    motion on which most balls end (``motion``, ``starts``). ``judgement`` has what decides
 ``choose``
     how stiff must a contact be for that?
 ``write``
     what does one write into an engine for it? (``engines``)
 ``describe``
     the numbers of a contact without a table; ``drops`` and ``rebounds`` have those of a drop
-``verdict``, ``notes``
-    sentences, which results write when they are asked for them
+``verdict``, ``verdict_on_motion``, ``notes``
+    the sentences on these facts, written when they are shown: by the library, as text, JSON or page
 ``rows``, ``texts``, ``page_data``, ``page_figures``
     results as text, as JSON and on a page
 """

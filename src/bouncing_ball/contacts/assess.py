@@ -9,6 +9,7 @@ from bouncing_ball.contacts.choose import Choice
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import require_short
 from bouncing_ball.contacts.families import ComparedOrbit, families
+from bouncing_ball.contacts.judgement import MotionJudgement, OrbitJudgement, judged_by_motion
 from bouncing_ball.contacts.motion import FinalMotion, of_family
 from bouncing_ball.contacts.needed import Needed, finite, needed
 from bouncing_ball.contacts.notes import notes, remarks
@@ -19,13 +20,8 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.starts import FEW, SharesOfStarts, ends_of_starts
 from bouncing_ball.contacts.table import Table
-from bouncing_ball.contacts.verdict import assessed, judged_choice
-from bouncing_ball.contacts.verdict_on_motion import (
-    Judgement,
-    aside,
-    headline,
-    judged_by_motion,
-)
+from bouncing_ball.contacts.verdict import judged_choice, said_of_orbit
+from bouncing_ball.contacts.verdict_on_motion import Sentences, aside, headline, said_of_motion
 from bouncing_ball.errors import ModelError, NoOrbitError, require, suggesting
 from bouncing_ball.models.damping import LINEAR
 
@@ -124,39 +120,54 @@ class Assessment:
         return next(one for one in self.orbits if one.n == self.n)
 
     @cached_property
-    def judgement(self) -> Judgement:
-        """Whether the restitution model is good enough, in words, and the reason."""
-        if self.chosen is None:
-            law = None if self.case.law is None else self.case.law.name
-            found = assessed(self.judged, self.needed, self.frequency_ratio, law)
-        else:
-            found = judged_choice(self.case, self.needed, self.chosen)
+    def on_orbit(self) -> OrbitJudgement:
+        """The judgement by the orbit of the family of the verdict."""
+        return OrbitJudgement(self.judged, self.needed)
+
+    @cached_property
+    def on_motion(self) -> MotionJudgement | None:
+        """The judgement by the motion on which a ball ends; None where the orbit is judged."""
         # A threshold, such as that of permanent contact, is not a property of one orbit.
-        if self.needed.quantity not in OF_ORBITS:
-            return found
-        if self.motion.restitution_kind is None:
-            said = f"{found.verdict[:-1]}{aside(self.motion, self.amplitude)}."
-            return found._replace(verdict=said)
-        before = "" if self.chosen is None else f"{found.verdict} "
+        if self.needed.quantity not in OF_ORBITS or self.motion.restitution_kind is None:
+            return None
         share = self.ends.of_orbit(self.n) if self.motion.is_common else None
-        end = judged_by_motion(self.motion, self.needed.tolerance, self.n, share, self.amplitude)
-        return end._replace(verdict=before + end.verdict, reason=self.no_orbit or end.reason)
+        of = self.needed.tolerance, self.n, share, self.amplitude
+        return judged_by_motion(self.motion, *of)
 
     @property
     def is_good_enough(self) -> bool:
         """Whether the restitution model is good enough; for a chosen contact on its motion."""
-        return self.judgement.is_good_enough
+        if self.on_motion is not None:
+            return self.on_motion.is_good_enough
+        return self.chosen is not None or self.on_orbit.is_good_enough
+
+    @cached_property
+    def _said(self) -> Sentences:
+        """The judgement in words, or the contact that was chosen."""
+        if self.chosen is None:
+            law = None if self.case.law is None else self.case.law.name
+            found = said_of_orbit(self.on_orbit, self.frequency_ratio, law)
+        else:
+            found = judged_choice(self.case, self.needed, self.chosen)
+        if self.on_motion is not None:
+            end = said_of_motion(self.on_motion)
+            before = "" if self.chosen is None else f"{found.verdict} "
+            return Sentences(before + end.verdict, self.no_orbit or end.reason)
+        if self.needed.quantity not in OF_ORBITS:
+            return found
+        also = aside(self.motion, self.amplitude)
+        return found._replace(verdict=f"{found.verdict[:-1]}{also}.")
 
     @property
     def verdict(self) -> str:
         """The verdict on the restitution model, or the contact that was chosen, in a sentence."""
-        return self.judgement.verdict
+        return self._said.verdict
 
     @property
     def reason(self) -> str:
         """The reason of the verdict, and what may have been meant if no model has an orbit."""
         exists = any(each.exists for each in self.judged.standing.values())
-        why = self.judgement.reason
+        why = self._said.reason
         return why if exists or not self.hint else f"{why}; {self.hint}"
 
     @property

@@ -1,12 +1,13 @@
-"""The verdict on a contact on a periodic orbit, and its reason."""
+"""The sentences on the judgement of a contact by an orbit, and on a contact that was chosen."""
 
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.contacts.families import ComparedOrbit
+from bouncing_ball.contacts.judgement import Disagreement, OrbitJudgement
 from bouncing_ball.contacts.needed import NO_ORBIT, Needed
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import in_place_of, percent, shown, signed
-from bouncing_ball.contacts.verdict_on_motion import Judgement
+from bouncing_ball.contacts.verdict_on_motion import Sentences
 
 _UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
 _NO_CROSSING = {
@@ -21,18 +22,16 @@ def _subject(quantity: str, n: int) -> str:
     return f"the {QUANTITIES[Quantity(quantity)]}{of_family}"
 
 
-def _disagreement(family: ComparedOrbit) -> str | None:
-    """The first qualitative disagreement between the restitution model's orbit and the exact one:
-    in existence, admissibility or stability. None if they agree.
-    """
-    simple = family.standing["restitution"]
-    orbit = f"{family.n}-T orbit"
-    if family.exists != simple.exists:
+def _in_words(judged: OrbitJudgement) -> str | None:
+    """A clause on the disagreement of the restitution model's orbit with the exact one."""
+    simple = judged.family.standing["restitution"]
+    orbit = f"{judged.family.n}-T orbit"
+    if judged.disagreement is Disagreement.EXISTENCE:
         missed = f"it misses the {orbit}, which the contact has"
-        return missed if family.exists else f"it has the {orbit}, which the contact has not"
-    if family.is_admissible != simple.is_admissible:
+        return missed if judged.family.exists else f"it has the {orbit}, which the contact has not"
+    if judged.disagreement is Disagreement.ADMISSIBILITY:
         return _opposite(orbit, "free of other impacts", simple.is_admissible)
-    if family.is_stable != simple.is_stable:
+    if judged.disagreement is Disagreement.STABILITY:
         return _opposite(orbit, "stable", simple.is_stable)
     return None
 
@@ -44,30 +43,26 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
     return f"its {orbit} is not {word}, and the contact's is"
 
 
-def assessed(
-    family: ComparedOrbit, needed: Needed, frequency_ratio: float, law: str | None = None
-) -> Judgement:
-    """The verdict on a given contact, which may be of another ``law`` than the linear one.
-
-    The model is good enough if its orbit agrees with the exact one in existence, admissibility and
-    stability, and if the error is within the tolerance.
+def said_of_orbit(
+    judged: OrbitJudgement, frequency_ratio: float, law: str | None = None
+) -> Sentences:
+    """The judgement on a contact by an orbit, in words; the contact has this ϖ, and may be of
+    another ``law`` than the linear one.
     """
+    needed = judged.needed
     tolerance = percent(needed.tolerance)
-    error = family.errors[needed.quantity]
-    wrong = _disagreement(family)
-    if wrong is None and error is None:
+    if not judged.is_known:
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
-        return Judgement(False, sentence, "the contact or the model has no value to compare")
-    good = wrong is None and error is not None and abs(error) <= needed.tolerance
-    reason = _reason(needed, frequency_ratio, good, tolerance, law)
-    if good:
-        found = _prediction(family, needed)
-        sentence = f"The restitution model is good enough: {found}, within {tolerance}."
-        return Judgement(True, sentence, reason)
-    why = wrong or f"{_prediction(family, needed)}, beyond {tolerance}"
-    instead = _instead(family, needed)
-    return Judgement(False, f"The restitution model is not good enough: {why}{instead}.", reason)
+        return Sentences(sentence, "the contact or the model has no value to compare")
+    reason = _reason(judged, frequency_ratio, tolerance, law)
+    if judged.is_good_enough:
+        found = _prediction(judged.family, needed)
+        return Sentences(
+            f"The restitution model is good enough: {found}, within {tolerance}.", reason
+        )
+    why = _in_words(judged) or f"{_prediction(judged.family, needed)}, beyond {tolerance}"
+    return Sentences(f"The restitution model is not good enough: {why}{_instead(judged)}.", reason)
 
 
 def _prediction(family: ComparedOrbit, needed: Needed) -> str:
@@ -80,24 +75,20 @@ def _prediction(family: ComparedOrbit, needed: Needed) -> str:
     return f"for {_subject(needed.quantity, family.n)} it predicts {both}, {size}"
 
 
-def _instead(family: ComparedOrbit, needed: Needed) -> str:
+def _instead(judged: OrbitJudgement) -> str:
     """A clause on whether the corrected model is good enough instead."""
-    error = family.corrected_errors[needed.quantity]
-    corrected = family.standing["corrected"]
-    same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
-    if same and error is not None and abs(error) <= needed.tolerance:
-        size = signed(error, needed.tolerance)
+    if judged.is_corrected_model_good_enough:
+        size = signed(judged.corrected_error, judged.needed.tolerance)
         return f"; the corrected restitution model is good enough: its error is {size}"
     return "; nor is the corrected one: simulate the contact"
 
 
-def _reason(
-    needed: Needed, frequency_ratio: float, good: bool, tolerance: str, law: str | None
-) -> str:
+def _reason(judged: OrbitJudgement, frequency_ratio: float, tolerance: str, law: str | None) -> str:
     """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs.
 
     That ϖ is one of linear contacts, so that it is no reason for a verdict on another law.
     """
+    needed = judged.needed
     if law is not None:
         text = f"both values are computed, that of the contact with the {law} law itself"
         if needed.frequency_ratio is None:
@@ -113,13 +104,13 @@ def _reason(
         f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "
         f"ϖ = {needed.frequency_ratio:.4g} from which on the error stays within {tolerance}"
     )
-    if good and place == "below":
+    if judged.is_good_enough and place == "below":
         text += "; it is small here only because it passes through zero near this ϖ"
     return text
 
 
-def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Judgement:
-    """The verdict on the most compliant contact within the tolerance."""
+def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Sentences:
+    """The most compliant contact within the tolerance, in words."""
     tolerance = percent(needed.tolerance)
     if case.law is not None:
         sentence = (
@@ -128,7 +119,7 @@ def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Judgement:
             f"then predicts {_subject(needed.quantity, n)} within {tolerance}."
         )
         why = f"the error of this contact is {tolerance}, and near it grows with the duration"
-        return Judgement(True, sentence, why)
+        return Sentences(sentence, why)
     sentence = (
         f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
         f"time of {shown(case.contact_time, 's')} or less and a damping of "
@@ -136,6 +127,6 @@ def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Judgement:
         f"{_subject(needed.quantity, n)} within {tolerance}."
     )
     if needed.frequency_ratio is None:
-        return Judgement(True, sentence, _NO_CROSSING[needed.status])
+        return Sentences(sentence, _NO_CROSSING[needed.status])
     where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
-    return Judgement(True, sentence, f"the error crosses {tolerance} for the last time {where}")
+    return Sentences(sentence, f"the error crosses {tolerance} for the last time {where}")

@@ -1,10 +1,11 @@
-"""The sentences on the motion of a ball, and the verdict on it where the orbit is not judged."""
+"""The sentences on the motion of a ball, and on the judgement of a contact by this motion."""
 
 import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
 from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
+from bouncing_ball.contacts.judgement import Basis, MotionJudgement
 from bouncing_ball.contacts.means import NO_CHANGE, Mean
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.question import MOST_BALLS
@@ -30,74 +31,82 @@ _DOES: Mapping[str, str] = {
 _LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}
 
 
-class Judgement(NamedTuple):
-    """Whether the restitution model is good enough, this verdict as a sentence, and the reason."""
+class Sentences(NamedTuple):
+    """A judgement in words: the verdict as a sentence, and the reason as a clause."""
 
-    is_good_enough: bool
     verdict: str
     reason: str
 
 
-def judged_by_motion(
-    motion: FinalMotion,
-    tolerance: float,
-    n: int,
-    share: float | None = None,
-    amplitude: float | None = None,
-) -> Judgement:
-    """The verdict on the motion on which a ball ends, if the orbit is not stable, or if only a
-    small share of the starts ends on it.
+def said_of_motion(judged: MotionJudgement) -> Sentences:
+    """The judgement on the motion on which a ball ends, in words."""
+    return Sentences(_verdict(judged), _reason(judged))
 
-    With the excitation ``amplitude``, a contact on which the ball rests is told from the
-    restitution model, in which no ball rests above Λ = 1, also if its motion is undecided.
-    """
-    about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
-    if share is not None:
-        ends = f"{shown(share, '%')} of the starts end" if share else "no start ends"
-        about = f"{ends} on the stable {n}-T orbit, so that its errors are not judged"
-    exact = motion.kind
-    simple = motion.restitution_kind
-    if exact == simple == Kind.PERMANENT_CONTACT:
-        sentence = "The restitution model is good enough: the ball rests in both models."
-        return Judgement(True, sentence, about)
-    # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not. An
-    # undecided motion may be of any kind, but is not the n-T orbit, on which no ball stays.
-    on_orbit = simple == Kind.ORBIT and motion.restitution_periods == n
-    known = on_orbit or Kind.UNDECIDED not in (exact, simple)
-    distinct = {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}
-    if exact != simple and known and {exact, simple} & distinct:
-        sentence = f"its motion is {_named(simple)}, and the contact's is {_named(exact)}"
-        return Judgement(False, f"The restitution model is not good enough: {sentence}.", about)
-    leaves = amplitude is not None and amplitude > RESTITUTION_THRESHOLD
-    if exact == Kind.PERMANENT_CONTACT and leaves:
-        sentence = f"its ball leaves the table again and again, as Λ = {amplitude:.4g} is above 1"
-        both = f"{sentence}, and that of the contact rests"
-        return Judgement(False, f"The restitution model is not good enough: {both}.", about)
+
+def _verdict(judged: MotionJudgement) -> str:
+    asked = percent(judged.tolerance)
+    if judged.basis is Basis.NOTHING:
+        return "Whether the restitution model is good enough for this motion is not known."
+    if judged.spread is not None:
+        name, low, high = judged.spread
+        ends = f"{100 * low:+.2g} % to {100 * high:+.2g} %"
+        of = f" with the changes {_OF_LINEAR}" if NO_CHANGE in (judged.motion.changes or {}) else ""
+        return (
+            f"Whether the restitution model is good enough at {asked} is decided by changes of "
+            f"0.1 % in r, k or g: its mean {name} is off by {ends}{of}."
+        )
+    found = _found(judged)
+    if not judged.is_decided:
+        return f"Whether the restitution model is good enough is not decided at {asked}: {found}."
+    if judged.basis in (Basis.GREATEST_HEIGHT, Basis.MEANS):
+        found += f", {'within' if judged.is_good_enough else 'beyond'} {asked}"
+    enough = "good enough" if judged.is_good_enough else "not good enough"
+    return f"The restitution model is {enough}: {found}."
+
+
+def _found(judged: MotionJudgement) -> str:
+    """A clause on what was found in both models."""
+    motion = judged.motion
+    if judged.basis is Basis.BOTH_REST:
+        return "the ball rests in both models"
+    if judged.basis is Basis.KINDS:
+        both = _named(motion.restitution_kind), _named(motion.kind)
+        return f"its motion is {both[0]}, and the contact's is {both[1]}"
+    if judged.basis is Basis.LIFT_OFF:
+        return (
+            f"its ball leaves the table again and again, as Λ = {judged.amplitude:.4g} is above 1, "
+            "and that of the contact rests"
+        )
     if motion.greatest is not None:
         true, predicted = motion.greatest.values()
-        error = float(prediction_error(predicted, true))
-        both = in_place_of(predicted, true, "m")
-        found = f"for the greatest height of this motion it predicts {both}, {signed(error)}"
-        return _within(abs(error), abs(error), tolerance, found, about)
-    if motion.mean_error is None:
-        sentence = "Whether the restitution model is good enough for this motion is not known."
-        return Judgement(False, sentence, f"{about}; nor are means, as some balls come to rest")
+        off = signed(float(prediction_error(predicted, true)))
+        both_heights = in_place_of(predicted, true, "m")
+        return f"for the greatest height of this motion it predicts {both_heights}, {off}"
     means = {"height": motion.mean_height, "power": motion.mean_power}
-    found = "it predicts " + " and ".join(
-        _of_mean(name, means[name], error) for name, error in motion.mean_error.items()
-    )
-    errors = motion.mean_error.values()
-    least = max(abs(error.value) - error.half_width for error in errors)
-    most = max(abs(error.value) + error.half_width for error in errors)
+    errors = (motion.mean_error or {}).items()
+    return "it predicts " + " and ".join(_of_mean(name, means[name], x) for name, x in errors)
+
+
+def _reason(judged: MotionJudgement) -> str:
+    n = judged.n
+    motion = judged.motion
+    about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
+    if (share := judged.share) is not None:
+        ends = f"{shown(share, '%')} of the starts end" if share else "no start ends"
+        about = f"{ends} on the stable {n}-T orbit, so that its errors are not judged"
+    if judged.basis is Basis.NOTHING:
+        return f"{about}; nor are means, as some balls come to rest"
+    if judged.basis not in (Basis.MEANS, Basis.CHANGES):
+        return about
     why = f"{about}; means over time are compared, of the height above the table's middle and of "
     why += "the power that the table transfers; ± is of sampling alone"
-    if motion.changes is None and Kind.CHAOTIC in (exact, simple):
+    if motion.changes is None and Kind.CHAOTIC in (motion.kind, motion.restitution_kind):
         why += "; what changes of 0.1 % in r, k and g do is not known"
     if motion.changes:
         why += f"; {_said_of(motion.changes)}"
-        if decided := _by_change(motion, tolerance):
-            return decided._replace(reason=why)
-    return _within(least, most, tolerance, found, why, _larger_sample(motion, tolerance))
+    if judged.basis is Basis.MEANS and not judged.is_decided:
+        why += f"; {_larger_sample(motion, judged.tolerance)}"
+    return why
 
 
 _OF_LINEAR = "of the linear contact with this r and duration"
@@ -112,52 +121,6 @@ def _said_of(changes: Mapping[str, Mapping[str, Mean]]) -> str:
     ]
     of = f"{_OF_LINEAR}, " if NO_CHANGE in changes else ""
     return f"{of}from smaller samples the mean height is off by {', '.join(parts)}"
-
-
-# Five samples of one mean have intervals so much wider that do not meet in one of a hundred cases.
-_WIDER = 1.25
-
-
-def _by_change(motion: FinalMotion, tolerance: float) -> Judgement | None:
-    """The verdict if a change of a thousandth decides about the error; otherwise None."""
-    assert motion.mean_error is not None and motion.changes is not None
-    for name, error in motion.mean_error.items():
-        found = [error, *_with_changes(error, {k: of[name] for k, of in motion.changes.items()})]
-        lows = [one.value - _WIDER * one.half_width for one in found]
-        highs = [one.value + _WIDER * one.half_width for one in found]
-        if max(lows) <= min(highs):
-            continue
-        sizes = [
-            (max(low, -high, 0.0), max(abs(low), abs(high)))
-            for low, high in zip(lows, highs, strict=True)
-        ]
-        apart = any(most <= tolerance for _, most in sizes) and any(
-            least > tolerance for least, _ in sizes
-        )
-        if apart or max(lows) > 0 > min(highs):
-            ends = f"{100 * min(lows):+.2g} % to {100 * max(highs):+.2g} %"
-            of = f" with the changes {_OF_LINEAR}" if NO_CHANGE in motion.changes else ""
-            sentence = (
-                f"Whether the restitution model is good enough at {percent(tolerance)} is decided "
-                f"by changes of 0.1 % in r, k or g: its mean {name} is off by {ends}{of}."
-            )
-            return Judgement(False, sentence, "")
-    return None
-
-
-def _with_changes(error: Mean, changes: Mapping[str, Mean]) -> list[Mean]:
-    """The errors with small changes: for a law its own, changed as that of the linear contact."""
-    base = changes.get(NO_CHANGE)
-    if base is None:
-        return list(changes.values())
-    return [
-        Mean(
-            error.value + one.value - base.value,
-            math.hypot(error.half_width, one.half_width, base.half_width),
-        )
-        for name, one in changes.items()
-        if name != NO_CHANGE
-    ]
 
 
 def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
@@ -216,25 +179,6 @@ def _between(error: Mean) -> str:
     # As many decimals as the first digit of the half-width has.
     decimals = max(-math.floor(math.log10(100 * error.half_width)), 0)
     return f"{100 * error.value:+.{decimals}f} % ± {100 * error.half_width:.{decimals}f} %"
-
-
-def _within(
-    least: float, most: float, tolerance: float, found: str, why: str, undecided: str = ""
-) -> Judgement:
-    """The verdict on a largest error between two bounds, against a tolerance.
-
-    ``undecided`` says what helps if the tolerance lies between the bounds.
-    """
-    asked = percent(tolerance)
-    if most <= tolerance:
-        return Judgement(
-            True, f"The restitution model is good enough: {found}, within {asked}.", why
-        )
-    if least > tolerance:
-        sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
-        return Judgement(False, sentence, why)
-    sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
-    return Judgement(False, sentence, f"{why}; {undecided}")
 
 
 def aside(motion: FinalMotion, amplitude: float) -> str:

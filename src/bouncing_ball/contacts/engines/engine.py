@@ -344,12 +344,21 @@ class Engine(ABC):
         ModelError
             See :meth:`read`.
         """
-        asked = self.read(parameters, mass)
-        contact = asked
-        if self.scheme is Scheme.COMPENSATED:
-            contact = self.contact({**parameters, "time_step": time_step}, mass)
         rule = self.release(release)
-        return at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
+        asked = self.read(parameters, mass)
+        contact, remarks = self.stepped(parameters, mass, time_step)
+        found = at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
+        return replace(found, remarks=remarks)
+
+    def stepped(
+        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
+    ) -> tuple[Physical, tuple[str, ...]]:
+        """The contact that the engine computes with parameters and a time step in s, and sentences
+        on it.
+        """
+        if self.scheme is not Scheme.COMPENSATED:
+            return self.read(parameters, mass), ()
+        return self.contact({**parameters, "time_step": time_step}, mass), ()
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
         """The mass in kg, after a check of it and of the names of all parameters."""

@@ -17,13 +17,11 @@ and the smallest d that MuJoCo allows is 10⁻⁴. Contacts with any impedance a
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from bouncing_ball.contacts.engines.engine import ERROR, Engine, Physical, at_speeds
-from bouncing_ball.contacts.engines.given_step import AtStep, at_step
+from bouncing_ball.contacts.engines.engine import Engine, Physical, at_speeds
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError, shortened
@@ -179,16 +177,10 @@ class MuJoCo(Engine):
             power=power,
         )
 
-    def at_step_of(
-        self,
-        parameters: Mapping[str, Any],
-        mass: float | None,
-        time_step: float,
-        error: float = ERROR,
-        release: str | None = None,
-        speed: float | None = None,
-    ) -> AtStep:
-        """What MuJoCo does with parameters and a time step in s.
+    def stepped(
+        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
+    ) -> tuple[Physical, tuple[str, ...]]:
+        """The contact that MuJoCo computes with parameters and a time step in s.
 
         By default MuJoCo raises a positive time constant to two time steps (``refsafe``).
 
@@ -198,10 +190,8 @@ class MuJoCo(Engine):
         >>> found.is_stable, found.remarks[0]
         (False, 'MuJoCo raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)')
         """
-        rule = self.release(release)
         first, second = _numbers("solref", parameters.get("solref", ()), range(2, 3))
-        asked = self.read(parameters, mass)
-        contact = asked
+        contact = self.read(parameters, mass)
         remarks: tuple[str, ...] = ()
         safe = _SAFE * time_step
         if 0 < first < safe:
@@ -215,8 +205,7 @@ class MuJoCo(Engine):
             remarks += (
                 f"this holds for impacts much deeper than {law.width:g} m, the width of solimp",
             )
-        found = at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
-        return replace(found, remarks=remarks)
+        return contact, remarks
 
     def at_depth(self, parameters: Mapping[str, Any], depth: float) -> str:
         law = self.law(parameters)

@@ -37,6 +37,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import ContactLaw, OscillatorLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.motion import Sampled
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -350,7 +351,7 @@ def _sums(
     if end.is_sampled:
         sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
         starts = impacts.beside(samples[-1].balls, lam, BESIDE)
-        return sums_at(samples, starts, model, lam, _before(case, sampling.before))
+        return sums_at(samples, starts, Sampled(model), lam, _before(case, sampling.before))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
     _, once = advance(*start(model, lam, impacts.last()), end.kind.impacts)

@@ -80,6 +80,10 @@ BALL --engine mujoco --release displacement
     restitution coefficient r = 0.1 is not in (e⁻², 1], the range of the force release with ζ < 1
 BALL --time-step "1 ms"
     --time-step needs --engine or --from, such as generic: engines step in different ways
+BALL --restitution-error 0.01
+    --restitution-error is the error of an engine's time step: give --engine, too, such as generic
+BALL --frequency "1e-6 Hz" --acceleration "0.8 g"
+    ϖ = 1.125e+09, the natural frequency of the contact over that of the table, is not between
 --mass "20 g" --restitution 0.8 --engine mujoco
     no stiffness: give --stiffness, or --contact-time
 --mass "20 g" --restitution 0.8 --engine mujoco --time-step "1 ms" --restitution-error 1e-12

@@ -137,3 +137,19 @@ def test_both_bodies_of_a_hertz_contact_yield_by_boussinesq():
         for of in ("", "table_")
     ]
     assert sum(sunk) == pytest.approx(depth, rel=1e-12)
+
+
+def test_r_is_that_of_the_damper_that_acts_on_approach_only():
+    """Eq. 16 is that of a damper that acts in both directions: its r would be the square."""
+    asked = Contact(mass=0.2, contact_time=4e-3, restitution=0.6, release="approach")
+    measured = Contact(mass=0.2, contact_time=4e-3, measured_restitution=0.6, release="approach")
+    table = TableMotion(100.0, 1e-3, 9.81)
+    found = resolve(asked, table)
+    assert found.contact == resolve(measured, table).contact
+    k, c = found.stiffness, found.damping
+    # Down to the greatest depth the energy falls by the work of the damper, then the spring alone.
+    omega, zeta = math.sqrt(k / 0.2), c / (2 * math.sqrt(k * 0.2))
+    damped = omega * math.sqrt(1 - zeta**2)
+    down = math.acos(zeta) / damped
+    deepest = math.exp(-zeta * omega * down) * math.sin(damped * down) / damped
+    assert deepest * omega == pytest.approx(0.6, rel=1e-12)

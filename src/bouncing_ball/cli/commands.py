@@ -19,11 +19,10 @@ _SYMBOLS = {
 
 # What makes a single orbit cheaper.
 _SIMPLER = "a spring and a damper in place of a law"
-# Without a law a design takes about a second, so that the line is read with one.
 _OF_DESIGN = (
-    "each impact on a contact law is integrated, for the orbits of eight families, 36 starts, and "
-    "the means of a motion that does not repeat, also with r, k and g changed: a single family n, "
-    "fewer balls, or a spring and a damper in place of the law"
+    "the orbits of eight families, the ends of many starts, and the means of a motion that does "
+    "not repeat, also with r, k and g changed, are computed, and each impact on a contact law is "
+    "integrated: a single family n, fewer balls, or a spring and a damper in place of a law"
 )
 
 

@@ -119,6 +119,11 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
     other = None if engine is None else softer(found.case, engine, question, si.get("speed"))
     error = si.get("restitution_error", ERROR)
     speed = _impact_speed(found, si.get("speed"))
+    if error != ERROR and setup is None and contact.from_engine is None:
+        raise ParameterError(
+            "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
+            "as generic"
+        )
     if "time_step" in si and engine is None:
         at_step = at_given_step(contact, si["time_step"], error, speed)
     elif engine is None:

@@ -130,7 +130,7 @@ def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
         f"The stiffest contact with the same r within {at.allowed:g} has "
         f"{shown(at.stiffest, 'N/m')}, with a damping of {damping} and "
         f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
-        f"steps{_how_exact(at)}){_written_as(given, at, at.stiffest, at.stiffest_damping)}{deep}.",
+        f"steps){_written_as(given, at, at.stiffest, at.stiffest_damping)}{deep}.",
     ]
 
 
@@ -158,11 +158,6 @@ def _written_as(given: DesignAnswer, at: AtStep, stiffness: float, damping: floa
     values = engine.parameters(engine.for_step(contact, at.time_step))
     said = " and ".join(f"{name} = {value:.6g}" for name, value in values.items())
     return f", written as {said}"
-
-
-def _how_exact(at: AtStep) -> str:
-    """How exact the number of steps is, if it is not exact to the digits that are printed."""
-    return "" if at.speed is None else ", at most 0.1 % more than it needs"
 
 
 def _looser(found: Looser | None) -> list[str]:

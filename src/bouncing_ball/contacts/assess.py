@@ -255,7 +255,11 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         choice = None
         no_orbit = str(error)
         found = families(case, question.families, or_first=True)
-    require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
+    if not 1 / _LARGEST < ratio < _LARGEST:
+        raise ModelError(
+            f"ϖ = {ratio:.4g}, the natural frequency of the contact over that of the table, is not "
+            f"between {1 / _LARGEST:g} and {_LARGEST:g}: check the units of both"
+        )
     ends = ends_of_starts(case)
     one = _judged(found, choice, None if question.n is not None else ends)
     is_rare = question.n is None and _stays(one) and ends.of_orbit(one.n) < FEW

@@ -104,7 +104,8 @@ class Contact:
         Damping ratio ζ = c/(2√(km)) of the contact.
     restitution
         Restitution coefficient of a free impact that ends at the table's level,
-        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine or a law, r under its release.
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine, a law or the release "approach"
+        it is r under that release.
     measured_restitution
         Restitution coefficient of a free impact, without gravity, under the given release.
     drop_height

@@ -188,9 +188,11 @@ def families(
     exact, *simple = case.models.values()
     of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD) for model in simple]
     near = np.ones(n.shape, dtype=bool)
+    if case.law is not None:
+        near = can_carry(case.law, n, lam)
     if case.law is not None and case.contact.frequency_ratio > _STIFF:
         nodes = [found[len(OF_ORBITS)] for _, found in of_simple]
-        near = ~(np.nanmin(nodes, axis=0) > _FAR * lam)
+        near &= ~(np.nanmin(nodes, axis=0) > _FAR * lam)
     in_models = [_in_model(exact, n, lam, case.permanent_contact, near), *of_simple]
     orbits = [orbit for orbit, _ in in_models]
     values = np.array([found for _, found in in_models])
@@ -210,6 +212,29 @@ def families(
         )
         for k in np.flatnonzero(there).tolist()
     )
+
+
+def can_carry(law: ContactLaw, n: np.ndarray, amplitude: float) -> np.ndarray:
+    """Whether the force of a law can exceed the weight of a ball on an n-T orbit.
+
+    Over the time P = 2πn of an orbit the mean force is the weight, 1, and the mean velocity is 0. A
+    contact whose force is below the weight pulls by less than the weight too, if its release lets
+    it pull, so that z″ ≥ -2. Then ``|z′| ≤ P``, and the highest and the lowest place of the ball
+    are at most P²/4 apart. The contact is no deeper than ``P²/4 + 2Λ``, and no faster than
+    ``P + Λ``. If its force there is below 1, the law has no such orbit.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.laws.hertzian import Tsuji
+    >>> can_carry(Tsuji(1.0, 0.1), np.array([1, 2]), 2.0).tolist()
+    [True, True]
+    >>> can_carry(Tsuji(1e-3, 0.1), np.array([1, 2, 9]), 2.0).tolist()
+    [False, False, True]
+    """
+    period = 2 * math.pi * n
+    deepest = period * period / 4 + 2 * amplitude
+    force = law.loaded_force(deepest, period + amplitude, 1 + amplitude)
+    return np.asarray(force >= 1)
 
 
 def _in_model(

@@ -57,7 +57,9 @@ def loss(
     if name == "damping_ratio":
         return _oscillating(contact.damping_ratio, release, "{damping_ratio}")
     if name == "restitution":
-        return float(damping_ratio(contact.restitution, Release.DISPLACEMENT))
+        # A damper that acts on approach only lets go at the table's level too, with another r.
+        at_surface = release if release is Release.APPROACH else Release.DISPLACEMENT
+        return float(damping_ratio(contact.restitution, at_surface))
     if name == "measured_restitution":
         return float(damping_ratio(contact.measured_restitution, release))
     height = contact.rebound_height

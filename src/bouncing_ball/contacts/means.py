@@ -36,6 +36,7 @@ from bouncing_ball.long_run.sampled_means import (
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_with_impact
+from bouncing_ball.models.laws.motion import Sampled
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -306,7 +307,7 @@ def _sums(
     if end.is_sampled:
         sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
         starts = impacts.beside(samples[-1].balls, lam, BESIDE)
-        return sums_at(samples, starts, model, lam, _before(case, sampling.before))
+        return sums_at(samples, starts, Sampled(model), lam, _before(case, sampling.before))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
     _, once = advance(*start(model, lam, impacts.last()), end.kind.impacts)

@@ -66,10 +66,12 @@ function solver([a, b, c]) {
 }
 
 // ---- The contact: ϖ, ζ < 1 and sin α = κϖ/2 of the release rule.
-// r is that of Eq. 16, or, measured, that of a free impact by the release.
+// r is that of Eq. 16, or, measured, that of a free impact by the release. A damper that acts on
+// approach only lets go at the table's level too, with an r of its own.
 function contactOf(r, omega, release, measured = false) {
   const decrement = -Math.log(r) + 0;
-  const zeta = !measured || release === "displacement" ? decrement / Math.hypot(Math.PI, decrement)
+  const isEq16 = release === "displacement" || release === "force" && !measured;
+  const zeta = isEq16 ? decrement / Math.hypot(Math.PI, decrement)
     : forceDamping(release === "force" ? decrement : 2 * decrement);
   return withDamping(omega, zeta, release);
 }

@@ -111,9 +111,10 @@ function impossible(state) {
   if (state.tab === "orbit" && !releasesOf(state).includes(state.release))
     return `release = '${state.release}' is not one of ${releasesOf(state).join(", ")}`;
   const [least, power, ends] = LEAST[state.release] ?? [0];
-  if (physical && !(given in ENGINES) && engine !== "none" && r <= least)
+  const hasLeast = engine !== "none" || state.release === "approach", of = engine === "none" ? "" : ` of ${engine}`;
+  if (physical && !(given in ENGINES) && hasLeast && r <= least)
     return `r = ${r} is not above ${power} = ${shown(least, 4)}, the least of an `
-      + `underdamped contact of ${state.engine}, ${ends}.`;
+      + `underdamped contact${of}, ${ends}.`;
   if (state.tab !== "stage") return "";
   if (r === 1 && w === 1 && state.model !== "restitution")
     return "r = 1 with ϖ = 1 is the resonance of an undamped contact, which is not followed here.";

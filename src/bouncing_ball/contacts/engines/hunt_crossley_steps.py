@@ -24,7 +24,7 @@ _MOST_STEPS = 20_000
 _FEWEST_STEPS = 1e-3
 _FINE = 1e-9
 # How closely the number of steps of the stiffest contact is found, and the steps of that search.
-_CLOSE = 1e-3
+_CLOSE = 1e-6
 _TRIED = 40
 
 

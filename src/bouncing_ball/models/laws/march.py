@@ -264,6 +264,8 @@ class _March:
             self.by[here], more = at_end(law, start, panel, self.by[here])
             self.strain[here] += more
             end = np.flatnonzero(panel.last)
+            if not end.size:
+                return
             at = here[end]
             law, start, panel = selected(end, law, start, panel)
             self.jacobian[at], self.contraction[at] = at_release(

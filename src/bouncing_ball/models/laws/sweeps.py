@@ -280,12 +280,14 @@ class Sweeps:
 
     def _aim(self) -> None:
         """A step of Newton's method for the length of the panels that reach their end."""
-        final = self.rule.end @ self.push
-        left, falls = self.left(self.root[-1], self.rate[-1], self.time[-1], final)
+        left = self.ahead(self.root[-1], self.rate[-1], self.time[-1])
         self.functions = len(left)
         self.last |= (left <= 0).any(axis=0)
+        # Most panels end within the contact, so that no slopes are needed.
         if not self.last.any():
             return
+        final = self.rule.end @ self.push
+        left, falls = self.left(self.root[-1], self.rate[-1], self.time[-1], final)
         without_fall = np.where(left > 0, np.inf, -self.step)
         distance = np.where(falls < 0, -left / falls, without_fall)
         self.first = distance.argmin(axis=0)

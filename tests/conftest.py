@@ -171,6 +171,7 @@ def coarse():
     return {
         ("ext_cascades", "samples"): 5,
         ("ext_cascades", "doublings"): 4,
+        ("ext_flights", "samples"): 13,
         ("ext_laws", "samples"): 4,
         ("ext_locked", "nodes"): 15,
     }

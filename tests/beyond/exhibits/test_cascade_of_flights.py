@@ -11,7 +11,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
-# The ends of the grid: a whole row of openings takes half a minute, and is compared with the record.
+# The ends of the grid. A whole row takes half a minute, and `make diff` compares it.
 FLIGHTS = {
     "restitution": [0.85, 0.65],
     "frequency_ratio": {"min": 1.2, "max": 100.0, "samples": 2},

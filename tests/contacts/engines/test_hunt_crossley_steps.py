@@ -45,7 +45,10 @@ def impact(speed, step, fraction, damping=0.5, stiffness=1e5):
         (1e-4, 2.0),
         (1e-3, 0.3),
         (3e-3, 2.0),
-        *(pytest.param(*x, marks=pytest.mark.long) for x in [(1e-4, 0.3), (1e-3, 2.0), (3e-3, 0.3)]),
+        *(
+            pytest.param(*x, marks=pytest.mark.long)
+            for x in [(1e-4, 0.3), (1e-3, 2.0), (3e-3, 0.3)]
+        ),
     ],
 )
 def test_the_range_is_that_of_single_impacts(step, speed):

@@ -171,7 +171,8 @@ def coarse():
     return {
         ("ext_cascades", "samples"): 5,
         ("ext_cascades", "doublings"): 4,
-        ("ext_flights", "samples"): 13,
+        ("ext_flights", "samples"): 5,
+        ("ext_flights", "flights"): 2,
         ("ext_laws", "samples"): 4,
         ("ext_locked", "nodes"): 15,
     }

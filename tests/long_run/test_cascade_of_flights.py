@@ -29,7 +29,7 @@ def motions(r, ratio, excess):
 # ϖ = 27.1 lies between the ratios at which the second opening of r = 0.95 exists.
 WEAK = 200 ** (1 - 13 / 24) * 5 ** (13 / 24)
 RESTITUTIONS = [0.3, 0.5, 0.65, 0.85, 0.95]
-RATIOS = [2.0, 4.3, 6.3, 11.9, 12.0, 20.0, WEAK, 31.6, 50.0, 60.0, 100.0, 200.0, 400.0]
+RATIOS = [2.0, 6.3, 12.0, 20.0, WEAK, 31.6, 50.0, 60.0, 100.0, 200.0, 400.0]
 
 
 @pytest.fixture(scope="module")

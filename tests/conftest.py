@@ -171,6 +171,8 @@ def coarse():
     return {
         ("ext_cascades", "samples"): 5,
         ("ext_cascades", "doublings"): 4,
+        ("ext_flights", "samples"): 5,
+        ("ext_flights", "flights"): 2,
         ("ext_laws", "samples"): 4,
         ("ext_locked", "nodes"): 15,
     }
@@ -290,7 +292,8 @@ def short_runs(monkeypatch):
         monkeypatch.setattr(ends, impacts, 20)
     for starts in ("_STARTS", "_STARTS_OF_LAW"):
         monkeypatch.setattr(f"bouncing_ball.contacts.starts.{starts}", 3)
-    monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 20)
+    # Balls of a law that come to rest on a stiff contact take longest.
+    monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 3)
     monkeypatch.setattr(means, "_BALLS_OF_CHANGE", 4)
     few = means.Sampling(unit=4, usual=4, impacts=(8,), before=4)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from declared_arguments import arguments
 from declared_artifacts import ARTIFACTS
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from whole_configuration import configuration_type
 
@@ -196,6 +196,8 @@ def test_the_declarations_are_found():
 
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 STUDIES = configuration_type(ARTIFACTS.values())
+# The whole configuration is checked each time, with a search for nine orbits: 0.2 s.
+FEW = settings(max_examples=15)
 
 
 def leaves(value: typing.Any, path: tuple = ()) -> typing.Iterator[tuple]:
@@ -211,6 +213,7 @@ def leaves(value: typing.Any, path: tuple = ()) -> typing.Iterator[tuple]:
     st.sampled_from(list(leaves(CONFIG))),
     st.sampled_from([{}, [], None, math.nan, math.inf, -1e300, ""]) | WORDS,
 )
+@FEW
 def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
     config = copy.deepcopy(CONFIG)
     section = config
@@ -225,6 +228,7 @@ def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
     st.sampled_from([p for p in leaves(CONFIG) if isinstance(p[-1], str)]),
     st.text(string.ascii_lowercase, min_size=12),
 )
+@FEW
 def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
     config = copy.deepcopy(CONFIG)
     section = config

@@ -93,8 +93,9 @@ def test_diff_for_nobody_who_reads(tmp_path):
     os.close(reader)
     done = program("diff", "record", "results", cwd=tmp_path, stdout=writer, text=True)
     os.close(writer)
-    # The texts differ.
-    assert (done.returncode, done.stderr) == (1, "")
+    # The texts differ. On a busy machine a line says that the answer takes long.
+    errors = [line for line in done.stderr.splitlines() if "no answer after" not in line]
+    assert (done.returncode, errors) == (1, [])
 
 
 @pytest.mark.parametrize(

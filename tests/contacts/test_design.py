@@ -189,6 +189,7 @@ def test_a_hertz_contact_without_loss_keeps_its_energy():
     assert rigid * found.static_deflection**1.5 == pytest.approx(0.004 * 9.80665, rel=1e-12)
 
 
+@pytest.mark.usefixtures("short_runs")
 def test_a_hertz_contact_is_judged_by_its_own_orbits():
     found = assessed(**HERTZ, restitution=0.65, n=1, quantity="permanent_contact")
     errors, law, corrected = (

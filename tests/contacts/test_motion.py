@@ -29,6 +29,15 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 
 
+@pytest.fixture
+def without_changes(monkeypatch):
+    """An answer without the changes of r, k and g, which take two thirds of its time.
+
+    ``test_a_change_of_a_thousandth_that_decides_leaves_no_percentage`` has them.
+    """
+    monkeypatch.setattr("bouncing_ball.contacts.means._changes", lambda *_: None)
+
+
 @pytest.mark.parametrize(
     "law", [RestitutionModel(1.0), SpringDamper(4.0, 0.0), SpringDamper(40.0, 0.0)]
 )
@@ -65,7 +74,7 @@ def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
         (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
     ],
 )
-def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
+def test_the_headline_says_what_the_ball_does(amplitude, kind, says, without_changes):
     found = assessed(**UNIT, acceleration=amplitude, stiffness=5000.0, tolerance="20 %")
     assert found.motion.kind == kind and says in found.headline
     assert found.headline != found.verdict
@@ -228,7 +237,7 @@ def test_an_undecided_verdict_says_how_many_balls_would_decide(found, advice):
     assert advice in said_of_motion(judged_by_motion(found, 0.05, 1)).reason
 
 
-def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage():
+def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage(request):
     """Of r = 0.5 and Λ = 2 the mean height changes by tens of percent if r changes by 0.1 %."""
     given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "2 g", "restitution": 0.5}
     found = assessed(**given, stiffness="1e7 N/m", tolerance=0.2465)
@@ -238,6 +247,7 @@ def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage():
     assert [*changes] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
     # The change is as large as that of the contact with this r, which starts from its own orbit and
     # so may end on another lap: both are far from the error without the change.
+    request.getfixturevalue("without_changes")
     other = assessed(**given | {"restitution": 0.4995}, stiffness="1e7 N/m", tolerance=0.2465)
     one = changes["r -0.1 %"]["height"]
     two = other.motion.mean_error["height"]
@@ -346,7 +356,7 @@ def test_an_impedance_is_changed_as_itself():
     assert stiffer["frequency_ratio"] / before["frequency_ratio"] == pytest.approx(1.0005, abs=5e-5)
 
 
-def test_the_headline_is_about_the_motion_on_which_most_balls_end():
+def test_the_headline_is_about_the_motion_on_which_most_balls_end(without_changes):
     """The 5-T orbit is stable, and attracts less than one start in a hundred."""
     given = {"mass": "50 g", "frequency": "25 Hz", "acceleration": "2 g", "stiffness": 1e6}
     found = assessed(**given, restitution=0.8, balls=256)
@@ -360,9 +370,8 @@ def test_the_headline_is_about_the_motion_on_which_most_balls_end():
     assert of_five.starts == found.starts
 
 
-def test_a_larger_sample_decides_what_a_smaller_one_leaves_open(monkeypatch):
-    # Here without changes of r, k and g, which decide about this error.
-    monkeypatch.setattr("bouncing_ball.contacts.means._changes", lambda *_: None)
+def test_a_larger_sample_decides_what_a_smaller_one_leaves_open(without_changes):
+    # The changes of r, k and g would decide about this error.
     given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "2 g", "restitution": 0.5}
     asked = given | {"stiffness": "1e7 N/m", "tolerance": 0.2465}
     small = assessed(**asked, balls=256)
@@ -371,7 +380,9 @@ def test_a_larger_sample_decides_what_a_smaller_one_leaves_open(monkeypatch):
     assert "not decided" not in large.verdict and large.motion.balls > 256
 
 
-def test_beside_a_lap_that_rounding_errors_decide_on_the_interval_is_that_of_the_lap():
+def test_beside_a_lap_that_rounding_errors_decide_on_the_interval_is_that_of_the_lap(
+    without_changes,
+):
     """In the restitution model a ball sticks again after 72 impacts, and has lost 14 digits."""
     given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "4 g", "restitution": 0.5}
     found = assessed(**given, stiffness="1e7 N/m").motion

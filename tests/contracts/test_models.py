@@ -67,14 +67,16 @@ MODELS = {
 }
 # Other laws of the same model: one of them is tried often, and the others weekly.
 SELDOM = ("kuwabara-kono", "elasto-backlash", "impedance")
+# Of these some tests take seconds, and "tsuji" and "corrected" are of the same kinds.
+SLOW = (*SELDOM, "corrected, kuwabara-kono", "hardening spring")
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
 # n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.
 CASES = [(1, 0.3), (2, 0.3), (1, 0.6)]
 
 
-def often(names):
+def often(names, seldom=SELDOM):
     """Names of models as parameters, some of them of long tests only."""
-    return [pytest.param(x, marks=pytest.mark.long if x in SELDOM else ()) for x in names]
+    return [pytest.param(x, marks=pytest.mark.long if x in seldom else ()) for x in names]
 
 
 def cases(names):
@@ -87,6 +89,7 @@ def cases(names):
 
 NEAREST = (RestitutionModel, SpringDamperModel)
 every_model = pytest.mark.parametrize("name", often(MODELS))
+each_kind = pytest.mark.parametrize("name", often(MODELS, SLOW))
 every_case = pytest.mark.parametrize(("n", "above"), CASES)
 every_side = pytest.mark.parametrize("side", list(Side))
 
@@ -288,7 +291,7 @@ def test_the_ball_is_held_in_contact_and_above_the_table_in_flight(some):
     assert np.all(rising)
 
 
-@every_model
+@each_kind
 def test_arrays_are_their_elements(name):
     model = MODELS[name]
     amplitude = np.array([[0.01], [1.0]])
@@ -309,7 +312,7 @@ def test_arrays_are_their_elements(name):
     np.testing.assert_allclose(known.bounce_velocity, there.bounce_velocity)
 
 
-@pytest.mark.parametrize("name", often(DISSIPATIVE))
+@pytest.mark.parametrize("name", often(DISSIPATIVE, SLOW))
 def test_both_sides_are_among_all_orbits_at_an_amplitude(name):
     model = MODELS[name]
     found = n_t.orbits(model, 1, 0.9)
@@ -319,7 +322,7 @@ def test_both_sides_are_among_all_orbits_at_an_amplitude(name):
     assert n_t.orbits(model, 1, 1e-3).size == 0
 
 
-@every_model
+@each_kind
 def test_a_side_may_be_given_by_its_name(name):
     model = MODELS[name]
     for side in Side:
@@ -359,7 +362,7 @@ def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
     assert nearest(orbit).distance(orbit) < 1e-12
 
 
-@every_model
+@each_kind
 def test_a_wrong_index_and_an_orbit_below_the_fold_are_refused(name):
     model = MODELS[name]
     for n in (0, -1, 1.5, np.nan):

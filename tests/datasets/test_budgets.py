@@ -91,9 +91,9 @@ def results(coarse, recorded):
         reads = "data" in inspect.signature(study).parameters and artifact != "ext_locked"
         if reads or ARTIFACTS[artifact].accepted:
             continue
-        # The last doublings move most.
+        # The last doublings and openings move most.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
-        fewer = {} if artifact == "ext_cascades" else fewer
+        fewer = {} if artifact in ("ext_cascades", "ext_flights") else fewer
         given = mapped(
             arguments(study, ARTIFACTS[artifact].part, artifact, RUN),
             lambda key, x, fewer=fewer: fewer.get(key, x),

@@ -30,8 +30,13 @@ WITH_DATA = [
     for name, each in ARTIFACTS.items()
     if each.drawing and (ROOT / f"{each.place}.nc").exists()
 ]
-# Those drawn from the samples and measurements that are accepted by hand.
-ACCEPTED = [name for name, each in ARTIFACTS.items() if each.drawing and each.accepted]
+# Those drawn from the samples and measurements that are accepted by hand: one of each, and the
+# others weekly.
+ACCEPTED = [
+    name if name in ("ext_locking", "ext_engines") else pytest.param(name, marks=pytest.mark.long)
+    for name, each in ARTIFACTS.items()
+    if each.drawing and each.accepted
+]
 
 
 def drawn(name, *data):

@@ -365,6 +365,7 @@ def test_bad_input_is_refused_in_the_words_of_the_command(seen, refused):
         )
 
 
+@pytest.mark.usefixtures("short_runs")
 def test_a_contact_of_mujoco_that_is_not_linear_is_left_to_the_command(seen, answered):
     for state in seen["nonlinear"]:
         assert state["refused"].startswith("with the impedance 0.95 MuJoCo's contact is not linear")

@@ -33,8 +33,15 @@ def sample(law, noise, count, known):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("known", [True, False])
-@pytest.mark.parametrize("law", ["linear", "kuwabara-kono"])
+@pytest.mark.parametrize(
+    ("law", "known"),
+    [
+        ("linear", True),
+        ("linear", False),
+        ("kuwabara-kono", True),
+        pytest.param("kuwabara-kono", False, marks=pytest.mark.long),
+    ],
+)
 def test_a_true_law_is_rarely_rejected(law, known):
     curve = curve_named(law)
     tests = [
@@ -42,14 +49,15 @@ def test_a_true_law_is_rarely_rejected(law, known):
             test(curve, points).probability(*noise(points))
             for test in (left_out, extrapolation_errors)
         ]
-        for points in sample(law, 0.003, 150, known)
+        for points in sample(law, 0.003, 60, known)
     ]
     for p in np.transpose(tests):
-        # A test with the level 0.05 rejects 7.5 of 150; more than 18 have a probability of 4e-4.
+        # A test with the level 0.05 rejects 3 of 60; more than 10 have a probability of 2e-4.
         # With the scatter about a smooth curve the probabilities may be too large, never too small.
-        assert np.count_nonzero(p < 0.05) <= 18
+        assert np.count_nonzero(p < 0.05) <= 10
         if known:
-            assert np.count_nonzero(p < 0.5) >= 50
+            # Fewer than 17 of 60 halves have one of 2e-4.
+            assert np.count_nonzero(p < 0.5) >= 17
 
 
 @pytest.mark.parametrize(

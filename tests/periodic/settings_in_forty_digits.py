@@ -104,4 +104,5 @@ class Exact:
             off = mp.det(m - multiplier * mp.eye(2))
             return end - phase - 2 * mp.pi * periods, rate - velocity, off
 
-        return mp.findroot(defect, [*state, lam], tol=1e-40, maxsteps=20, verify=False)[2]
+        # The differences in the matrix leave some 25 digits, and a start has twelve: two steps.
+        return mp.findroot(defect, [*state, lam], tol=1e-20, maxsteps=20, verify=False)[2]

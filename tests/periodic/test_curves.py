@@ -137,6 +137,8 @@ def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
             found = curve_of(opening, "frequency_ratio", across_window=window)
             values = found.problem.values(found.branch.points)
             order = values["frequency_ratio"].argsort()
+            # Both ends, and the middle: each contact is simulated from below.
+            order = order[[0, order.size // 2, -1]]
             there = openings([zeta], values["frequency_ratio"][order], 1).amplitude[0, 0]
             assert np.abs(there - values["amplitude"][order]).max() < 1e-10
 

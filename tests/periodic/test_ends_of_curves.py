@@ -1,5 +1,7 @@
 """Where curves and branches of special orbits start and end, against references of their own."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from mpmath import findroot, mp, mpf, workdps
@@ -158,6 +160,7 @@ def doubling_without_release(*unknowns):
     ]
 
 
+@cache
 def curve_of_a_doubling(number):
     """The curve in Λ and ϖ through one of the doublings of a compliant contact."""
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=2.0)

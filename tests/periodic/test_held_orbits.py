@@ -69,10 +69,7 @@ def test_orbits_and_multipliers_in_forty_digits(case):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "case",
-    [pytest.param(x, marks=pytest.mark.long) if x in ("force", "spring") else x for x in CASES],
-)
+@pytest.mark.parametrize("case", CASES)
 def test_bifurcations_in_forty_digits(case):
     ball, exact, amplitude = ball_of(case)
     one = bouncing_ball.orbit(ball, amplitude=amplitude)

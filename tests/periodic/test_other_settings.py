@@ -126,8 +126,14 @@ def test_elastic_ball_gains_speed_for_ever():
     assert np.abs(found.impact_velocity + np.pi * np.arange(1, 9)).max() < 1e-7
 
 
+# Both terms at once, and a spring; the others weekly.
+OFTEN = ("table and drag", "spring")
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case", [x if x in OFTEN else pytest.param(x, marks=pytest.mark.long) for x in CASES]
+)
 def test_grazing_flights_are_where_the_simulation_changes(case):
     ball, amplitude = ball_of(case)
     one = bouncing_ball.orbit(ball, amplitude=amplitude)

@@ -39,7 +39,9 @@ def test_the_force_release_lifts_off_earlier(described):
 @pytest.mark.parametrize(
     ("low", "high"), [(0.5, 100.0), (0.1, 1.0), (0.1, 10.0), (0.1, 100.0), (3.0, 30.0)]
 )
-@pytest.mark.parametrize("restitution", [0.5, 0.65, 0.85])
+@pytest.mark.parametrize(
+    "restitution", [0.65, *(pytest.param(r, marks=pytest.mark.long) for r in (0.5, 0.85))]
+)
 def test_each_region_has_its_name_inside(low, high, restitution):
     span = {"min": low, "max": high, "samples": 401}
     data = permanent_contact({"restitution": restitution, "frequency_ratio": span}, "displacement")

@@ -157,7 +157,9 @@ SHARED = {
         budget=5.0,
         scale="lyapunov_error",
     ),
-    "lyapunov_error": Variable("standard error of the largest Lyapunov exponent", budget=0.5),
+    "lyapunov_error": Variable(
+        "error of the largest Lyapunov exponent: twice it on both sides are 95 %", budget=0.5
+    ),
     "destination": Variable("motion on which a start ends, index of the motion", budget=math.inf),
     "share": Variable("share of nodes"),
     "shift": Variable("change of the amplitude"),

@@ -362,8 +362,9 @@ def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
     exponentially = growth > -np.log(NEAR)
     chaotic = separates & exponentially & (doubt != MARGINAL)
     sticks_again = balls.sticking.number[which] > 1
-    # A drift is part of the error that is stored, and not of the test, which is one of the sign.
-    drift = stretch.drift(which)
+    # Slow changes are part of the error that is stored, and not of the test, which is one of the
+    # sign.
+    uncertain = np.where(np.isnan(error), np.nan, stretch.uncertainty(which))
     locked = sticks_again & (growth < -DIGITS) & (stretch.most[which] > FORGOTTEN)
     store(
         found,
@@ -372,7 +373,7 @@ def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
         kind=np.where(chaotic, Kind.CHAOTIC, Kind.UNDECIDED),
         reason=np.where(chaotic, Reason.NONE, REASONS[doubt]),
         exponent=2 * np.pi * rate,
-        exponent_error=2 * np.pi * np.fmax(error, drift),
+        exponent_error=2 * np.pi * uncertain,
     )
-    of_locked = (2 * np.pi * rate[locked], 2 * np.pi * error[locked])
+    of_locked = (2 * np.pi * rate[locked], 2 * np.pi * uncertain[locked])
     _store_unresolved(found, balls, which[locked], *of_locked)

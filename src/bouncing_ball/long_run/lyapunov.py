@@ -4,10 +4,15 @@ The deviation is multiplied by the derivative of the map and normalised to lengt
 impact; the logarithms of its growth are added up. The Lyapunov exponent is the ratio of the mean
 growth to the mean time, over sections of 32 impacts, so that its standard error can be computed.
 
-A nearly elastic ball gains speed for thousands of impacts, and its exponent falls meanwhile. The
-standard error knows nothing of that. The exponent of the first sections, between a quarter and a
-half of them, is therefore compared with that of the others. If they differ by more than three
-standard errors, the exponent drifts, and its error is the difference.
+The speed of a nearly elastic ball changes slowly, so that its sections are not independent of each
+other: the speed forgets its value within some 1/(1 - r) impacts. The standard error is therefore
+also computed for blocks of 2, 4, 8, … sections (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461,
+1989), and the largest one is taken. Because few blocks tell their scatter badly, it is multiplied
+by the ratio of the quantiles 0.975 of Student's and of the normal distribution. Such a ball also
+gains speed for thousands of impacts, and its exponent falls meanwhile. The exponent of the first
+sections, between a quarter and a half of them, is therefore compared with that of the others. If
+they differ by more than three standard errors, the exponent drifts, and its error is at least the
+difference.
 
 The digits that a motion has lost follow from the same growth. They are counted anew when the ball
 forgets: when a contact shrinks the deviation so far that less than a rounding error is left of its
@@ -18,6 +23,7 @@ does not belong to the motion on which the ball ends.
 from typing import NamedTuple, Self
 
 import numpy as np
+from scipy.special import ndtri, stdtrit
 
 from bouncing_ball.models.deviations import Jacobian
 
@@ -33,6 +39,11 @@ _TRANSIENT = 2
 # The exponent drifts if that of the first sections differs by this number of standard errors from
 # that of the others, which happens by chance once in four hundred.
 _DRIFTS = 3.0
+# The number of lengths of blocks, and the least number of blocks of more than one section.
+_LEVELS = 10
+_BLOCKS = 4
+# The quantile that an interval of 95 % has on both sides.
+_QUANTILE = 0.975
 # Relative error of a rate that is due to rounding: sums of n squares give the error √(n ε).
 _EQUAL = 1e-6
 # If a deviation shrinks to less than this length in one impact, a new deviation is started.
@@ -59,6 +70,10 @@ class Stretching(NamedTuple):
     # The number of sections, and the sums over them of the growth g, the time t, g², g t and t²,
     # shape (balls, 6).
     sums: np.ndarray
+    # The same for blocks of 2, 4, 8, … sections, shape (balls, levels, 6), and g and t of the last
+    # section or block that is the first one of a pair, shape (balls, levels, 2).
+    of_blocks: np.ndarray
+    unpaired: np.ndarray
     # The sums at the last number of sections that was a power of two, and at the power before.
     latest: np.ndarray
     first: np.ndarray
@@ -77,6 +92,8 @@ class Stretching(NamedTuple):
             section_growth=np.zeros(balls),
             section_start=np.zeros(balls),
             sums=np.zeros((balls, 6)),
+            of_blocks=np.zeros((balls, _LEVELS, 6)),
+            unpaired=np.zeros((balls, _LEVELS, 2)),
             latest=np.zeros((balls, 6)),
             first=np.zeros((balls, 6)),
         )
@@ -124,9 +141,9 @@ class Stretching(NamedTuple):
             t = time[at] - self.section_start[at]
             self.section_growth[at] = 0
             self.section_start[at] = time[at]
-            terms = np.stack([np.ones_like(t), g, t, g * g, g * t, t * t], axis=1)
             counts = seen[at] > _TRANSIENT * _BATCH
-            self.sums[at[counts]] += terms[counts]
+            self.sums[at[counts]] += _terms(g, t)[counts]
+            self._pair(at[counts], g[counts], t[counts])
             number = self.sums[at, 0].astype(int)
             (doubled,) = (counts & (number & (number - 1) == 0)).nonzero()
             if doubled.size:
@@ -134,11 +151,30 @@ class Stretching(NamedTuple):
                 self.first[balls] = self.latest[balls]
                 self.latest[balls] = self.sums[balls]
 
+    def _pair(self, balls: np.ndarray, growth: np.ndarray, time: np.ndarray) -> None:
+        """Join new sections of some balls with those before them to blocks of 2, 4, 8, … sections.
+
+        Of two blocks of one length the second completes a block of twice the length.
+        """
+        number = self.sums[balls, 0]
+        for level in range(_LEVELS):
+            second = number % 2 == 0
+            first = ~second
+            self.unpaired[balls[first], level] = np.stack([growth[first], time[first]], axis=1)
+            if not second.any():
+                return
+            balls = balls[second]
+            before = self.unpaired[balls, level]
+            growth = growth[second] + before[:, 0]
+            time = time[second] + before[:, 1]
+            number = number[second] / 2
+            self.of_blocks[balls, level] += _terms(growth, time)
+
     def restart(self, which: np.ndarray, time: np.ndarray) -> None:
         """Begin the exponent again for balls that have forgotten for the first time."""
         self.section_growth[which] = 0
         self.section_start[which] = time[which]
-        for sums in (self.sums, self.latest, self.first):
+        for sums in (self.sums, self.latest, self.first, self.of_blocks):
             sums[which] = 0
 
     def lost(self) -> np.ndarray:
@@ -168,6 +204,34 @@ class Stretching(NamedTuple):
         rate, error = _rate(self.sums[which])
         return rate, np.where(error > _EQUAL * np.abs(rate), error, np.nan)
 
+    def uncertainty(self, which: np.ndarray) -> np.ndarray:
+        """The error of the exponent: an interval of twice the error on both sides has 95 %, also if
+        the motion changes slowly, or drifts.
+
+        Examples
+        --------
+        Sixteen sections, of which eight have the growth 1 and then eight the growth 3:
+
+        >>> stretch = Stretching.of(1)
+        >>> for g in 8 * [1.0] + 8 * [3.0]:
+        ...     stretch.sums[0] += 1, g, 1, g * g, g, 1
+        ...     stretch._pair(np.array([0]), np.array([g]), np.ones(1))
+        >>> error = stretch.exponent(np.array([0]))[1]
+        >>> (stretch.uncertainty(np.array([0])) / error).round(1).tolist()
+        [3.6]
+        """
+        with np.errstate(invalid="ignore", divide="ignore"):
+            found = self.drift(which)
+        every = [self.sums[which], *np.moveaxis(self.of_blocks[which], 1, 0)]
+        for level, sums in enumerate(every):
+            enough = sums[:, 0] >= (_BLOCKS if level else 2)
+            freedom = np.where(enough, sums[:, 0] - 1, 1.0)
+            wider = stdtrit(freedom, _QUANTILE) / ndtri(_QUANTILE)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                error = np.where(enough, wider * _rate(sums)[1], 0.0)
+            found = np.fmax(found, error)
+        return found
+
     def drift(self, which: np.ndarray) -> np.ndarray:
         """The change of the exponent from the first sections to the others, 0 if it is within the
         errors.
@@ -184,6 +248,12 @@ class Stretching(NamedTuple):
         late, other = _rate(self.sums[which] - self.first[which])
         change = np.abs(late - early)
         return np.where(change > _DRIFTS * np.hypot(error, other), change, 0.0)
+
+
+def _terms(growth: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """What sections or blocks add to the sums, shape (balls, 6)."""
+    squares = growth * growth, growth * time, time * time
+    return np.stack([np.ones_like(time), growth, time, *squares], axis=1)
 
 
 def _rate(sums: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -104,13 +104,13 @@ def lyapunov_exponent(
     Returns
     -------
     Result
-        ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
+        ``lyapunov_exponent`` with ``lyapunov_error``: twice this error on both sides is an interval
+        of 95 %, also if the motion changes slowly; and the ``kind`` of the
         motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
         later motion does not depend on earlier impacts. ``exponent_sum`` is the sum of both
         exponents: the mean of the logarithm of the determinant of the return map, over one
         repetition, or over as many impacts as the ball was followed for. ``second_exponent`` is
-        the difference of the two. The figure shows the largest exponents with their standard
-        errors.
+        the difference of the two. The figure shows the largest exponents with their errors.
 
     Raises
     ------

@@ -42,7 +42,7 @@ class BallsAlike(Parameters):
     impacts: Annotated[
         int,
         number(
-            "impacts of each ball; an exponent with its standard error needs some hundreds",
+            "impacts of each ball; an exponent with its error needs some hundreds",
             ge=256,
             le=100_000,
         ),
@@ -120,7 +120,7 @@ def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
 
     The dataset has, over ``amplitude``, ``impacts`` and ``periods`` of the table until the motion
     repeats up to rounding, 0 if it does not; ``stickings``, after how many impacts the ball sticks
-    before its motion is known; and ``lyapunov_exponent`` with its standard error
+    before its motion is known; and ``lyapunov_exponent`` with its error
     ``lyapunov_error``, per period of the table, NaN for a motion that repeats or sticks.
 
     Raises

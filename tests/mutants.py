@@ -15,7 +15,6 @@ import argparse
 import ast
 import hashlib
 import importlib
-import multiprocessing
 import os
 import signal
 import sys
@@ -24,6 +23,7 @@ from collections import ChainMap, Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from importlib.machinery import SourceFileLoader
 from itertools import islice
+from multiprocessing.context import ForkContext, ForkProcess
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, NamedTuple
@@ -345,6 +345,25 @@ def reasons(tree: Path) -> dict[tuple[Path, int, str, str], str]:
     return found
 
 
+class Fork(ForkProcess):
+    """A process that may start others, as some tests do; a daemon, as those of a pool are, may
+    not."""
+
+    @property
+    def daemon(self) -> bool:
+        return False
+
+    @daemon.setter
+    def daemon(self, value: bool) -> None:
+        pass
+
+
+class Forks(ForkContext):
+    """Pools of such processes."""
+
+    Process = Fork
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=200)
@@ -360,8 +379,7 @@ def main() -> None:
     for name in LIBRARIES:
         importlib.import_module(name)
     parts = sorted(parts_of(PACKAGE) + parts_of(Path("tests")))
-    context = multiprocessing.get_context("fork")
-    with context.Pool(options.workers, maxtasksperchild=1) as pool:
+    with Forks().Pool(options.workers, maxtasksperchild=1) as pool:
         found = dict(zip(parts, pool.map(reached, parts, chunksize=1), strict=True))
         if failed := [part for part, tests in found.items() if tests is None]:
             sys.exit(f"{failed} fail without any fault: see make quick")

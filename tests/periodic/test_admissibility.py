@@ -16,7 +16,7 @@ from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.one_impact.spring_damper_branch import (
     branch_point,
-    orbits_of,
+    orbits_of_points,
     orbits_on_branch,
 )
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -66,7 +66,7 @@ def test_admissible_orbits_are_those_without_an_earlier_event_in_dense_samples(r
     free = np.pi if release is Release.DISPLACEMENT else np.pi - 2 * np.arcsin(zeta)
     excess = duration * omega * np.sqrt(1 - zeta**2) - free
     contact = SpringDamper(omega, zeta, release)
-    orbit = orbits_of(branch_point(excess, contact, n), contact, n)
+    orbit = orbits_of_points(branch_point(excess, contact, n), contact, n)
     admissible = orbit.is_admissible()
     assert np.array_equal(admissible, sampled(orbit))
     assert 0.2 < admissible.mean() < 0.8

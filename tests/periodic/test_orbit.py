@@ -13,7 +13,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import solve
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of_points
 from bouncing_ball.periodic.orbits.orbit import Orbit
 
 
@@ -41,7 +41,7 @@ def test_the_distance_of_orbits_is_their_largest_difference():
         "contact_duration": point.contact_duration,
         "impact_velocity": point.u + point.x,
     }
-    orbit = orbits_of(point, contact, 1)
+    orbit = orbits_of_points(point, contact, 1)
     assert float(Orbit.of(**base).distance(orbit)) < 1e-14
     for name in ("amplitude", "phase", "contact_duration", "impact_velocity"):
         moved = Orbit.of(**base | {name: base[name] + 1e-3})

@@ -16,7 +16,7 @@ from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import orbits_along
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of_points
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
 
@@ -129,7 +129,7 @@ def test_a_branch_may_end_where_the_contact_fills_the_cycle():
     contact = SpringDamper(omega, zeta)
     fill = (2 * np.pi * n - 0.1) * omega
     point = branch_point(fill * np.sqrt(1 - zeta**2) - np.pi, contact, n)
-    orbit = orbits_of(point, contact, n)
+    orbit = orbits_of_points(point, contact, n)
     system = PaperUnknowns.of(orbit)
     start = system.point(orbit)
     events = events_of(system)

@@ -14,7 +14,7 @@ from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_branch import (
     branch_point,
     nearest_excess,
-    orbits_of,
+    orbits_of_points,
 )
 
 EPS = np.finfo(float).eps
@@ -45,7 +45,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
     # end (where the three equations become dependent).
     excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
     point = branch_point(excess, contact, n)
-    orbit = orbits_of(point, contact, n)
+    orbit = orbits_of_points(point, contact, n)
     # A 3 × 3 solve: its condition costs about two digits.
     assert np.all(np.abs(scaled_residual(orbit, point, contact)) < 1e-13)
 
@@ -117,7 +117,7 @@ def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
     assert point.determinant == pytest.approx(decay**2, rel=2 * zeta * omega * flight[0] * 1.1)
     # At ϖ = 100 a flight of 1e-3 rises by 1e-11, well above the rounding of heights.
     excess = (2 * np.pi - 1e-3) * contact.damped_frequency - contact.free_angle
-    orbit = orbits_of(branch_point(excess, contact, 1), contact, 1)
+    orbit = orbits_of_points(branch_point(excess, contact, 1), contact, 1)
     assert bool(orbit.is_stable()) and bool(orbit.is_admissible())
 
 
@@ -129,7 +129,7 @@ def test_a_contact_of_several_periods_opens_in_each_of_them(omega, zeta):
     for n in (1, 2, 3):
         duration = 2 * np.pi * n - 0.05
         excess = float(duration * contact.damped_frequency - contact.free_angle)
-        orbit = orbits_of(branch_point(excess, contact, n), contact, n)
+        orbit = orbits_of_points(branch_point(excess, contact, n), contact, n)
         assert orbit.defect() < 1e-10
         assert bool(orbit.is_admissible()) == (n == 1)
         touches = 2 * np.pi * np.arange(1, n) - 0.05 / 2

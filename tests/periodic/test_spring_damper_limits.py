@@ -14,7 +14,7 @@ from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
     orbits_at,
     saddle_node,
 )
-from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of_points
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side, is_stable
 
 EPS = np.finfo(float).eps
@@ -64,7 +64,7 @@ def test_the_saddle_node_is_the_lowest_amplitude(drawn):
     assert np.all((around[0] > around[1]) & (around[3] > around[2]))
     # Λ vanishes at the fold of an elastic contact, and the phase is then
     # undefined; else a multiplier is one.
-    trace, det = stability(orbits_of(point, contact, n)[r < 0.999])
+    trace, det = stability(orbits_of_points(point, contact, n)[r < 0.999])
     assert np.all(np.abs(Bifurcation.SADDLE_NODE.test(trace, det)) <= 1e-10)
 
 

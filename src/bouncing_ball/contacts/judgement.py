@@ -97,7 +97,7 @@ class Basis(Enum):
     """There are no means, because some balls come to rest."""
 
 
-class Spread(NamedTuple):
+class SensitiveMean(NamedTuple):
     """The mean that small changes decide about, and the ends of its relative errors with them."""
 
     name: str
@@ -123,7 +123,7 @@ class MotionJudgement:
     basis : Basis
     least, most : float
         Bounds of the relative error that decides.
-    spread : Spread, optional
+    spread : SensitiveMean, optional
         The mean that small changes decide about.
     """
 
@@ -135,7 +135,7 @@ class MotionJudgement:
     basis: Basis = Basis.NOTHING
     least: float = 0.0
     most: float = 0.0
-    spread: Spread | None = None
+    spread: SensitiveMean | None = None
 
     @property
     def is_decided(self) -> bool:
@@ -207,7 +207,7 @@ _WIDER = 1.25
 
 def _by_change(
     errors: Mapping[str, Mean], changes: Mapping[str, Mapping[str, Mean]], tolerance: float
-) -> Spread | None:
+) -> SensitiveMean | None:
     """The first mean about whose error a change of a thousandth decides; None if there is none."""
     for name, error in errors.items():
         found = [error, *_with_changes(error, {k: of[name] for k, of in changes.items()})]
@@ -223,7 +223,7 @@ def _by_change(
             least > tolerance for least, _ in sizes
         )
         if apart or max(lows) > 0 > min(highs):
-            return Spread(name, min(lows), max(highs))
+            return SensitiveMean(name, min(lows), max(highs))
     return None
 
 

@@ -43,7 +43,7 @@ from bouncing_ball.long_run.followed import (
     REASONS,
     ROUNDING,
     Tracked,
-    joined,
+    concatenated,
     record,
     store,
     store_ends,
@@ -153,8 +153,8 @@ def _follow(
         entering = dynamics.take(lanes)
         first = entering.start(start[lanes], relative[lanes])
         new = Tracked.new(lanes, entering.amplitude, first)
-        impact = joined(impact, first) if alive else first
-        balls = joined(balls, new) if alive else new
+        impact = concatenated(impact, first) if alive else first
+        balls = concatenated(balls, new) if alive else new
         for leg in dynamics.take(balls.lane).legs(impact, differentiate=True):
             if path is not None:
                 record(path.reshape(3, impacts, -1), balls, leg.impact, dynamics.setting)

@@ -92,10 +92,10 @@ class Tracked(NamedTuple):
         )
 
 
-def joined(one: Any, other: Any) -> Any:
+def concatenated(one: Any, other: Any) -> Any:
     """Join the arrays of two groups of balls; a number applies to all balls and stays a number."""
     if isinstance(one, tuple):
-        parts = (joined(a, b) for a, b in zip(one, other, strict=True))
+        parts = (concatenated(a, b) for a, b in zip(one, other, strict=True))
         return getattr(one, "_make", tuple)(parts)
     return np.concatenate([one, other]) if isinstance(one, np.ndarray) and one.ndim else one
 

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.models.suspension import Suspension, responses
+from bouncing_ball.models.suspension import Suspension, free_responses
 from bouncing_ball.models.waveform import Waveform, turned
 from bouncing_ball.numerics.elementary import sine_and_versine
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
@@ -108,7 +108,7 @@ class LinearFlight(Motion):
 
     def _moved(self, time: np.ndarray) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
         """The derivatives of δ and of p from order 0 on, after a time of flight."""
-        at = responses(time, self.loss, self.stiffness)
+        at = free_responses(time, self.loss, self.stiffness)
         k = self.waveform.orders
         sine, versine = sine_and_versine(k * time[..., np.newaxis])
         cosine = 1 - versine
@@ -262,7 +262,7 @@ class LinearFlight(Motion):
         self, by: Any, end: Any, time: np.ndarray, velocity: np.ndarray, lag: np.ndarray | float
     ) -> Any:
         """The deviation at the event that ends the flight, of a deviation at its start."""
-        at = responses(time, self.loss, self.stiffness)
+        at = free_responses(time, self.loss, self.stiffness)
         k = self.waveform.orders
         sine, versine = sine_and_versine(k * time[..., np.newaxis])
         # The changes of W′ and W″ from the start to the end.

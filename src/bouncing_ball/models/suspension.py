@@ -206,7 +206,7 @@ def _text(allowed: Range) -> str:
     return "a finite number ≥ 0" if allowed is DRAG else str(allowed)
 
 
-def responses(time: np.ndarray, loss: Any, stiffness: Any) -> FreeResponses:
+def free_responses(time: np.ndarray, loss: Any, stiffness: Any) -> FreeResponses:
     """g, g′, G and H for an underdamped oscillator, or for drag with q = 0.
 
     H is needed for q > 0 only, and is that of a short time otherwise.
@@ -215,9 +215,9 @@ def responses(time: np.ndarray, loss: Any, stiffness: Any) -> FreeResponses:
     --------
     A free mass, and one with drag:
 
-    >>> [float(x) for x in responses(np.array(2.0), 0.0, 0.0)[:3]]
+    >>> [float(x) for x in free_responses(np.array(2.0), 0.0, 0.0)[:3]]
     [2.0, 1.0, 2.0]
-    >>> fall = responses(np.array(3.0), 2.0, 0.0)
+    >>> fall = free_responses(np.array(3.0), 2.0, 0.0)
     >>> bool(abs(fall.impulse - (1 - np.exp(-6)) / 2) < 1e-15)
     True
     """

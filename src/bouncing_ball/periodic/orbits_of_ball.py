@@ -95,14 +95,14 @@ release='displacement')
     if _is_grid(a_ball(ball), family, lam):
         # Imported here, because a single orbit needs no labels, and importing xarray takes longer
         # than computing the orbit.
-        from bouncing_ball.periodic.places import labelled
+        from bouncing_ball.periodic.places import dataset_of_places
 
         def found(one: Ball, n: Any, amplitude: Any) -> dict[str, Any]:
             model = one.at_orbit(n, amplitude, branch_side)
             return _observables(n_t.orbit(model, n, amplitude, branch_side))
 
         none = _observables(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan))
-        return labelled("orbit", ball, {"n": family, "amplitude": lam}, found, none)
+        return dataset_of_places("orbit", ball, {"n": family, "amplitude": lam}, found, none)
     model = ball.at_orbit(family, lam, branch_side)
     return n_t.require_orbit(model, family, lam, branch_side)
 
@@ -180,9 +180,9 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
     """
     family = checked("n", n, FAMILY)
     if _is_grid(a_ball(ball), family):
-        from bouncing_ball.periodic.places import labelled
+        from bouncing_ball.periodic.places import dataset_of_places
 
-        return labelled("limits", ball, {"n": family}, _both_limits)
+        return dataset_of_places("limits", ball, {"n": family}, _both_limits)
     model = ball.at_limits(family)
     fold = n_t.saddle_node(model, family)
     doubling = n_t.period_doubling(model, family)
@@ -220,9 +220,9 @@ def permanent_contact(ball: Ball) -> float | Result:
     """
     known = a_known_ball(ball)
     if _is_grid(known):
-        from bouncing_ball.periodic.places import labelled
+        from bouncing_ball.periodic.places import dataset_of_places
 
-        return labelled("permanent-contact", known, {}, _threshold)
+        return dataset_of_places("permanent-contact", known, {}, _threshold)
     return float(known.permanent_contact_threshold())
 
 

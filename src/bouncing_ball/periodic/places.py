@@ -20,7 +20,7 @@ from bouncing_ball.periodic.branches.observables import VARIABLES
 _MOST_RESULTS = 100_000
 
 
-def labelled(
+def dataset_of_places(
     made_by: str,
     ball: Ball,
     arguments: Mapping[str, Any],

@@ -8,7 +8,12 @@ import pytest
 from bouncing_ball.contacts.engines.drop_in_steps import drop_in_steps
 from bouncing_ball.contacts.engines.impacts import restitution_in_steps
 from bouncing_ball.contacts.engines.scheme import Scheme
-from bouncing_ball.contacts.engines.steps import HuntCrossleyStep, LinearStep, followed, patience
+from bouncing_ball.contacts.engines.steps import (
+    HuntCrossleyStep,
+    LinearStep,
+    patience,
+    until_outside,
+)
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -22,7 +27,7 @@ def test_powers_are_the_steps_one_by_one(scheme, release, zeta):
     found = restitution_in_steps(scheme, zeta, release, 300, fraction)
     h = float(SpringDamper(1.0, zeta, release).free_duration) / 300
     step = LinearStep.of(scheme, 1.0, 2 * zeta, release, h)
-    x, v = followed(step, -h * fraction, np.full(40, -1.0), patience(300))
+    x, v = until_outside(step, -h * fraction, np.full(40, -1.0), patience(300))
     # Rounding errors of 300 steps.
     assert np.all(x >= 0) and found == pytest.approx(v, rel=300 * 1e-15)
 

@@ -36,7 +36,7 @@ from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifu
 from bouncing_ball.periodic.one_impact.spring_damper_branch import (
     BranchPoint,
     branch_point,
-    orbits_of,
+    orbits_of_points,
 )
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import is_stable
@@ -151,7 +151,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Stride]:
         point = branch_point(excess, contact, nodes.n)
         at = along
         past = excess * ratio
-        orbit = orbits_of(point, contact, nodes.n)
+        orbit = orbits_of_points(point, contact, nodes.n)
         stable = is_stable(point.trace, point.determinant)
         sought = ~(np.abs(point.amplitude / nodes.amplitude - 1) <= REACHED)
         if np.any(sought):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.contacts.engines.steps import Step, followed, patience
+from bouncing_ball.contacts.engines.steps import Step, patience, until_outside
 
 # Heights of the drop within the last step of the fall.
 _SAMPLES = 257
@@ -49,7 +49,7 @@ def drop_in_steps(step: Step, speed: float, gravity: float, contact_time: float)
     x = drop - g * h * h * n * (n + 1) / 2
     # A ball at exactly the level of the wall is not yet in contact.
     x = np.where(x == 0, -np.finfo(float).tiny, x)
-    x, v = followed(step, x, -g * h * n, patience(contact_time / h), g)
+    x, v = until_outside(step, x, -g * h * n, patience(contact_time / h), g)
     steps = np.floor(np.maximum(v, 0.0) / (g * h))
     top = np.where(x < 0, 0.0, x + steps * h * v - g * h * h * steps * (steps + 1) / 2)
     # Relative to the drop of each ball, of which one is the drop asked for.

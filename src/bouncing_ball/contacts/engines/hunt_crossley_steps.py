@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines.given_step import AtStep, Spread, spread
 from bouncing_ball.contacts.engines.impacts import FEWEST
-from bouncing_ball.contacts.engines.steps import HuntCrossleyStep, followed, patience
+from bouncing_ball.contacts.engines.steps import HuntCrossleyStep, patience, until_outside
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 
@@ -42,7 +42,7 @@ def spread_of_damping(damping: float, step: float, most: int) -> Spread:
     of_contact = HuntCrossleyStep(1.0, damping, step)
 
     def impacts(fraction: np.ndarray) -> np.ndarray:
-        x, v = followed(of_contact, -step * fraction, np.full(fraction.shape, -1.0), most)
+        x, v = until_outside(of_contact, -step * fraction, np.full(fraction.shape, -1.0), most)
         return np.where(x < 0, 0.0, v)
 
     return spread(impacts, _SMOOTH)

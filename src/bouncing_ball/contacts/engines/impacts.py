@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.engines.scheme import Scheme
-from bouncing_ball.contacts.engines.steps import LinearStep, followed, patience
+from bouncing_ball.contacts.engines.steps import LinearStep, patience, until_outside
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -107,7 +107,7 @@ def impacts_in_steps(
     state = np.stack([-step * start, -np.ones_like(start)])
     if duration / step < FEWEST:
         place, velocity = state
-        x, v = followed(linear, place, velocity, patience(duration / step))
+        x, v = until_outside(linear, place, velocity, patience(duration / step))
     else:
         x, v = _by_powers(linear, state, 2 * round(duration / step))
     return np.where(x < 0, -1.0, v).reshape(np.shape(fraction))
@@ -119,7 +119,7 @@ _STAYS = np.array([[-1.0], [-1.0]])
 
 
 def _by_powers(step: LinearStep, state: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """What :func:`.steps.followed` returns for contacts of many steps, whose force acts without a
+    """What :func:`.steps.until_outside` returns for contacts of many steps, whose force acts without a
     break.
 
     Each step is then the same matrix, and the number of steps is found by its powers: the ranges of

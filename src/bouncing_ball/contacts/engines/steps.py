@@ -159,7 +159,7 @@ def patience(steps: float) -> int:
     return _FEW + int(_LONG * steps)
 
 
-def followed(
+def until_outside(
     step: Step, place: np.ndarray, velocity: np.ndarray, most: int, gravity: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """x and v of balls at the first step that begins outside of the contact, or after ``most``.
@@ -169,7 +169,7 @@ def followed(
     An elastic ball returns with the speed with which it came, and nearly at the same place:
 
     >>> step = LinearStep.of(Scheme.SEMI_IMPLICIT, 1.0, 0.0, Release.FORCE, 0.001)
-    >>> x, v = followed(step, np.array([-1e-9]), np.array([-1.0]), 5000)
+    >>> x, v = until_outside(step, np.array([-1e-9]), np.array([-1.0]), 5000)
     >>> bool(0 <= x[0] < 0.001), round(float(v[0]), 5)
     (True, 1.0)
     """

@@ -88,7 +88,7 @@ def contacts(
     return ContactEnds(*(x.reshape((*shape, *x.shape[1:])) for x in found))
 
 
-def integrals(
+def integrals_of_force(
     law: ForceLaw,
     duration: ArrayLike,
     depth: ArrayLike,
@@ -106,7 +106,7 @@ def integrals(
 
     >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> law = SpringDamper(np.pi, 0.0)
-    >>> sunk, moved = integrals(law, 1.0, 0.0, 1000.0 * np.pi, 0.0, 0.0)
+    >>> sunk, moved = integrals_of_force(law, 1.0, 0.0, 1000.0 * np.pi, 0.0, 0.0)
     >>> round(float(sunk) / 1000, 3), float(moved)
     (0.637, 0.0)
     """

@@ -23,7 +23,7 @@ from bouncing_ball.models.damping import (
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.collocation import integrals, states
+from bouncing_ball.models.laws.collocation import integrals_of_force, states
 from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
@@ -86,7 +86,7 @@ class ContactLaw(ForceLaw):
         end of the contacts, shape (2, ...).
         """
         w_rate, w = table(phase, amplitude)
-        sunk, moved = integrals(self, duration, -gap[0], -rate[0], phase[0], amplitude)
+        sunk, moved = integrals_of_force(self, duration, -gap[0], -rate[0], phase[0], amplitude)
         return w_rate[0] - w_rate[1] - sunk, (w[1] * w[1] - w[0] * w[0]) / 2 - moved
 
     def signature(self, speed: ArrayLike) -> Instant:

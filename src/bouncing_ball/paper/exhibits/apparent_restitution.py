@@ -15,8 +15,8 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
+    require_amplitude,
     require_any_orbit,
-    require_orbit,
 )
 from bouncing_ball.periodic.branches.observables import OBSERVED, columns
 from bouncing_ball.periodic.one_impact import n_t
@@ -43,7 +43,7 @@ class Case(Parameters):
 
 def _has_orbit(case: Case, info: ValidationInfo) -> Case:
     if "n" in info.data:
-        require_orbit(case.amplitude, info.data["n"], case.restitution)
+        require_amplitude(case.amplitude, info.data["n"], case.restitution)
     return case
 
 

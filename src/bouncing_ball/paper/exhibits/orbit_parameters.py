@@ -40,7 +40,7 @@ _LARGEST = 1e6
 _ON_BRANCH = np.linspace(0.1, 1.0, 10)
 
 
-def require_orbit(amplitude: float, n: int, restitution: float) -> float:
+def require_amplitude(amplitude: float, n: int, restitution: float) -> float:
     """The amplitude Λ itself, if the restitution model has its n-T orbit there (Eq. 7).
 
     Raises
@@ -52,7 +52,7 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
 
     Examples
     --------
-    >>> require_orbit(1.0, 1, 0.85)
+    >>> require_amplitude(1.0, 1, 0.85)
     1.0
     """
     lowest = float(saddle_node(n, restitution))
@@ -197,7 +197,7 @@ def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
         # If n or r is missing or wrong, that mistake is reported instead.
         if {"n", "restitution"} <= info.data.keys():
             n = families(np.atleast_1d(info.data["n"]))
-            require_orbit(amplitude, n, info.data["restitution"])
+            require_amplitude(amplitude, n, info.data["restitution"])
         return amplitude
 
     return AfterValidator(check)

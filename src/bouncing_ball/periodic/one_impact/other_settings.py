@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.suspension import responses
+from bouncing_ball.models.suspension import free_responses
 from bouncing_ball.models.waveform import Waveform, turned
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -119,7 +119,7 @@ class _Family(NamedTuple):
         """The equation of the n-T orbits of a single model."""
         setting: Any = model.setting
         on = setting.suspension
-        at = responses(np.asarray(2 * np.pi * n), on.loss, on.stiffness)
+        at = free_responses(np.asarray(2 * np.pi * n), on.loss, on.stiffness)
         rise = float(at.step / at.impulse)
         fall = float(at.impulse) - rise * float(at.impulse_rate)
         r = float(model.restitution)

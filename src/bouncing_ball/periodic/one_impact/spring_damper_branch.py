@@ -306,7 +306,7 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     )
 
 
-def orbits_of(point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Orbit:
+def orbits_of_points(point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Orbit:
     """The orbits at points of the branch."""
     return Orbit.of(
         SpringDamperModel(contact),
@@ -347,7 +347,7 @@ def orbits_on_branch(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> 
     >>> float(orbits_on_branch(0.0, SpringDamper(5.0, 0.0), 1).determinant())
     1.0
     """
-    return orbits_of(branch_point(excess, contact, n), contact, n)
+    return orbits_of_points(branch_point(excess, contact, n), contact, n)
 
 
 # Number of Gauss-Newton steps. The start is exact up to the rounding of D, so that few suffice.

@@ -44,6 +44,18 @@ def lift_off_velocity(amplitude: np.ndarray) -> np.ndarray:
     return np.sqrt((amplitude - 1) * (amplitude + 1))
 
 
+def lift_off_phase(amplitude: np.ndarray) -> np.ndarray:
+    """The phase arcsin(1/Λ) at which Λ sin τ rises through 1 and balls at rest leave the table of
+    the paper (Eq. 9), for Λ ≥ 1.
+
+    Examples
+    --------
+    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
+    True
+    """
+    return arctangent(1.0, lift_off_velocity(amplitude))
+
+
 class Setting(Batch):
     """The setting of the paper: a table Λ sin τ, and free flight."""
 
@@ -120,8 +132,7 @@ class Setting(Batch):
         """The next lift-offs of balls that rest on the table from a phase on: where Λ sin τ rises
         through 1.
         """
-        velocity = lift_off_velocity(np.maximum(amplitude, 1.0))
-        lift = arctangent(1.0, velocity)
+        lift = lift_off_phase(np.maximum(amplitude, 1.0))
         wait = np.mod(reduce_angle(lift - phase), _TURN)
         # Rounding must not postpone a lift-off at the present phase by a full turn.
         wait = np.where(wait > _TURN - 1e-9, 0.0, wait)
@@ -136,7 +147,7 @@ class Setting(Batch):
     def lifts_at(self, phase: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         """Whether balls at rest are at a lift-off."""
         lam = np.asarray(amplitude, dtype=float)
-        lift = arctangent(1.0, lift_off_velocity(np.maximum(lam, 1.0)))
+        lift = lift_off_phase(np.maximum(lam, 1.0))
         return phase == np.where(lam > 1, lift, np.nan)
 
     def contraction(self, time: np.ndarray) -> Any:

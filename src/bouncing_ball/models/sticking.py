@@ -6,26 +6,11 @@ leaves at once. For Λ ≤ Λ_CR = 1 it never leaves: this is permanent contact 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bouncing_ball.models.dynamics import Departure
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.setting import PAPER, Setting, lift_off_velocity
+from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import arctangent
-
-
-def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
-    """Phase arcsin(1/Λ) at which a ball at rest leaves the table; NaN for Λ ≤ 1.
-
-    Examples
-    --------
-    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
-    True
-    """
-    lam = np.asarray(amplitude, dtype=float)
-    cosine = lift_off_velocity(np.maximum(lam, 1.0))
-    return np.where(lam > 1, arctangent(1.0, cosine), np.nan)
 
 
 def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:

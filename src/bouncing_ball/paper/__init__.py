@@ -13,7 +13,7 @@ Eqs.    what                      where
 6       phase of the n-T orbit    ``periodic.one_impact.restitution_branch.phase``
 7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
 8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
-9       rest on the table         ``models.sticking.lift_off_phase``
+9       rest on the table         ``models.setting.Setting.lift_off``
 ..      its largest Λ, Λ_CR       ``models.permanent_contact.RESTITUTION_THRESHOLD``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``

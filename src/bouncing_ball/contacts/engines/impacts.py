@@ -119,8 +119,8 @@ _STAYS = np.array([[-1.0], [-1.0]])
 
 
 def _by_powers(step: LinearStep, state: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """What :func:`.steps.until_outside` returns for contacts of many steps, whose force acts without a
-    break.
+    """What :func:`.steps.until_outside` returns for contacts of many steps, whose force acts
+    without a break.
 
     Each step is then the same matrix, and the number of steps is found by its powers: the ranges of
     r take thousands of instants, and contacts up to 10⁸ steps.

@@ -21,9 +21,9 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest_defect
@@ -169,8 +169,9 @@ def _restitution_orbits(rng, r) -> Checks:
 
 def _rest_on_the_table() -> Checks:
     """A ball at rest on two tables, with Λ slightly below and above the threshold of Eq. 9."""
-    below, above = np.isnan(lift_off_phase(1 + np.array([-1, 1]) * ROUNDING))
-    stays = bool(below) and not above
+    lam = 1 + np.array([-1, 1]) * ROUNDING
+    below, above = RestitutionModel(0.5).simulate(lam, 0.0, lam, 1).status
+    stays = below == Status.PERMANENT_CONTACT and above == Status.BOUNCING
     return {"Eq. 9": check("lift-off of a ball at rest", float(not stays))}
 
 

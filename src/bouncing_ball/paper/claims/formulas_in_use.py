@@ -21,7 +21,6 @@ from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as rigid
@@ -113,7 +112,8 @@ def _impacts(rng, r) -> Rows:
 
     # At lift-off the table's downward acceleration, Λ sin φ, is that of gravity.
     above = 1 + lam
-    lift = above * np.sin(lift_off_phase(above)) - 1
+    at_rest = RestitutionModel(r).simulate(above, 0.0, above, 1)
+    lift = above * np.sin(at_rest.release_phase[0]) - 1
     return {
         "Eq. 2": _used(
             "models.restitution.RestitutionDynamics.depart",
@@ -122,7 +122,7 @@ def _impacts(rng, r) -> Rows:
         "Eq. 4": _used("models.flight.Flight", defects=(flight,)),
         "Eq. 5": _used("models.restitution.RestitutionDynamics", defects=(landing, bounced)),
         "Eq. 9": _used(
-            "models.sticking.lift_off_phase",
+            "models.setting.Setting.lift_off",
             "models.permanent_contact.RESTITUTION_THRESHOLD",
             defects=(lift, threshold.RESTITUTION_THRESHOLD - 1),
         ),

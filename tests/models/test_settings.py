@@ -18,7 +18,7 @@ from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import OtherSetting
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.models.suspension import responses
+from bouncing_ball.models.suspension import free_responses
 from bouncing_ball.models.waveform import SINE
 
 TWO = ([1.0, 0.3], [0.0, 0.2])
@@ -109,10 +109,10 @@ def test_responses_join_where_the_series_ends():
     for loss, stiffness in ((0.7, 0.0), (0.1, 1.0), (0.9, 0.25), (0.0, 4.0)):
         scale = max(np.sqrt(stiffness), loss)
         time = 0.5 / scale * (1 + np.array([-1e-9, 1e-9]))
-        for values in responses(time, loss, stiffness)[:3]:
+        for values in free_responses(time, loss, stiffness)[:3]:
             assert abs(values[1] - values[0]) < 1e-8 * abs(values[0]) + 1e-8
         fine = np.linspace(0.0, 3.0 / scale, 2001)
-        g, g_rate, step, _ = responses(fine, loss, stiffness)
+        g, g_rate, step, _ = free_responses(fine, loss, stiffness)
         # The equation g″ + l g′ + q g = 0, once integrated.
         assert np.abs(g_rate + loss * g + stiffness * step - 1).max() < 1e-14
         assert np.abs(np.gradient(step, fine)[1:-1] - g[1:-1]).max() < 1e-5 / scale

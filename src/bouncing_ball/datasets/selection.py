@@ -33,6 +33,25 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
     return int(same.argmax())
 
 
+def split_by_prefix(data: xr.Dataset, prefix: str) -> tuple[xr.Dataset, xr.Dataset]:
+    """The variables of a dataset whose names do not begin so, and the others, named without it.
+
+    Dimensions of the others that begin so are named without it as well.
+
+    Examples
+    --------
+    >>> data = xr.Dataset({"phase": ("point", [0.0]), "long_phase": ("long_point", [1.0])})
+    >>> first, second = split_by_prefix(data, "long_")
+    >>> list(first), list(second), second.phase.dims, float(second.phase[0])
+    (['phase'], ['phase'], ('point',), 1.0)
+    """
+    named = [str(name) for name in data.variables if str(name).startswith(prefix)]
+    others = data[named]
+    begin = {str(name) for name in (*others.variables, *others.dims)}
+    shorter = {name: name.removeprefix(prefix) for name in begin if name.startswith(prefix)}
+    return data.drop_vars(named), others.rename(shorter)
+
+
 def each(data: xr.Dataset, *dims: str) -> Iterator[xr.Dataset]:
     """The dataset at each place along some dimensions, the last one running fastest.
 

@@ -32,9 +32,7 @@ _OF_RIGID = {
     PERIOD_DOUBLING: "period_doubling",
     GRAZING_FLIGHT: "grazing",
 }
-# The beginning of the names of the variables of a second branch, from permanent contact.
-_LONG = "long_"
-_ALONG = ("point", "special", f"{_LONG}point", f"{_LONG}special", "multiplier", "end")
+_ALONG = ("point", "special", "multiplier", "end")
 # Width in characters of a reason below the title.
 _LINE = 110
 # Relative distance below which the end of a branch is at the largest Λ of the panel.
@@ -149,40 +147,36 @@ def phase_panels(touching: bool) -> tuple[Figure, list[Axes]]:
     return figure, [*panels]
 
 
-def over_amplitude(data: xr.Dataset) -> Figure:
-    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
+def over_amplitude(data: xr.Dataset, second: xr.Dataset | None = None) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ.
+
+    ``second`` has further branches of the same balls, in the same colours. What is inadmissible of
+    them is enlarged in a corner.
+    """
     rows, names = in_a_row(data, *_ALONG)
+    further = None if second is None else in_a_row(second, *_ALONG)[0]
     figure, panels = phase_panels(bool((rows.contact_duration > 0).any()))
     panels[0].set_xlim(0.0, data.attrs.get("amplitude_max", data.amplitude.max()))
     # Both phases of a curve have its colour.
-    for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
+    for row, ((curve, colour), name) in enumerate(zip(coloured(rows, CASE), names, strict=True)):
         if name and curve.amplitude.notnull().any():
             name_curve(panels[0], name, colour)
         draw_both_phases(panels, placed(curve), colour)
-        if f"{_LONG}amplitude" in curve:
-            long = placed(_long_branch(curve))
-            draw_both_phases(panels, long, colour)
-            # With the points next to it, because it may be a single one.
-            near = (~long.admissible).rolling(point=3, center=True, min_periods=1).max()
-            hidden = long.amplitude.where(near > 0)
-            if hidden.notnull().any():
-                _enlarge(panels[0], long, hidden, colour)
+        if further is not None:
+            _draw_second(panels, placed(further.isel({CASE: row})), colour)
     legend_below(figure)
     head(figure, title(data), rows)
     return figure
 
 
-def _long_branch(curve: xr.Dataset) -> xr.Dataset:
-    """The second branch of a contact, from permanent contact, in place of the first.
-
-    The end of its contact is shown in the turn of the table in which the others are.
-    """
-    beginning = len(_LONG)
-    names = [str(name) for name in curve.variables if str(name).startswith(_LONG)]
-    long = curve[names].rename({name: name[beginning:] for name in names})
-    turns = 2 * np.pi * np.round((long.release_phase.mean() - np.pi / 2) / (2 * np.pi))
-    shifted = ("phase", "release_phase", "special_phase")
-    return long.assign({name: long[name] - turns for name in shifted})
+def _draw_second(panels: Sequence[Axes], curve: xr.Dataset, colour: str) -> None:
+    """A further branch of a ball, of which the inadmissible part is enlarged."""
+    draw_both_phases(panels, curve, colour)
+    # With the points next to it, because it may be a single one.
+    near = (~curve.admissible).rolling(point=3, center=True, min_periods=1).max()
+    hidden = curve.amplitude.where(near > 0)
+    if hidden.notnull().any():
+        _enlarge(panels[0], curve, hidden, colour)
 
 
 def _enlarge(axes: Axes, curve: xr.Dataset, amplitude: xr.DataArray, colour: str) -> None:

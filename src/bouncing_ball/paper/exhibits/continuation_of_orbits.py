@@ -5,6 +5,7 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets import LONG
 from bouncing_ball.datasets.parameters import (
     Family,
     FrequencyRatio,
@@ -60,9 +61,6 @@ VARIABLES = {
 # The variables of branches are declared beside the function that writes them.
 _VARIABLES = VARIABLES | observables.VARIABLES
 _COMMON = ("point", "amplitude", "stable", "admissible", *observables.OBSERVED)
-LONG = "long_"
-"""The beginning of the names of the variables of a second branch, which begins where permanent
-contact ends."""
 VARIABLES |= {
     f"{LONG}{name}": known._replace(long_name=f"{known.long_name}, branch from permanent contact")
     for name, known in (SHARED | observables.VARIABLES).items()
@@ -157,7 +155,7 @@ def _branches(parameters: Domains, release: Release, continuation: Continuation)
     data = describe(data, variables=_VARIABLES)
     if not any(isinstance(other, Followed) for other in others):
         return data
-    long = _labelled(others, parameters)
+    long = _in_turn_of_others(_labelled(others, parameters))
     names = [*long.data_vars, "point", "special"]
     long = long.rename({name: f"{LONG}{name}" for name in names})
     return data.merge(describe(long, variables=_VARIABLES | VARIABLES))
@@ -167,6 +165,16 @@ def _labelled(branches: list[Followed | NoBranch], parameters: Domains) -> xr.Da
     """The branches of all contacts as one dataset."""
     pairs = zip(parameters.frequency_ratio, branches, strict=True)
     return joined([_branch(*pair, parameters) for pair in pairs], "frequency_ratio")
+
+
+def _in_turn_of_others(long: xr.Dataset) -> xr.Dataset:
+    """Second branches with phases at the end of contact near π/2, as on the first branches.
+
+    The phases of a branch are continuous, and known up to a turn of the table.
+    """
+    turns = 2 * np.pi * np.round((long.release_phase.mean("point") - np.pi / 2) / (2 * np.pi))
+    phases = ("phase", "release_phase", "special_phase")
+    return long.assign({name: long[name] - turns for name in phases})
 
 
 def _followed(

@@ -3,7 +3,8 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
+from bouncing_ball.datasets import LONG
+from bouncing_ball.datasets.selection import each, split_by_prefix
 from bouncing_ball.drawing.branches import (
     draw_both_phases,
     draw_rigid_branch,
@@ -20,8 +21,9 @@ from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, text, tex
 
 
 def domains(data: xr.Dataset) -> Figure:
-    """Figs. 8 and 9: the spring-damper model's branch for each ϖ; a panel for each phase."""
-    return over_amplitude(data)
+    """Figs. 8 and 9: the spring-damper model's branches for each ϖ; a panel for each phase."""
+    first, second = split_by_prefix(data, LONG)
+    return over_amplitude(first, second if "amplitude" in second else None)
 
 
 def both_domains(data: xr.Dataset) -> Figure:

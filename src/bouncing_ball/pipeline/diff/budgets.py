@@ -14,6 +14,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from bouncing_ball.datasets import LONG
+
 
 class Budget(NamedTuple):
     """The largest change allowed of a variable, relative to a scale: "1", or another variable.
@@ -78,7 +80,7 @@ def _branches(coordinate: float, multiplier: float) -> dict[str, Budget]:
     first = {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
     # A second branch, with names of its own; it is one of the spring-damper model alone.
     second = {
-        f"long_{name}": budget._replace(over=f"long_{budget.over}")
+        f"{LONG}{name}": budget._replace(over=f"{LONG}{budget.over}")
         for name, budget in first.items()
         if not name.startswith("restitution")
     }

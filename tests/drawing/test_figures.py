@@ -338,7 +338,7 @@ def test_basins_are_drawn_where_they_are(record):
 @pytest.mark.parametrize("kind", ["no opening", "the other release"])
 def test_a_cascade_without_openings_says_so(record, kind, tmp_path):
     data = record["ext_flights"]
-    gone = {"opening_amplitude": data.opening_amplitude * np.nan}
+    gone = {"opening_excess": data.opening_excess * np.nan}
     if kind == "the other release":
         gone["stiff_opening"] = data.stiff_opening * np.nan
     figure = drawn("ext_flights", data.assign(gone))

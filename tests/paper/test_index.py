@@ -24,8 +24,15 @@ def test_the_index_of_equations_has_each_equation_once():
 
 
 @pytest.mark.parametrize("place", [place for _, place in ROWS])
-def test_each_place_of_the_index_of_equations_exists(place):
-    assert resolve_name(f"bouncing_ball.{place}").__doc__
+def test_what_each_place_of_the_index_of_equations_names_is_written_there(place):
+    """In the module or class itself: not imported from elsewhere, nor inherited."""
+    owner, _, name = f"bouncing_ball.{place}".rpartition(".")
+    there = resolve_name(owner)
+    found = vars(there)[name]
+    assert found.__doc__
+    # A function or a class knows its module; a number does not.
+    module = there.__module__ if isinstance(there, type) else there.__name__
+    assert getattr(found, "__module__", module) == module
 
 
 def test_each_module_of_the_index_of_figures_exists():

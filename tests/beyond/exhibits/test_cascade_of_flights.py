@@ -34,10 +34,16 @@ def test_each_row_of_openings_is_that_of_its_restitution_and_tends_to_its_limit(
     assert found.opening_amplitude.dims == ("flights", "frequency_ratio")
     # The openings are those of the first r: Λ_SD at ϖ = 1.2 by another program, and limits of E.
     assert float(found.threshold_amplitude[0]) == pytest.approx(0.3175, abs=1e-4)
-    excess = 100.0**2 * (found.opening_amplitude - found.threshold_amplitude).isel(
-        frequency_ratio=-1
-    )
-    np.testing.assert_allclose(excess, found.stiff_opening.isel(restitution=0), rtol=0.02)
+    stiffest = found.isel(frequency_ratio=-1)
+    opened = stiffest.opening_amplitude
+    last = stiffest.opening_excess
+    held = float(stiffest.threshold_amplitude)
+    np.testing.assert_allclose(last, 100.0**2 * (opened - held), rtol=1e-13)
+    limits = found.stiff_opening.isel(restitution=0)
+    np.testing.assert_allclose(last, limits, rtol=0.02)
+    # The ratio of a limit to the one before, for the first r of the two.
+    growth = float(found.restitution[0]) ** 2 * limits[1] / limits[0]
+    assert float(found.stiff_opening_ratio[0, 0]) == pytest.approx(float(growth), rel=1e-13)
     # A compliant contact loses its stability first.
     assert np.isnan(found.opening_amplitude[..., 0]).all() and (found.opening_multiplier.max() < 1)
 

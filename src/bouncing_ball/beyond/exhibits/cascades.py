@@ -43,9 +43,14 @@ VARIABLES = {
     "opening_multiplier": Variable(
         "larger modulus of the multipliers at an opening", budget=1e-10, scale="1"
     ),
+    "opening_excess": Variable(
+        "ϖ² times the distance of an opening from Λ_SD", symbol="E_k", budget=1e-10
+    ),
     "stiff_opening": Variable(
         "ϖ² times the distance of an opening from Λ_SD, limit for ϖ → ∞", symbol="E_k"
     ),
+    "opening": Variable("opening that is compared with the next one", symbol="k"),
+    "stiff_opening_ratio": Variable("r² E_{k+1}/E_k of the limits for ϖ → ∞"),
     "leaving_ratio": Variable("frequency ratio of contacts on which a ball leaves", symbol="ϖ"),
     "leaving": Variable(
         "smallest ϖ²(Λ - Λ_SD) up to the second opening at which a ball is not known to end on an "
@@ -110,7 +115,9 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     (flights, ϖ) is the lowest Λ up to which the orbit has this number of flights, and
     ``opening_multiplier`` the larger modulus of its multipliers there; both are NaN where no stable
     orbit was found: see :func:`bouncing_ball.long_run.cascade_of_flights.openings`.
-    ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts.
+    ``opening_excess`` is E = ϖ²(Λ - Λ_SD) there, ``stiff_opening`` (restitution, flights) its limit
+    for stiff contacts, and ``stiff_opening_ratio`` (restitution, opening) r² times the ratio of the
+    limits of one opening and the one before.
     ``leaving`` (restitution, leaving_ratio) is the smallest E, of 40 equal steps up to the limit of
     the second opening, at which a ball that is set down behind the top of the table is not known to
     end on an orbit of one period, NaN if there is none. ``leaving_periods`` is the period of its
@@ -136,18 +143,22 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
         excess, periods = _leaving(every[:, some], stiff[:, 1])
     dims = ("flights", "frequency_ratio")
     threshold = SpringDamperModel(law).permanent_contact_threshold()
+    growth = np.square(restitution)[:, np.newaxis] * stiff[:, 1:] / stiff[:, :-1]
     return described(
         {
             "threshold_amplitude": ("frequency_ratio", threshold),
             "opening_amplitude": (dims, amplitude),
             "opening_multiplier": (dims, multiplier),
+            "opening_excess": (dims, ratio**2 * (amplitude - threshold)),
             "stiff_opening": (("restitution", "flights"), stiff),
+            "stiff_opening_ratio": (("restitution", "opening"), growth),
             "leaving": (("restitution", "leaving_ratio"), excess),
             "leaving_periods": (("restitution", "leaving_ratio"), periods),
         },
         coords={
             "restitution": restitution,
             "flights": np.arange(1, most + 1),
+            "opening": np.arange(1, most),
             "frequency_ratio": ratio,
             "leaving_ratio": ratio[some],
         },

@@ -26,34 +26,31 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
     shown = data.isel(restitution=0)
     ratio = data.frequency_ratio.values
-    excess = ratio**2 * (shown.opening_amplitude - shown.threshold_amplitude)
-    for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
+    for one, colour in zip(each(shown, "flights"), COLOURS, strict=False):
         k = int(one.flights)
         name = rf"from {k} to {k + 1}, $E_{k}$"
         # Dots, because the openings of compliant contacts undulate and jump.
         look: Look = {"color": colour, "marker": _MARKS[k % len(_MARKS)], "markersize": 1.8}
-        left.plot(ratio, line, label=name, linestyle="none", **look)
+        left.plot(ratio, one.opening_excess, label=name, linestyle="none", **look)
         # Beside the axes, where no dots hide them.
         limit: Look = {"marker": "<", "markersize": 4, "color": colour, "clip_on": False}
         left.plot(1.02, one.stiff_opening, transform=left.get_yaxis_transform(), **limit)
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
     title = rf"flights in a period, $r={number_label(float(shown.restitution))}$"
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
-    if np.any(np.isfinite(excess)):
+    if shown.opening_excess.notnull().any():
         left.legend(loc="upper left", markerscale=2)
     else:
         _say(left, "no opening was found here" if _is_sought(data) else _OTHER_RELEASE)
         left.set_xlim(ratio[0], ratio[-1])
     by_restitution = coloured(data.sortby("restitution"), "restitution")
     for (one, colour), mark in zip(by_restitution, cycle(_MARKS), strict=False):
-        r = float(one.restitution)
-        limits = one.stiff_opening.values
-        ratios = r**2 * limits[1:] / limits[:-1]
+        name = number_label(float(one.restitution))
         look = {"color": colour, "marker": mark, "markersize": 3.5, "linewidth": 0.9}
-        right.plot(data.flights[:-1], ratios, label=number_label(r), **look)
+        right.plot(one.opening, one.stiff_opening_ratio, label=name, **look)
     right.axhline(1, **GUIDE)
     right.set(xlabel="opening $k$", ylabel=r"$r^2 E_{k+1}/E_k$ for $\varpi\to\infty$")
-    right.set(xticks=data.flights.values[:-1], title="ratios of the limits; dotted: 1")
+    right.set(xticks=data.opening.values, title="ratios of the limits; dotted: 1")
     if _is_sought(data):
         right.legend(loc="upper right", title="$r$")
     else:

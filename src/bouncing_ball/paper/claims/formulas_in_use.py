@@ -240,11 +240,11 @@ def _contact_orbits(rng, samples) -> Rows:
         "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
         "Eqs. 14-15": _used("periodic.orbits.orbit.Orbit.flight_path", defects=(flown,)),
         "Eq. 17": _used(
-            "periodic.orbits.orbit.Orbit.apparent_restitution",
+            "periodic.orbits.impacts.Impacts.apparent_restitution",
             defects=(orbit.apparent_restitution - apparent,),
         ),
         "Eqs. 18-20": _used(
-            "periodic.orbits.orbit.Orbit.flight_time",
+            "periodic.orbits.impacts.Impacts.flight_time",
             defects=(orbit.flight_time - printed.flight_time(n, end),),
         ),
         "Eqs. 21-26": _used(
@@ -258,7 +258,7 @@ def _contact_orbits(rng, samples) -> Rows:
             ),
         ),
         "Eq. 27": _used(
-            "periodic.orbits.orbit.Orbit.bounce_velocity",
+            "periodic.orbits.impacts.Impacts.bounce_velocity",
             defects=(bounce - printed.bounce_velocity(impact, n, end),),
         ),
     }

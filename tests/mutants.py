@@ -1,12 +1,16 @@
 """Do the tests notice a wrong line?  ``make mutants``
 
 Single faults are put into modules as these are imported, one at a time. First ``make quick``
-runs without a fault, and each test is noted with the functions that it calls. For a fault the
-tests run that reach its function, the nearest first, and then all others of its folder. A fault
-is noticed if one of them fails, or if one hangs: this is said apart, and it is judged by processor
-time, so that other programs on the machine do not matter. What survives is listed: it changes
-nothing, for a reason that stands in ``equivalent_faults.yaml``, or a test is missing. Faults are
-decided one group after another, so that a run that was stopped has a share of those before.
+runs without a fault, and each test is noted with the functions that it calls. A fault meets the
+tests in three rounds: those beside it that reach its function, those elsewhere that reach it, and
+those beside it that do not, because a cache may hide that they do. All faults are tried in a round
+before the next one, which takes longer. A fault is noticed if one of the tests fails, or if one
+hangs: this is said apart, and it is judged by processor time, so that other programs on the machine
+do not matter. What survives is listed: it changes nothing, for a reason that stands in
+``equivalent_faults.yaml``, or a test is missing.
+
+A whole run takes hours. What is decided is kept in ``results/mutants``, and the same command goes
+on from there, as long as neither the package nor the tests change.
 
 usage: python tests/mutants.py [--count 200] [--seed 2011] [--workers 2] [--only PART ...]
 """
@@ -16,11 +20,13 @@ import ast
 import hashlib
 import importlib
 import os
+import pickle
 import signal
 import sys
 import time
 from collections import ChainMap, Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from enum import Enum, auto
 from importlib.machinery import SourceFileLoader
 from itertools import islice
 from multiprocessing.context import ForkContext, ForkProcess
@@ -53,8 +59,6 @@ LIBRARIES = ["matplotlib", "mpmath", "netCDF4", "pint", "pydantic", "scipy.optim
 LONGER = 20
 # A test that waits takes no processor time: it may last this many times as long, and a second more.
 WAITING = 600
-# Faults for each process whose near tests run before their other tests.
-GROUP = 5
 Functions = set[tuple[str, int]]
 # Another operator of the same kind: a sign, an exponent, a border, a condition.
 _EXCHANGED = [
@@ -79,11 +83,30 @@ _SMALL = 1e-3
 NOTICED, HANGS, EQUAL, SURVIVED = "noticed", "hangs", "equal", "SURVIVED"
 
 
+class Round(Enum):
+    """The tests that a fault meets, in order: their name is the end of a fault that survives them,
+    until the next round.
+    """
+
+    NEAR = auto()
+    ELSEWHERE = auto()
+    BESIDE = auto()
+
+    def follows(self, end: str) -> bool:
+        """Whether a fault with this end, "" for none, meets the tests of this round."""
+        earlier = ["", *(one.name for one in Round if one.value < self.value)]
+        return end in earlier
+
+
+WIDTH = max(map(len, Round.__members__))
+
+
 class Fault(NamedTuple):
-    """One fault: its function and its line, what it changes, and the source that has it."""
+    """One fault: its function and its place, what it changes, and the source that has it."""
 
     function: int
     line: int
+    column: int
     before: str
     after: str
     source: str
@@ -110,10 +133,16 @@ def faults(source: str) -> list[Fault]:
             start = min([node.lineno, *(each.lineno for each in node.decorator_list)])
             first |= dict.fromkeys(range(start, node.end_lineno + 1), start)
     return [
-        Fault(first.get(node.lineno, 0), node.lineno, *map(ast.unparse, (node, wrong)), with_it)
+        Fault(
+            function=first.get(node.lineno, 0),
+            line=node.lineno,
+            column=node.col_offset,
+            before=ast.unparse(node),
+            after=ast.unparse(wrong),
+            source=_with(source, node, wrong),
+        )
         for node in _computing(tree)
         for wrong in _wrong(node)
-        for with_it in [_with(source, node, wrong)]
     ]
 
 
@@ -192,6 +221,11 @@ def sample(count: int, seed: int, only: Sequence[str] = ("",)) -> list[tuple[Pat
                 every.append((order, name, fault))
     asked = (each for each in sorted(every) if any(part in str(each[1]) for part in only))
     return [(name, fault) for _, name, fault in islice(asked, count)]
+
+
+def told(path: Path, fault: Fault) -> str:
+    """The place of a fault and what it changes."""
+    return f"{path}:{fault.line}:{fault.column}: {fault.before}  →  {fault.after}"
 
 
 class Reach:
@@ -286,13 +320,37 @@ def reached(part: str) -> dict[str, tuple[float, Functions]] | None:
     return reach.tests if passes([part], reach) else None
 
 
-def chosen(
-    path: Path, fault: Fault, tests: dict[str, tuple[float, Functions]], near: bool
-) -> dict[str, float]:
-    """The seconds of the tests for a fault, in the order in which their files run.
+def digest(tree: Path) -> str:
+    """A checksum of the package and the tests, which decide about faults; this module does not."""
+    found = hashlib.sha256()
+    modules = [*(tree / PACKAGE).rglob("*.py"), *(tree / "tests").rglob("*.py")]
+    for path in sorted(modules):
+        if path != Path(__file__).resolve():
+            found.update(f"{path.relative_to(tree)}\n{path.read_text()}".encode())
+    return found.hexdigest()[:12]
 
-    Near it are those of its module and of the folders beside it that reach it. The others are
-    those elsewhere that reach it, and those beside it that do not: a cache may hide that they do.
+
+def traced(pool: Any, kept: Path) -> dict[str, tuple[float, Functions]]:
+    """The seconds of each test and the functions that it calls, from a file if it is there."""
+    if kept.is_file():
+        return pickle.loads(kept.read_bytes())
+    parts = sorted(parts_of(PACKAGE) + parts_of(Path("tests")))
+    found = dict(zip(parts, pool.map(reached, parts, chunksize=1), strict=True))
+    if failed := [part for part, tests in found.items() if tests is None]:
+        sys.exit(f"{failed} fail without any fault: see make quick")
+    tests = dict(ChainMap(*found.values()))
+    temporary = kept.with_suffix(".part")
+    temporary.write_bytes(pickle.dumps(tests))
+    temporary.replace(kept)
+    return tests
+
+
+def chosen(
+    path: Path, fault: Fault, tests: dict[str, tuple[float, Functions]], one: Round
+) -> dict[str, float]:
+    """The seconds of the tests that a fault meets in a round, in the order of their files.
+
+    Beside it are those of its module and of its folders.
     """
     folder = path.relative_to(PACKAGE).parent
     own = str(path), f"tests/{folder}/test_{path.stem}.py"
@@ -300,7 +358,12 @@ def chosen(
     folders = f"tests/{folder}/", "tests/contracts/"
     reaching = {name for name, (_, calls) in tests.items() if (str(path), fault.function) in calls}
     beside = {name for name in tests if name.startswith((*own, *folders))}
-    found = reaching & beside if near else reaching ^ beside
+    parts = {
+        Round.NEAR: reaching & beside,
+        Round.ELSEWHERE: reaching - beside,
+        Round.BESIDE: beside - reaching,
+    }
+    found = parts[one]
     spent: Counter[str] = Counter()
     for name in found:
         spent[name.split("::")[0]] += tests[name][0]
@@ -312,9 +375,14 @@ def chosen(
     return {name: tests[name][0] for name in sorted(found, key=order)}
 
 
-def state(work: tuple[Path, Fault, dict[str, float]]) -> str:
-    """Whether tests notice a fault, one of them hangs, or the fault survives them."""
+def state(work: tuple[Path, Fault, dict[str, float]]) -> tuple[Path, Fault, str]:
+    """A fault, and whether tests notice it, one of them hangs, or it survives them."""
     path, fault, seconds = work
+    return path, fault, end_of(path, fault, seconds)
+
+
+def end_of(path: Path, fault: Fault, seconds: dict[str, float]) -> str:
+    """Whether tests notice a fault, one of them hangs, or the fault survives them."""
     wrong = str(path.absolute())
     right = SourceFileLoader.get_code
 
@@ -378,27 +446,27 @@ def main() -> None:
     os.environ["OMP_NUM_THREADS"] = "1"
     for name in LIBRARIES:
         importlib.import_module(name)
-    parts = sorted(parts_of(PACKAGE) + parts_of(Path("tests")))
+    kept = ROOT / "results" / "mutants" / digest(ROOT)
+    kept.mkdir(parents=True, exist_ok=True)
     with Forks().Pool(options.workers, maxtasksperchild=1) as pool:
-        found = dict(zip(parts, pool.map(reached, parts, chunksize=1), strict=True))
-        if failed := [part for part, tests in found.items() if tests is None]:
-            sys.exit(f"{failed} fail without any fault: see make quick")
-        tests = dict(ChainMap(*found.values()))
-        count: Counter[str] = Counter()
-        for start in range(0, len(drawn), GROUP * options.workers):
-            tried = drawn[start : start + GROUP * options.workers]
-            for near in (True, False):
-                work = [(*each, chosen(*each, tests, near)) for each in tried]
-                tried = []
-                for (path, fault, _), end in zip(work, pool.imap(state, work), strict=True):
-                    change = f"{path}:{fault.line}: {fault.before}  →  {fault.after}"
-                    why = known.get((path, fault.line, fault.before, fault.after), "")
-                    if end == SURVIVED and near and not why:
-                        tried.append((path, fault))
-                        continue
-                    end = EQUAL if end == SURVIVED and why else end
-                    count[end] += 1
-                    print(f"{end:8}", change, f"({why})" if end == EQUAL else "", flush=True)
+        tests = traced(pool, kept / "reached.pickle")
+        log = kept / f"{options.seed}.txt"
+        decided = log.read_text().splitlines() if log.is_file() else []
+        ends = {line[WIDTH:].strip(): line[:WIDTH].strip() for line in decided}
+        for one in Round:
+            due = [each for each in drawn if one.follows(ends.get(told(*each), ""))]
+            work = [(*each, chosen(*each, tests, one)) for each in due]
+            for path, fault, end in pool.imap_unordered(state, work):
+                if end == SURVIVED and (path, fault.line, fault.before, fault.after) in known:
+                    end = EQUAL
+                elif end == SURVIVED and one is not Round.BESIDE:
+                    end = one.name
+                ends[told(path, fault)] = end
+                line = f"{end:{WIDTH}} {told(path, fault)}"
+                print(line, flush=True)
+                with log.open("a") as lines:
+                    lines.write(f"{line}\n")
+    count = Counter(ends[told(*each)] for each in drawn)
     print(
         f"{len(drawn)} faults: {count[EQUAL]} change nothing, {count[SURVIVED]} survived, "
         f"{count[HANGS]} hang"

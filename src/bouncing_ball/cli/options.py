@@ -247,9 +247,7 @@ def add_choice(
 
 def add_file(parser: argparse.ArgumentParser, name: str, text: str) -> None:
     """Add an option for a file that is written."""
-    parser.add_argument(
-        option(name), dest=name, type=_path, metavar="FILE", help=_help(text, None)
-    )
+    parser.add_argument(option(name), dest=name, type=_path, metavar="FILE", help=_help(text, None))
 
 
 def add_interval(parser: argparse.ArgumentParser, name: str, allowed: Range, text: str) -> None:

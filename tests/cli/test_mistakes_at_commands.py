@@ -84,6 +84,18 @@ curve --amplitude 1 --restitution 0.85 --to 1.3 --across damping-ratio
     --across damping-ratio needs --frequency-ratio of a contact, from which it starts
 curve --amplitude 1 --restitution 0.85 --to 1.3 DOUBLINGS --across restitution --low 0.9 --high 0.1
     --low 0.9 is not below --high 0.1
+fit ""
+    the name of the file is empty
+explain ""
+    argument FILE: the name is empty
+diff "" ""
+    argument RECORD: the name is empty
+diff . figures --html ""
+    argument --html: the name is empty
+design BALL --plot ""
+    argument --plot: the name is empty
+follow --amplitude 1 --restitution 0.85 --to 1.3 --plot ""
+    argument --plot: the name is empty
 fit croqet
     croqet is neither a file nor an experiment of the package: … did you mean croquet?
 fit croquet --frequency 50 Hz
@@ -156,6 +168,10 @@ def test_a_mistake_is_answered_by_one_line(refused, typed, says):
     [
         ("fit croquet --contact-time 5", "Contact time 5 was read as 5 s: write a unit"),
         ("fit croquet --mass 0.45 --diameter 92", "Diameter 92 was read as 92 m: write a unit"),
+        (
+            'fit croquet --mass 0.45 --diameter "92 m"',
+            "Diameter 92 m is unusually large: check its unit",
+        ),
         (
             "design --mass 1 --stiffness 1e6 --restitution 0.8 --gravity 981",
             "Note: gravity 981 was read as 981 m/s^2: write a unit",

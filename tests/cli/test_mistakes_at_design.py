@@ -195,6 +195,12 @@ BALL --speed 1000
     speed 1000 was read as 1000 m/s: write a unit, such as '1 m/s', if another one was meant
 --mass 20000 --stiffness 1e6 --restitution 0.8
     mass 20000 was read as 20000 kg: write a unit, such as '20 g', if another one was meant
+--mass "20 g" --radius "5 m" --stiffness 1e6 --restitution 0.8
+    radius 5 m is unusually large: check its unit, as in '5 mm'
+BALL --frequency "0.3 Hz" --table-amplitude "5 m" --n 1
+    table amplitude 5 m is unusually large: check its unit, as in '0.1 mm'
+--mass "20 g" --contact-time "1 ms" --drop-height "200 km" --rebound-height "100 km"
+    drop height 200 km is unusually large: check its unit, as in '1 m'
 BALL --frequency "50 Hz" --table-amplitude "100 mm" --n 1
     the table accelerates with Λ = 1006 times gravity, which no shaker reaches: check its frequency
 --mass "20 g" --stiffness 10 --restitution 0.8 --radius "5 mm"

@@ -41,8 +41,8 @@ def test_the_error_of_the_chosen_law_is_the_tolerance(law, tolerance):
 @pytest.mark.usefixtures("short_runs")
 def test_the_answer_names_the_duration_and_writes_the_law_for_an_engine(said):
     options = [f"--{name}={value}" for name, value in (BALL | TABLE).items()]
-    engine = ("--radius=5 mm", "--engine=lammps")
-    text = said("design", *options, "--law=tsuji", "--tolerance=5 %", *engine)
+    options += ["--law=tsuji", "--tolerance=5 %", "--radius=5 mm", "--engine=lammps"]
+    text = said("design", *options)
     assert "A simulation needs a tsuji contact whose free impact, at the speed of" in text
     assert re.search(r"wall/gran granular hertz \S+ 0\.8 &\n.* damping coeff_restitution ", text)
 

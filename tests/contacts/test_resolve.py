@@ -146,9 +146,9 @@ def test_r_is_that_of_the_damper_that_acts_on_approach_only():
     table = TableMotion(100.0, 1e-3, 9.81)
     found = resolve(asked, table)
     assert found.contact == resolve(measured, table).contact
-    k, c = found.stiffness, found.damping
     # Down to the greatest depth the energy falls by the work of the damper, then the spring alone.
-    omega, zeta = math.sqrt(k / 0.2), c / (2 * math.sqrt(k * 0.2))
+    omega = math.sqrt(found.stiffness / 0.2)
+    zeta = found.damping / (2 * math.sqrt(found.stiffness * 0.2))
     damped = omega * math.sqrt(1 - zeta**2)
     down = math.acos(zeta) / damped
     deepest = math.exp(-zeta * omega * down) * math.sin(damped * down) / damped

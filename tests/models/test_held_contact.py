@@ -113,9 +113,16 @@ def test_the_stiff_limit_is_the_rigid_ball(flight):
 def test_bounds_of_the_motion_in_contact(flight, lag):
     kind, _ = FLIGHTS[flight]
     rng = np.random.default_rng(1)
-    phase, rate = rng.uniform(-3, 3, 40), -rng.uniform(0.1, 5, 40)
     none = np.zeros(40)
-    span = ContactSpan(none, rate, phase, none + 1.2, none, none, none)
+    span = ContactSpan(
+        displacement=none,
+        phase=rng.uniform(-3, 3, 40),
+        velocity=-rng.uniform(0.1, 5, 40),
+        amplitude=none + 1.2,
+        duration=none,
+        release_displacement=none,
+        release_velocity=none,
+    )
     law = SpringDamper(7.0, 0.1)
     path = contact_path(law, setting_of(Waveform(*TWO), kind), span, 1.2)
     start = rng.uniform(0, 3, 40)
@@ -174,7 +181,8 @@ def test_a_stiff_contact_that_lies_on_the_table_ends_where_the_load_does(zeta):
     where = {"table": Waveform(*TWO)}
     ball = spring_damper(frequency_ratio=1e4, damping_ratio=zeta, **where)
     dead = rigid(restitution=0.5, **where)
-    lam, phase = 1.5, -2.0
+    lam = 1.5
+    phase = -2.0
     lift = dead.place.lift_off(np.array([phase]), np.array([lam])).wait[0]
     found = ball.simulate(lam, phase, lam * ball.place.waveform.velocity(phase), 1)
     assert found.status == Status.BOUNCING

@@ -123,6 +123,14 @@ def _number(text: str, kind: Any = float) -> float:
         return math.nan
 
 
+def _path(text: str) -> pathlib.Path:
+    """The path of a file or a folder."""
+    # An empty text would be the path of the current folder.
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty")
+    return pathlib.Path(text)
+
+
 def _assignment(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     number = _number(value)
@@ -239,9 +247,7 @@ def add_choice(
 
 def add_file(parser: argparse.ArgumentParser, name: str, text: str) -> None:
     """Add an option for a file that is written."""
-    parser.add_argument(
-        option(name), dest=name, type=pathlib.Path, metavar="FILE", help=_help(text, None)
-    )
+    parser.add_argument(option(name), dest=name, type=_path, metavar="FILE", help=_help(text, None))
 
 
 def add_interval(parser: argparse.ArgumentParser, name: str, allowed: Range, text: str) -> None:
@@ -344,6 +350,6 @@ def _reading(annotation: Any) -> dict[str, Any]:
         case collections.abc.Mapping:
             return {"type": _assignment, "action": _Assignments, "metavar": "NAME=NUMBER"}
         case pathlib.Path:
-            return {"type": pathlib.Path, "metavar": "FILE"}
+            return {"type": _path, "metavar": "FILE"}
     # A text, or a quantity with a unit, which the call converts.
     return {"metavar": "X"}

@@ -291,25 +291,36 @@ _MOST_BARE = {
     "gravity": 50.0,
     "diameter": 1.0,
 }
+# Lengths in meters that are beyond any ball, shaker or drop, also with the unit in the text.
+_LONGEST = {"radius": 1.0, "diameter": 2.0, "table_amplitude": 1.0, "drop_height": 1000.0}
 
 
 def doubts(given: Mapping[str, Any], kinds: Mapping[str, SIParameter]) -> tuple[str, ...]:
-    """Sentences on plain numbers that are unusually large in SI units.
+    """Sentences on plain numbers that are unusually large in SI units, and on lengths that are
+    unusually large with their unit.
 
     Examples
     --------
     >>> time = {"contact_time": SIParameter("s", "50 us")}
     >>> doubts({"contact_time": "7"}, time)[0][:47], doubts({"contact_time": "7 s"}, time)
     ('contact time 7 was read as 7 s: write a unit, s', ())
+    >>> doubts({"radius": "5 m"}, {"radius": SIParameter("m", "5 mm")})
+    ("radius 5 m is unusually large: check its unit, as in '5 mm'",)
     """
     found = []
     for name, most in _MOST_BARE.items():
         value = given.get(name)
-        if value is not None and name in kinds and _is_bare(value) and float(value) > most:
-            words = name.replace("_", " ")
-            unit = kinds[name].name
-            why = f"write a unit, such as {kinds[name].example!r}, if another one was meant"
-            found.append(f"{words} {value} was read as {float(value):g} {unit}: {why}")
+        if value is None or name not in kinds:
+            continue
+        words = name.replace("_", " ")
+        kind = kinds[name]
+        if not _is_bare(value):
+            if number_in_si(name, value, kind) > _LONGEST.get(name, math.inf):
+                why = f"check its unit, as in {kind.example!r}"
+                found.append(f"{words} {value} is unusually large: {why}")
+        elif float(value) > most:
+            why = f"write a unit, such as {kind.example!r}, if another one was meant"
+            found.append(f"{words} {value} was read as {float(value):g} {kind.name}: {why}")
     return tuple(found)
 
 

@@ -7,6 +7,10 @@ const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
 const SELECTS = ["engine", "given", "model", "pace", "view"];
+// What the answer in the shell has beyond that of the page, by its tab.
+const MORE_IN_SHELL = {
+  orbit: ", with every digit and certified", design: ", certified, and with --json with every digit", stage: "",
+};
 let current = DEFAULTS;
 for (const [id, names] of [["engines-from", ENGINES], ["engine", ENGINES]])
   $(id).append(...Object.keys(names).map(name => new Option(name)));
@@ -42,7 +46,7 @@ function show(hash) {
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   $("slice-views").hidden = !onStage;
-  $("command-name").textContent = `The same in the shell${onStage ? "" : ", with every digit and certified"}:`;
+  $("command-name").textContent = `The same in the shell${MORE_IN_SHELL[state.tab]}:`;
   for (const choice of document.querySelectorAll("input[name=release]"))
     choice.disabled = !releasesOf(state).includes(choice.value);
   for (const name of ["k", "r", ...TEXTS]) field(name).hidden = !givenBy(state.given).includes(name);

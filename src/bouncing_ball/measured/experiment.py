@@ -181,6 +181,8 @@ def read(file: str | Path, **options: Any) -> Experiment:
     ModelError
         If the file cannot be read or a line is not understood; the message names the line.
     """
+    if not str(file):
+        raise ModelError("the name of the file is empty")
     path = Path(file)
     intervals = options.pop("intervals", False)
     try:

@@ -76,9 +76,9 @@ def test_a_step_among_the_parameters_and_one_beside_them_are_one_question(said, 
     # On a table the speed is that of the orbit.
     shaken = answered(**ASKED, time_step="1 ms", frequency="20 Hz", acceleration="0.8 g", n=1)
     assert shaken.at_step.speed == shaken.found.judged.impact_speed
-    options = ("--from=drake", "--mass=0.5", "--time-step=1 ms", "--speed=1 m/s")
-    sets = [f"--set={name}={value}" for name, value in GIVEN.items()]
-    text = said("design", *options, *sets)
+    options = ["--from=drake", "--mass=0.5", "--time-step=1 ms", "--speed=1 m/s"]
+    options += [f"--set={name}={value}" for name, value in GIVEN.items()]
+    text = said("design", *options)
     assert "a free impact at 1 m/s has r = 0.4218 to 0.5201 in place of 0.7484" in text
     with refusal(ModelError, "check the units"):
         answered(**ASKED, time_step="100 s", speed="1 m/s")
@@ -94,7 +94,8 @@ def dropped(settings, drop):
     damping = settings.parameters["hunt_crossley_dissipation"]
     h = settings.time_step
     g = 9.80665
-    x, v = drop, 0.0
+    x = drop
+    v = 0.0
     was_in = False
     for _ in range(100_000):
         free = v - g * h

@@ -94,7 +94,8 @@ def _reason(judged: OrbitJudgement, frequency_ratio: float, tolerance: str, law:
         if needed.frequency_ratio is None:
             return text
         return (
-            f"{text}; of linear contacts those from ϖ = {needed.frequency_ratio:.4g} on are within "
+            f"{text}; of linear contacts with the displacement release, those from "
+            f"ϖ = {needed.frequency_ratio:.4g} on are within "
             f"{tolerance}, and that with its r and duration has ϖ = {frequency_ratio:.4g}"
         )
     if needed.frequency_ratio is None:

@@ -142,8 +142,8 @@ def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
     wanted = motion.balls * max(shares, default=2.0) ** 2
     if wanted > MOST_BALLS.high:
         return (
-            f"the sample of {motion.balls} balls is too small to decide, and so is any up to "
-            f"{MOST_BALLS.high}: the error is next to the tolerance"
+            f"the sample of {motion.balls} balls is too small to decide; as far as it tells, more "
+            f"than {MOST_BALLS.high} are needed, because the error is next to the tolerance"
         )
     digits = 10 ** max(len(f"{wanted:.0f}") - 2, 0)
     enough = math.ceil(wanted / digits) * digits

@@ -219,7 +219,7 @@ def test_one_harmonic_is_the_table_of_the_paper():
         (lambda **more: contact_law("tsuji", **more), {"stiffness": 500.0, "damping": 0.3}),
     ):
         paper = make(**numbers).simulate(1.4, phase, -4.0, 6)
-        other = make(**numbers, table=Waveform([1.0])).simulate(1.4, phase, -4.0, 6)
+        other = make(**numbers, table=Waveform([1.0, 1e-300])).simulate(1.4, phase, -4.0, 6)
         # Six impacts multiply a rounding error by less than 10³.
         assert np.abs(paper.time - other.time).max() < 1e-11
         assert np.array_equal(paper.status, other.status)

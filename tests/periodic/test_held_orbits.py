@@ -130,7 +130,8 @@ def test_orbits_of_one_harmonic_are_those_of_the_closed_form():
         numbers = {"frequency_ratio": ratio, "restitution": 0.7}
         for side in ("stable", "unstable"):
             paper = bouncing_ball.orbit(spring_damper(**numbers), amplitude=0.9, side=side)
-            ball = spring_damper(**numbers, table=Waveform([1.0]))
+            # A second harmonic below rounding is not computed in closed form.
+            ball = spring_damper(**numbers, table=Waveform([1.0, 1e-300]))
             other = bouncing_ball.orbit(ball, amplitude=0.9, side=side)
             assert paper.distance(other) < 1e-11
             assert abs(paper.max_height - other.max_height) < 1e-11

@@ -35,7 +35,7 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.makers import corrected, flattened
-from bouncing_ball.models.setting import PAPER, Setting, require_sine, setting_of
+from bouncing_ball.models.setting import PAPER, Setting, require_paper, setting_of
 from bouncing_ball.models.suspension import Suspension
 from bouncing_ball.models.waveform import Waveform
 from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
@@ -93,7 +93,7 @@ class FreeImpactBall(Ball):
         return self.setting
 
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
-        require_sine(self.setting, "the speed at an orbit, at which {duration} is that of the law")
+        require_paper(self.setting, "the speed at an orbit, at which {duration} is that of the law")
         return self._with(
             law_at_orbit(self.law_type, self.restitution, self.duration, n, amplitude, Side(side))
         )
@@ -107,7 +107,7 @@ class FreeImpactBall(Ball):
 
     def corrected(self) -> FreeImpactBall:
         """The ball of the corrected restitution model of this contact."""
-        require_sine(self.setting, "the corrected restitution model of this ball")
+        require_paper(self.setting, "the corrected restitution model")
         return replace(self, is_corrected=True)
 
     def row(self, grid: Grid) -> FreeImpactBall:

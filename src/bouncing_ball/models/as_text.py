@@ -23,7 +23,7 @@ from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import OtherSetting, Setting
+from bouncing_ball.models.setting import GeneralSetting, PaperSetting
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import Drag, Spring
@@ -32,9 +32,11 @@ from bouncing_ball.models.waveform import Sine, Waveform
 _MODELS = (RestitutionModel, SpringDamperModel, LawModel, CorrectedModel, RestitutionLawModel)
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
 _OTHERS = (ElastoBacklash, LankaraniNikravesh, Flores)
-_PARTS = (Setting, OtherSetting, Drag, Spring, Waveform, Sine, SpringDamper, Signature)
+_PARTS = (PaperSetting, GeneralSetting, Drag, Spring, Waveform, Sine, SpringDamper, Signature)
 _OF_USERS = (ForceLaw, RestitutionLaw, Model)
-_KNOWN = {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
+# The names that these classes have in older files.
+_FORMER = {"Setting": PaperSetting, "OtherSetting": GeneralSetting}
+_KNOWN = _FORMER | {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
 # The keys of the type of an object, and of the name of the variable with an array.
 _TYPE = "type"
 _ARRAY = "array"
@@ -48,7 +50,7 @@ def text_of(model: Model) -> tuple[str, dict[str, np.ndarray]]:
     >>> text, arrays = text_of(RestitutionModel(np.array([0.5, 0.6])))
     >>> text, list(arrays)
     ('{"type": "RestitutionModel", "restitution": {"array": "restitution"}, "setting": \
-{"type": "Setting"}}', ['restitution'])
+{"type": "PaperSetting"}}', ['restitution'])
     """
     arrays: dict[str, np.ndarray] = {}
     return json.dumps(_written(model, "", arrays), ensure_ascii=False), arrays

@@ -31,7 +31,7 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import require_sine, setting_of
+from bouncing_ball.models.setting import require_paper, setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import Suspension
@@ -213,7 +213,7 @@ def corrected(ball: Ball) -> Ball:
     known: Any = a_ball(ball)
     if not known.is_known:
         return known.corrected()
-    require_sine(known.place, "the corrected restitution model of this ball")
+    require_paper(known.place, "the corrected restitution model")
     law = known.impact_law
     if not isinstance(law, ContactLaw):
         raise ModelError(f"{known.name} impacts have no contact that could be corrected")

@@ -31,9 +31,9 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.setting import PAPER, PaperSetting, Setting
 from bouncing_ball.models.suspension import DRAG, SPRING_DAMPING, SPRING_FREQUENCY
-from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball.numerics.arrays import Batch, in_words
 
 RANGES: Mapping[str, Range] = {
     "frequency_ratio": FREQUENCY_RATIO,
@@ -57,6 +57,13 @@ class Model(Batch, Ball, ABC):
 
     name: ClassVar[str]
 
+    def __repr__(self) -> str:
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        # The setting of the paper goes without saying.
+        said = (name for name in values if not isinstance(values[name], PaperSetting))
+        text = ", ".join(f"{name}={in_words(values[name])}" for name in said)
+        return f"{type(self).__name__}({text})"
+
     @property
     def impact_law(self) -> Any:
         """The law of the impact, which is the first field of the model."""
@@ -64,8 +71,11 @@ class Model(Batch, Ball, ABC):
 
     @property
     def place(self) -> Setting:
-        """How the table moves, and what moves the ball in flight."""
-        return getattr(self, "setting", PAPER)
+        """How the table moves, and what moves the ball in flight: :data:`.PAPER` with its closed
+        forms for every ``setting`` with the values of the paper.
+        """
+        setting: Setting = getattr(self, "setting", PAPER)
+        return PAPER if setting.is_paper else setting
 
     @property
     def label(self) -> str:

@@ -136,7 +136,7 @@ class RestitutionLawModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return RestitutionLawDynamics.of(self.law, amplitude, self.setting)
+        return RestitutionLawDynamics.of(self.law, amplitude, self.place)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r(v), without delay, load sensitivity and duration."""

@@ -13,7 +13,6 @@ from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.setting import PAPER, Setting, require_setting
-from bouncing_ball.numerics.arrays import in_words
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,19 +54,15 @@ class RestitutionModel(Model):
     def label(self) -> str:
         return f"r = {float(self.restitution):g}"
 
-    def __repr__(self) -> str:
-        where = "" if self.setting.is_paper else f", setting={self.setting!r}"
-        return f"{type(self).__name__}(restitution={in_words(self.restitution)}{where})"
-
     def dynamics(self, amplitude: ArrayLike) -> RestitutionDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return RestitutionDynamics.of(self.restitution, amplitude, self.setting)
+        return RestitutionDynamics.of(self.restitution, amplitude, self.place)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape; 1 in the paper (Eq. 9),
         and 0 for a spring that does not press the mass on its stop.
         """
-        return np.broadcast_to(self.setting.threshold(), self.shape).astype(float)
+        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r, without delay, load sensitivity and duration."""

@@ -74,10 +74,6 @@ class SpringDamperModel(Model):
             return LinearContactDynamics.of(self.contact, amplitude)
         return HeldContactDynamics.of(self.contact, amplitude, self.setting)
 
-    def __repr__(self) -> str:
-        where = "" if self.setting.is_paper else f", setting={self.setting!r}"
-        return f"{type(self).__name__}(contact={self.contact!r}{where})"
-
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature in closed form, which is the same at every speed."""
         return self.contact.signature(speed)

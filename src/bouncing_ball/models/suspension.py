@@ -72,6 +72,23 @@ class Suspension(Batch):
     def load(self) -> Any:
         """b."""
 
+    @property
+    def is_free(self) -> bool:
+        """Whether gravity alone acts on all balls: l = q = 0 and b = -1."""
+        changed = self.loss, self.stiffness, np.asarray(self.load) + 1
+        return not any(np.any(each) for each in changed)
+
+    @property
+    def natural_frequency(self) -> Any:
+        """√q, the natural frequency."""
+        return np.sqrt(np.asarray(self.stiffness, dtype=float))
+
+    def off_resonance(self, orders: np.ndarray) -> np.ndarray:
+        """q - k² + ilk, with a last axis for the orders k of harmonics."""
+        frequency = np.asarray(self.natural_frequency, dtype=float)[..., np.newaxis]
+        loss = np.asarray(self.loss, dtype=float)[..., np.newaxis]
+        return (frequency - orders) * (frequency + orders) + 1j * orders * loss
+
     def coefficients(self, waveform: Waveform) -> np.ndarray:
         """The harmonics of W, over Λ, shape (N,) or (balls, N)."""
         return waveform.coefficients
@@ -172,21 +189,20 @@ class Spring(Suspension):
         """ν²σ."""
         return self.stiffness * self.gap
 
-    def _off_resonance(self, waveform: Waveform) -> np.ndarray:
-        """q - k² + ilk, with a last axis for the harmonics."""
-        k = waveform.orders
-        frequency = np.asarray(self.spring_frequency, dtype=float)[..., np.newaxis]
-        loss = np.asarray(self.loss, dtype=float)[..., np.newaxis]
-        return (frequency - k) * (frequency + k) + 1j * k * loss
+    @property
+    def natural_frequency(self) -> Any:
+        """ν."""
+        return self.spring_frequency
 
     def coefficients(self, waveform: Waveform) -> np.ndarray:
         """The harmonics of W, over Λ, shape (N,) or (balls, N)."""
         k = waveform.orders
-        return -(k * k) * waveform.coefficients / self._off_resonance(waveform)
+        return -(k * k) * waveform.coefficients / self.off_resonance(k)
 
     def check(self, waveform: Waveform) -> None:
         """Raise :class:`ParameterError` at an undamped resonance with a harmonic of the table."""
-        near = np.abs(self._off_resonance(waveform)) < _RESONANCE * waveform.orders**2
+        k = waveform.orders
+        near = np.abs(self.off_resonance(k)) < _RESONANCE * k**2
         near = near & (waveform.coefficients != 0)
         if np.any(near):
             raise ParameterError(

@@ -128,6 +128,22 @@ class Waveform:
         return float(np.sum(self.orders**order * np.abs(self.coefficients)))
 
     @cached_property
+    def is_sine(self) -> bool:
+        """Whether u = sin φ, exactly.
+
+        A sine of another amplitude or phase is the same motion with another Λ or another zero of
+        the phase, and these are parameters of a ball: such a table is not the paper's.
+
+        Examples
+        --------
+        >>> tables = Waveform([1.0, 0.0]), Waveform([-1.0]), Waveform([0.0], [1.0])
+        >>> [each.is_sine for each in tables]
+        [True, False, False]
+        """
+        c = self.coefficients
+        return bool(c[0] == 1) and not np.any(c[1:])
+
+    @cached_property
     def fastest(self) -> float:
         """A bound of the speed of the table, ``Σ k |c_k|``."""
         return self.bound(1)

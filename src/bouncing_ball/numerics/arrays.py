@@ -5,7 +5,7 @@ applies to all elements and remains a scalar.
 """
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from itertools import pairwise
 from typing import Any, Self
 
@@ -59,6 +59,9 @@ def in_words(value: Any) -> str:
     """
     if isinstance(value, str):
         return f"'{value}'"
+    # numpy would take apart a row of dataclasses.
+    if is_dataclass(value):
+        return repr(value)
     if not np.issubdtype(np.asarray(value).dtype, np.number):
         return repr(value)
     return np.array2string(

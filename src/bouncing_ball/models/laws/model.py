@@ -57,10 +57,6 @@ class LawModel(Model):
                 "{flight} is known for rigid and spring_damper, and not for contact laws"
             )
 
-    def __repr__(self) -> str:
-        where = "" if self.setting.is_paper else f", setting={self.setting!r}"
-        return f"{type(self).__name__}(law={self.law!r}{where})"
-
     @cached_property
     def parameters(self) -> Mapping[str, Any]:
         """The parameters of the law by name, and the name of the law."""
@@ -80,7 +76,7 @@ class LawModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""
-        return self.law.dynamics(amplitude, self.setting)
+        return self.law.dynamics(amplitude, self.place)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature of free impacts with speeds v > 0.

@@ -121,4 +121,4 @@ def same_omega(omega: float) -> Callable[[float], float]:
 
 def omega_of_time(duration: float, release: Release) -> Callable[[float], float]:
     """√(k/m) in rad/s, as a function of ζ, of contacts whose free impacts last so many seconds."""
-    return lambda zeta: float(SpringDamper(1.0, zeta, release).free_duration) / duration
+    return lambda zeta: float(SpringDamper.of_duration(duration, zeta, release).frequency_ratio)

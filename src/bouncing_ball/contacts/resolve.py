@@ -177,7 +177,7 @@ def _of_law(
         assert kind is not None
         duration = contact.contact_time / table.time
         law = law_of_impact(kind, r, duration, at)
-    linear = replace(unit, frequency_ratio=float(unit.free_duration) / duration)
+    linear = SpringDamper.of_duration(duration, unit.damping_ratio, rule)
     return ResolvedContact(contact.mass, table, linear, law)
 
 
@@ -242,9 +242,6 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
 
 def _with_impact(case: ResolvedContact, impact: Instant) -> ResolvedContact:
     """The case with the linear contact that has the r and the duration of an impact."""
-    unit = SpringDamper.from_restitution(
-        float(impact.restitution), 1.0, case.contact.release, measured=True
-    )
-    ratio = float(unit.free_duration / impact.duration)
-    linear = replace(unit, frequency_ratio=ratio)
+    r = float(impact.restitution)
+    linear = SpringDamper.of_impact(r, float(impact.duration), case.contact.release)
     return replace(case, contact=linear, given_stiffness=None, given_damping=None)

@@ -128,8 +128,7 @@ class SpringDamper(OscillatorLaw):
         """
         if self.release.is_linear:
             return self
-        unit = SpringDamper.from_restitution(self.restitution, 1.0)
-        return SpringDamper(unit.free_duration / self.free_duration, unit.damping_ratio)
+        return SpringDamper.of_impact(self.restitution, self.free_duration)
 
     @classmethod
     def from_restitution(
@@ -166,6 +165,53 @@ class SpringDamper(OscillatorLaw):
         zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
         return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
 
+    @classmethod
+    def of_impact(
+        cls,
+        restitution: ArrayLike,
+        duration: ArrayLike,
+        release: str = Release.DISPLACEMENT,
+    ) -> SpringDamper:
+        """The contact whose free impacts, with this release, have r and the duration D.
+
+        Raises
+        ------
+        ModelError
+            If r or D is outside its range, or the release is unknown.
+
+        Examples
+        --------
+        >>> contact = SpringDamper.of_impact(1.0, np.pi)
+        >>> float(contact.frequency_ratio), float(contact.damping_ratio)
+        (1.0, 0.0)
+        """
+        rule = Release.of(release)
+        return cls.of_duration(duration, damping_ratio(restitution, rule), rule)
+
+    @classmethod
+    def of_duration(
+        cls,
+        duration: ArrayLike,
+        damping_ratio: float | np.ndarray,
+        release: str = Release.DISPLACEMENT,
+    ) -> SpringDamper:
+        """The contact with this ζ whose free impacts last D: their angle ϖD is that for ϖ = 1.
+
+        Raises
+        ------
+        ModelError
+            If D or ζ is outside its range, ζ ≥ 1 with the displacement release, or the release is
+            unknown.
+
+        Examples
+        --------
+        >>> float(SpringDamper.of_duration(0.5, 1.0, "force").frequency_ratio)
+        4.0
+        """
+        unit = cls(1.0, damping_ratio, Release.of(release))
+        time = check_positive(duration, "duration D")
+        return replace(unit, frequency_ratio=unit.free_duration / time)
+
     def with_impact(self, restitution: float, duration: float, speed: float) -> SpringDamper:
         """The contact with another ϖ and ζ, whose free impacts have these r and D.
 
@@ -175,8 +221,7 @@ class SpringDamper(OscillatorLaw):
         >>> np.allclose([contact.restitution, contact.free_duration], [0.5, 0.25], rtol=1e-14)
         True
         """
-        one = SpringDamper.from_restitution(restitution, 1.0, self.release, measured=True)
-        return replace(one, frequency_ratio=float(one.free_duration) / duration)
+        return SpringDamper.of_impact(restitution, duration, self.release)
 
     def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given, or for ζ ≥ 1.

@@ -36,7 +36,7 @@ from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.corrected.model import CorrectedModel
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
@@ -140,9 +140,7 @@ def exact_model(name: str, restitution: float, duration: ArrayLike, speed: Array
     """
     duration, speed = np.broadcast_arrays(duration, speed)
     if name in LINEAR:
-        unit = SpringDamper(1.0, damping_ratio(restitution, LINEAR[name]), LINEAR[name])
-        omega = unit.free_duration / duration
-        return SpringDamperModel(SpringDamper(omega, unit.damping_ratio, unit.release))
+        return SpringDamperModel(SpringDamper.of_impact(restitution, duration, LINEAR[name]))
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 

@@ -52,7 +52,6 @@ from bouncing_ball.measured.verdicts import (
     smooth,
     trend_of_scatter,
 )
-from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -360,14 +359,14 @@ class _OrbitsOnShaker:
         """ϖ, the errors by the error law and its small parameter δ."""
         time = float(best.duration_at(self.speed))
         duration = time / self.motion.time
-        unit = SpringDamper(1.0, float(damping_ratio(self.restitution)))
+        linear = SpringDamper.of_impact(self.restitution, duration)
         impact = self.speed * self.motion.time / self.motion.length
         assert best.curve.kind is not None
         law = law_of_impact(best.curve.kind, self.restitution, duration, impact)
         instant = Signature(law)(impact)
         errors = first_order(self.n, instant, self.amplitude)
         return (
-            float(unit.free_duration) / duration,
+            float(linear.frequency_ratio),
             np.array([float(errors[quantity]) for quantity in COMPARED]),
             float(small_parameter(self.n, instant, self.amplitude)),
         )

@@ -8,7 +8,7 @@ import pytest
 from asked_contacts import assessed
 
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.ends import Ending, EndingKind
+from bouncing_ball.contacts.ends import Ending
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.judgement import judged_by_motion
 from bouncing_ball.contacts.means import Mean, _changed, _law
@@ -17,8 +17,10 @@ from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.verdict_on_motion import aside, said_of_motion
 from bouncing_ball.errors import ModelError
+from bouncing_ball.long_run.basins import MotionName
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
+from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import Starts, advance, start
 from bouncing_ball.models.laws.force_law import NUMBER
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
@@ -302,7 +304,7 @@ def test_a_change_of_a_law_is_one_of_its_parameters_in_si_units(law):
     case = resolve(Contact(**given), table)
     impacts = Starts(np.array([0.5, 1.0]), np.array([-3.0, -4.0]))
     speed = float(np.mean(2 * np.cos(impacts.phase) - impacts.velocity))
-    changed = _changed(case, Ending(EndingKind("chaotic", 0, 0), impacts))
+    changed = _changed(case, Ending(MotionName(Kind.CHAOTIC, 0, 0), impacts))
     assert [*changed] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
     before = case.law.signature(speed)
     for name, factor in {"r -0.1 %": 0.999, "r +0.1 %": 1.001, "k +0.1 %": 1.0}.items():
@@ -338,7 +340,7 @@ def test_the_linear_contact_stands_for_a_law_that_no_impact_determines():
     case = resolve(plain, Table(frequency="20 Hz", acceleration="2 g").motion)
     case = replace(case, law=Stiffening(400.0, 0.1, 0.5))
     impacts = Starts(np.array([0.5]), np.array([-3.0]))
-    changed = _changed(case, Ending(EndingKind("chaotic", 0, 0), impacts))
+    changed = _changed(case, Ending(MotionName(Kind.CHAOTIC, 0, 0), impacts))
     assert "no change" in changed and all(each.law is None for each in changed.values())
 
 
@@ -346,7 +348,7 @@ def test_an_impedance_is_changed_as_itself():
     soft = Contact(mass=1, from_engine="mujoco", solref="-1e4 -20")
     case = resolve(soft, Table(frequency="20 Hz", acceleration="2 g").motion)
     impacts = Starts(np.array([0.5]), np.array([-3.0]))
-    changed = _changed(case, Ending(EndingKind("chaotic", 0, 0), impacts))
+    changed = _changed(case, Ending(MotionName(Kind.CHAOTIC, 0, 0), impacts))
     assert [*changed] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
     before = case.law_in_si
     heavier = changed["g +0.1 %"].law_in_si

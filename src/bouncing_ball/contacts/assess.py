@@ -262,7 +262,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         )
     ends = ends_of_starts(case)
     one = _judged(found, choice, None if question.n is not None else ends)
-    is_rare = question.n is None and _stays(one) and ends.of_orbit(one.n) < FEW
+    is_rare = question.n is None and one.attracts and ends.of_orbit(one.n) < FEW
     if choice is None:
         need = needed(question.quantity, question.tolerance, case.linear, one.n, amplitude)
     else:
@@ -310,11 +310,6 @@ def _by_release(case: ResolvedContact) -> dict[str, float | None]:
     return {str(rule): r if rule.at_surface == at_surface else None for rule in LINEAR}
 
 
-def _stays(one: ComparedOrbit) -> bool:
-    """Whether a ball on the orbit of a family stays on it."""
-    return one.exists and one.is_stable and one.is_admissible
-
-
 def _judged(
     found: tuple[ComparedOrbit, ...], choice: Choice | None, ends: SharesOfStarts | None
 ) -> ComparedOrbit:
@@ -324,8 +319,7 @@ def _judged(
 
     def rank(one: ComparedOrbit) -> tuple[bool, ...]:
         is_common = ends is None or ends.of_orbit(one.n) >= FEW
-        stays = one.is_stable and one.is_admissible
-        return one.exists, stays, stays and is_common
+        return one.exists, one.attracts, one.attracts and is_common
 
     first = max(found, key=rank)
     if choice is None:

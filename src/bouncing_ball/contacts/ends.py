@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.long_run.basins import MotionName
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import Starts
@@ -16,14 +17,6 @@ _IMPACTS = 600
 _IMPACTS_OF_LAW = 250
 
 
-class EndingKind(NamedTuple):
-    """The kind of a motion, with the periods and impacts after which it repeats, or 0."""
-
-    kind: str
-    periods: int
-    impacts: int
-
-
 class FirstImpact(NamedTuple):
     """A first impact: phase of the table and absolute velocity of the ball."""
 
@@ -32,18 +25,18 @@ class FirstImpact(NamedTuple):
 
 
 class Ending(NamedTuple):
-    """The kind of the motion on which a ball ends, impacts of this motion in order, and whether
+    """The name of the motion on which a ball ends, impacts of this motion in order, and whether
     rounding errors decide on its period.
     """
 
-    kind: EndingKind
+    motion: MotionName
     impacts: Starts
     is_unresolved: bool = False
 
     @property
     def is_sampled(self) -> bool:
         """Whether the means of the motion are those of a sample of balls."""
-        return self.kind.impacts == 0 and not self.is_unresolved
+        return self.motion.impacts == 0 and not self.is_unresolved
 
 
 def followed_impacts(case: ResolvedContact) -> int:
@@ -56,7 +49,7 @@ def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> Ending:
     lam = case.table.amplitude
     path = np.empty((3, followed_impacts(case)))
     found = final_motions(case.models[name], lam, *first, impacts=path.shape[1], path=path)
-    kind = EndingKind(str(found.kind), int(found.periods), int(found.impacts))
+    motion = MotionName(Kind(str(found.kind)), int(found.periods), int(found.impacts))
     followed = int(found.followed)
     seen = path[1:, :followed]
     unresolved = bool(found.is_unresolved())
@@ -67,11 +60,11 @@ def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> Ending:
     else:
         last = np.array([[found.end_phase], [found.end_velocity]])
         of_motion = np.concatenate([seen[:, followed // 2 :], last], axis=1)
-    return Ending(kind, Starts.of_path(of_motion, lam), unresolved)
+    return Ending(motion, Starts.of_path(of_motion, lam), unresolved)
 
 
 def on_orbit(case: ResolvedContact, n: int) -> Ending:
     """The n-T orbit of the restitution model."""
     orbit = n_t.orbit(case.models["restitution"], n, case.table.amplitude)
     impact = Starts(np.atleast_1d(orbit.phase), np.atleast_1d(orbit.impact_velocity))
-    return Ending(EndingKind(str(Kind.ORBIT), n, 1), impact)
+    return Ending(MotionName(Kind.ORBIT, n, 1), impact)

@@ -45,6 +45,11 @@ class Standing:
     period_doubling: Annotated[float | None, Listed(f"{Bifurcation.PERIOD_DOUBLING} at Λ")]
     period_doubling_margin: Annotated[float | None, Listed("  Λ may rise by", "%")]
 
+    @property
+    def attracts(self) -> bool:
+        """Whether balls near the orbit end on it."""
+        return self.exists and self.is_stable and self.is_admissible
+
 
 @dataclass(frozen=True)
 class ComparedOrbit:
@@ -74,6 +79,12 @@ class ComparedOrbit:
     corrected_errors: ErrorsByQuantity
     law_errors: ErrorsByQuantity
     law_holds: bool
+
+    @property
+    def attracts(self) -> bool:
+        """Whether balls near the orbit of the exact model end on it."""
+        exact = next(iter(self.standing.values()))
+        return exact.attracts
 
 
 # Samples of a contact, and further samples for each radian of the table's motion, because a long

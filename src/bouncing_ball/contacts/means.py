@@ -127,7 +127,7 @@ def compared_means(
 
 def _are_unlike(ends: Mapping[str, Ending]) -> bool:
     """Whether one of the motions is periodic and the other is not, so that no mean decides."""
-    kinds = {end.kind.kind for end in ends.values()}
+    kinds = {end.motion.kind for end in ends.values()}
     periodic = {str(Kind.ORBIT), str(Kind.SUBHARMONIC)}
     return len(kinds) > 1 and bool(kinds & periodic) and str(Kind.UNDECIDED) not in kinds
 
@@ -241,7 +241,7 @@ def _changes(
     balls = _BALLS_OF_CHANGE_OF_LAW if own else _BALLS_OF_CHANGE
     usual = _SAMPLES_OF_LAW if own else _SAMPLES
     small = usual._replace(unit=balls, usual=balls, impacts=usual.impacts[-2:][:1])
-    kinds = [end.kind.kind for end in ends.values()]
+    kinds = [end.motion.kind for end in ends.values()]
     found = {}
     for name, changed in all_changed.items():
         lam = changed.table.amplitude
@@ -252,7 +252,7 @@ def _changes(
             exact_model: _beside(changed, exact_end, start),
             simple_model: end_of(changed, simple_model, start),
         }
-        if name == NO_CHANGE and [end.kind.kind for end in there.values()] != kinds:
+        if name == NO_CHANGE and [end.motion.kind for end in there.values()] != kinds:
             return None
         if not all(end.impacts.phase.size for end in there.values()):
             return None
@@ -310,7 +310,7 @@ def _sums(
         return sums_at(samples, starts, Sampled(model), lam, _before(case, sampling.before))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
-    _, once = advance(*start(model, lam, impacts.last()), end.kind.impacts)
+    _, once = advance(*start(model, lam, impacts.last()), end.motion.impacts)
     return repeat(once)
 
 

@@ -77,11 +77,12 @@ def of_family(
     The sample for means over time grows until these decide about the tolerance, up to ``balls``,
     rounded up to multiples of 256, or of 128 for a contact law.
     """
-    stays = family.exists and family.is_stable and family.is_admissible
-    if stays and start is None:
+    if family.attracts and start is None:
         return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
     orbit = None if start is not None else _first_orbit(case, family)
-    if orbit is not None and _is_elliptic(case, family, orbit):
+    # A ball stays near a neutral orbit without being attracted.
+    is_possible = family.exists and family.is_admissible
+    if orbit is not None and is_possible and orbit.is_neutral():
         return FinalMotion(str(Kind.UNDECIDED), 0, 0)
     first = None if orbit is None else _beside(case, orbit)
     first = first if start is None else FirstImpact(*start)
@@ -90,10 +91,10 @@ def of_family(
     # The exact model and the restitution model.
     ends = {name: end_of(case, name, first) for name in list(case.models)[:2]}
     ideal = family.standing["restitution"]
-    if start is None and ideal.exists and ideal.is_stable and ideal.is_admissible:
+    if start is None and ideal.attracts:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
         ends["restitution"] = on_orbit(case, family.n)
-    exact, simple = (end.kind for end in ends.values())
+    exact, simple = (end.motion for end in ends.values())
     values: dict[str, Any] = {}
     rests = Kind.PERMANENT_CONTACT in (exact.kind, simple.kind)
     if exact == simple and exact.periods > 0 and not rests:
@@ -101,10 +102,10 @@ def of_family(
     elif not rests:
         values = compared_means(case, ends, tolerance, balls, first)
     return FinalMotion(
-        kind=exact.kind,
+        kind=str(exact.kind),
         periods=exact.periods,
         impacts=exact.impacts,
-        restitution_kind=simple.kind,
+        restitution_kind=str(simple.kind),
         restitution_periods=simple.periods,
         restitution_impacts=simple.impacts,
         is_laid=is_laid,
@@ -119,15 +120,6 @@ def _first_orbit(case: ResolvedContact, family: ComparedOrbit) -> Any | None:
         if family.standing[name].exists:
             return n_t.orbit(model, family.n, case.table.amplitude)
     return None
-
-
-def _is_elliptic(case: ResolvedContact, family: ComparedOrbit, orbit: Any) -> bool:
-    """Whether a ball stays near the orbit without being attracted, as the contact has no loss."""
-    lossless = float(case.contact.restitution) == 1
-    if not (lossless and family.exists and family.is_admissible):
-        return False
-    trace, _ = orbit.trace_and_determinant()
-    return abs(float(trace)) < 2
 
 
 def _beside(case: ResolvedContact, orbit: Any) -> FirstImpact | None:
@@ -168,7 +160,7 @@ def _greatest(case: ResolvedContact, name: str, end: Ending) -> float:
     """Greatest height of a motion that repeats, in m."""
     once = end.impacts.last()
     found = case.models[name].simulate(
-        case.table.amplitude, once.phase[0], once.velocity[0], 2 * end.kind.impacts + 1
+        case.table.amplitude, once.phase[0], once.velocity[0], 2 * end.motion.impacts + 1
     )
-    last = _tops(found)[-1 - end.kind.impacts :]
+    last = _tops(found)[-1 - end.motion.impacts :]
     return float(np.nanmax(last)) * case.table.length

@@ -61,8 +61,8 @@ def errors(
 ) -> np.ndarray:
     """Signed relative errors of both simple models on contacts, shape (model, quantity, ...).
 
-    The arguments are those of :func:`relative_errors`, and the models those of :func:`models`, in
-    the order of :data:`SIMPLE`.
+    The arguments are those of :func:`relative_errors`, and the models those of
+    :func:`exact_and_simple_models`, in the order of :data:`SIMPLE`.
 
     Examples
     --------

@@ -92,20 +92,21 @@ def values(
     return np.stack(np.broadcast_arrays(*map(value, quantities)))
 
 
-def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
-    """Signed relative errors: the exact value minus the simple value, over the simple value.
+def relative(value: ArrayLike, reference: ArrayLike) -> np.ndarray:
+    """Signed relative differences of values from a reference, over the reference.
 
-    The error is NaN where a value is missing, and for 0/0. It is infinite where the simple value
-    is 0, for example for the saddle-node at r = 1.
+    The errors of simple models have the simple value as their reference, and the errors of a
+    prediction the true value. The result is NaN where a value is missing, and for 0/0. It is
+    infinite where the reference is 0, for example for the saddle-node at r = 1.
 
     Examples
     --------
     >>> relative([1.5, 1.0], [1.0, 0.0]).tolist()
     [0.5, inf]
     """
-    reference = np.asarray(simple, dtype=float)
+    base = np.asarray(reference, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return (np.asarray(exact, dtype=float) - reference) / reference
+        return (np.asarray(value, dtype=float) - base) / base
 
 
 def modulus(error: ArrayLike) -> np.ndarray:

@@ -3,15 +3,17 @@
 The way of a contact through the modules:
 
 ``contact``, ``table``, ``question``
-    what a user gives; each text is read once, by ``units``
+    what a user gives: ``quantities`` says what each may be, and ``units`` reads each text once
 ``resolve``
-    from the parameters to a :class:`~.resolved.ResolvedContact`: the dimensionless model and
-    its SI scales. ``loss``, ``drop_test`` and ``hertz`` have the formulas
+    from the parameters to a :class:`~.resolved.ResolvedContact` (``resolved``): the dimensionless
+    model and its SI scales. ``loss``, ``drop_test`` and ``hertz`` have the formulas,
+    ``named_laws`` the contact laws by their names, and ``law_balls`` makes balls of them
 ``assess``
     is a restitution coefficient good enough? By the orbits in all models (``families``) and the
-    motion on which most balls end (``motion``, ``starts``). ``judgement`` has what decides
+    motion on which most balls end (``motion``, ``starts``): where one ball ends (``ends``), and
+    means of what does not repeat (``means``). ``judgement`` has what decides
 ``choose``
-    how stiff must a contact be for that?
+    how stiff must a contact be for that? By the ϖ that a tolerance needs (``needed``)
 ``write``
     what does one write into an engine for it? (``engines``)
 ``describe``

@@ -246,6 +246,11 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
             f"Λ = {amplitude:g} is above {_LARGEST_OF_LAW:g}, up to which a contact law "
             "is followed: give a lower acceleration, or a spring and a damper, which are faster"
         )
+    if not 1 / _LARGEST < ratio < _LARGEST:
+        raise ModelError(
+            f"ϖ = {ratio:.4g}, the natural frequency of the contact over that of the table, is not "
+            f"between {1 / _LARGEST:g} and {_LARGEST:g}: check the units of both"
+        )
     no_orbit = ""
     try:
         found = families(case, question.families)
@@ -255,11 +260,6 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         choice = None
         no_orbit = str(error)
         found = families(case, question.families, or_first=True)
-    if not 1 / _LARGEST < ratio < _LARGEST:
-        raise ModelError(
-            f"ϖ = {ratio:.4g}, the natural frequency of the contact over that of the table, is not "
-            f"between {1 / _LARGEST:g} and {_LARGEST:g}: check the units of both"
-        )
     ends = ends_of_starts(case)
     one = _judged(found, choice, None if question.n is not None else ends)
     is_rare = question.n is None and one.attracts and ends.of_orbit(one.n) < FEW

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
@@ -98,17 +97,6 @@ _IN_A_RADIAN = 16
 # their saddle-nodes at a multiple of Λ.
 _STIFF = 10.0
 _FAR = 2.0
-
-
-def prediction_error(predicted: ArrayLike, true: ArrayLike) -> np.ndarray:
-    """Signed relative error of predicted values against the true ones, which are the contact's.
-
-    Examples
-    --------
-    >>> prediction_error([2.0, 1.0], [1.0, 2.0]).tolist()
-    [1.0, -0.5]
-    """
-    return relative(predicted, true)
 
 
 def _by_quantity(values: np.ndarray) -> ErrorsByQuantity:
@@ -303,7 +291,7 @@ def _family(
     orbit = orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(case.exact_law, orbit)
-    restitution, corrected = map(_by_quantity, prediction_error(values[1:], values[0]))
+    restitution, corrected = map(_by_quantity, relative(values[1:], values[0]))
     in_si = values * _units(case.table)
     return ComparedOrbit(
         n=n,

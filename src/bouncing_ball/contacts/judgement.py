@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import NamedTuple
 
-from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
+from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.means import NO_CHANGE, Mean
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.needed import Needed
@@ -167,7 +168,7 @@ def judged_by_motion(
         return replace(found, basis=basis)
     if motion.greatest is not None:
         true, predicted = motion.greatest.values()
-        error = abs(float(prediction_error(predicted, true)))
+        error = abs(float(relative(predicted, true)))
         return replace(found, basis=Basis.GREATEST_HEIGHT, least=error, most=error)
     if motion.mean_error is None:
         return found

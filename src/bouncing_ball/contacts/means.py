@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of
-from bouncing_ball.contacts.families import prediction_error
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.motions import Kind
@@ -337,7 +337,7 @@ def _error_of_means(
     """Relative errors of the simple model's means against the exact ones, and their half-widths:
     standard errors times a factor.
     """
-    error = prediction_error(simple.mean, exact.mean)
+    error = relative(simple.mean, exact.mean)
     spread = np.hypot(simple.error, (1 + error) * exact.error) / np.abs(exact.mean)
     return error, factor * spread
 

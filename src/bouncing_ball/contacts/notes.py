@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.contacts.engines.engine import Engine
-from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
+from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.named_laws import contact_in_words
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -89,7 +90,7 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     where = engine.at_depth(case.given.engine_parameters, family.greatest_compression)
-    off = float(prediction_error(family.max_height, spring.max_height * case.table.length))
+    off = float(relative(family.max_height, spring.max_height * case.table.length))
     return (
         f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, {where}, "
         f"the ball bounces {shown(abs(off), '%')} {'higher' if off > 0 else 'lower'} than with them"

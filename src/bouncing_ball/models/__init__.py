@@ -10,13 +10,15 @@ The modules in reading order:
 ``restitution``, ``sticking``      impacts with a restitution coefficient, and rest on the table
 ``damping``, ``oscillator``        the formulas of a linear contact
 ``linear_flow``, ``linear_contact``, ``resumption``   the motion in it, to its release and after it
-``permanent_contact``         the Λ up to which a ball stays on the table
+``held_contact``              the same on any table, and beside a drag or a further spring
+``permanent_contact``, ``approach_threshold``   the Λ up to which a ball stays on the table
 ``instant``                   a contact seen from outside, as an impact at an instant
 ``ball``, ``model``           what all balls share, and the interface of every model
 ``rigid``, ``restitution_by_speed``   models with instantaneous impacts
 ``spring_damper``, ``spring_damper_model``   the paper's contact, and balls on it
 ``makers``                    balls by their parameters, which a user calls
 ``history``, ``over_time``    the motion of balls over time
+``as_text``                   models as text, from which they come back exactly
 
 The packages ``laws`` and ``corrected`` have the other contact laws and the corrected model.
 """

@@ -53,16 +53,6 @@ class RestitutionLaw(Batch, ABC):
             moved = v * (1 + 1j * _IMAGINARY)
             return np.imag(self.restitution(moved) * moved) / (_IMAGINARY * v)
 
-    def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
-        """The impacts and flights with this law on a table of amplitude Λ.
-
-        Raises
-        ------
-        ModelError
-            If Λ is outside its range.
-        """
-        return RestitutionLawDynamics.of(self, amplitude)
-
 
 def require_analytic_restitution(law: RestitutionLaw) -> None:
     """Raise :class:`ModelError` if the slope of a law by an imaginary step is not that by a

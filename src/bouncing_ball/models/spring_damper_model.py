@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, ParameterError, shortened
-from bouncing_ball.models.held_contact import HeldContactDynamics, held_by, held_threshold
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.held_contact import held_by, held_threshold
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.setting import PAPER, Setting, require_setting
@@ -68,11 +68,9 @@ class SpringDamperModel(Model):
         contact = self.contact
         return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
 
-    def dynamics(self, amplitude: ArrayLike) -> LinearContactDynamics:
-        """The contacts and flights of these balls on a table of amplitude Λ."""
-        if self.setting.is_paper:
-            return LinearContactDynamics.of(self.contact, amplitude)
-        return HeldContactDynamics.of(self.contact, amplitude, self.setting)
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of these balls on a table of amplitude Λ, in closed form."""
+        return self.contact.dynamics(amplitude, self.place)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature in closed form, which is the same at every speed."""

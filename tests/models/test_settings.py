@@ -9,6 +9,7 @@ from side_by_side import VELOCITY, checked_deviations
 import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, rigid, spring_damper
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.as_text import model_of, text_of
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
@@ -295,6 +296,13 @@ def test_an_orbit_without_drag_is_followed_along_the_drag():
     end = bouncing_ball.orbit(rigid(restitution=0.5, flight=Drag(0.1)), amplitude=1.4)
     assert float(along.drag[0]) == 0 and abs(float(along.drag[-1]) - 0.1) < 1e-12
     assert abs(along.phase.isel(point=-1).item() - end.phase) < 1e-9
+
+
+def test_settings_with_their_older_names_are_read():
+    for ball in (rigid(restitution=0.5), rigid(restitution=0.5, table=Waveform(*TWO))):
+        text, arrays = text_of(ball)
+        older = text.replace("PaperSetting", "Setting").replace("GeneralSetting", "OtherSetting")
+        assert older != text and model_of(older, arrays) == ball
 
 
 def test_an_array_of_drags_is_a_row_of_balls():

@@ -231,7 +231,10 @@ def test_the_verdict_on_a_motion(found, good, says):
     [
         # An interval shrinks as the square root of the number: 256 (2/1)² = 1024.
         (means(0.04, 0.02), "256 balls is too small to decide; with balls = 1100 (--balls 1100)"),
-        (means(0.0499, 0.02), "more than 100000 are needed, because the error is next to the tolerance"),
+        (
+            means(0.0499, 0.02),
+            "more than 100000 are needed, because the error is next to the tolerance",
+        ),
         (means(0.04, 0.02, "locked"), "no larger sample would decide, as rounding errors decide"),
     ],
 )

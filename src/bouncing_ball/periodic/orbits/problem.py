@@ -44,7 +44,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -55,7 +55,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, landed, without_force
-from bouncing_ball.periodic.orbits.products import matrices_of, product_of, shifted_determinant
+from bouncing_ball.periodic.orbits.products import product_of, shifted_determinant
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
@@ -426,11 +426,11 @@ class OrbitEquations:
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return matrices_of(self.beside(y).tangent)[0]
+        return self.beside(y).matrices[0]
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
-        product = product_of(self.matrices(y))
+        product = self.compared(y).monodromy
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -448,7 +448,7 @@ class OrbitEquations:
         shapes (...,) and (..., N + parameters).
         """
         compared = self.compared(y, everywhere=True)
-        matrices = matrices_of(compared.legs.tangent)
+        matrices = compared.legs.matrices
         multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
         value, weights = shifted_determinant(matrices[0], multiplier)
         # tr(W_i dM_i) for each leg.
@@ -475,7 +475,8 @@ class OrbitEquations:
         return gradient
 
 
-class LegsBeside(NamedTuple):
+@dataclass(frozen=True)
+class LegsBeside:
     """Points beside some points y, and the legs there.
 
     The first axis of ``points`` and of the legs has y, and then a pair of points for each direction
@@ -488,6 +489,11 @@ class LegsBeside(NamedTuple):
     lengths: list[np.ndarray]
     legs: Legs
     everywhere: bool
+
+    @cached_property
+    def monodromy(self) -> np.ndarray:
+        """The derivative of the map Pᵏ at the points y, shape (..., 2, 2)."""
+        return product_of(self.legs.matrices[0])
 
     def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The values at the two points of a pair, of values of the legs."""

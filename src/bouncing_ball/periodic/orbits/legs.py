@@ -189,4 +189,6 @@ def without_force(impact: Impact, lag: np.ndarray) -> Impact:
 def time_to_section(dynamics: Dynamics, impact: Impact) -> np.ndarray:
     """The time from the start of the contact to the section, as an angle."""
     phase, _ = dynamics.section(impact)
+    if phase is impact.phase:
+        return np.zeros(phase.shape)
     return reduce_angle(phase - impact.phase)

@@ -250,6 +250,12 @@ class OrbitEquations:
         """The index of the impact after each impact of an orbit."""
         return np.roll(np.arange(self.impacts), -1)
 
+    @cached_property
+    def _places(self) -> tuple[np.ndarray, np.ndarray]:
+        """The indices of θ and of v of the impacts among the unknowns."""
+        theta = 2 * np.arange(self.impacts)
+        return theta, theta + 1
+
     def _lag(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Any:
         """κ of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
         if not resumes.any():
@@ -356,9 +362,11 @@ class OrbitEquations:
         for j, (column, (low, high)) in enumerate(zip(columns, limits, strict=True)):
             here = y[..., column]
             inside = (here >= low) & (here <= high)
-            moved = np.where(inside, step[..., column], 0.0)
-            right = np.where(inside, np.minimum(here + moved, high), here)
-            left = np.where(inside, np.maximum(here - moved, low), here)
+            moved = step[..., column]
+            if not inside.all():
+                moved = np.where(inside, moved, 0.0)
+            right = np.minimum(here + moved, np.maximum(here, high))
+            left = np.maximum(here - moved, np.minimum(here, low))
             points[1 + 2 * j, ..., column] = right
             points[2 + 2 * j, ..., column] = left
             lengths.append(right - left)
@@ -384,17 +392,16 @@ class OrbitEquations:
         legs = compared.legs
         k = self.impacts
         matrix = np.zeros((*y.shape[:-1], self.size, y.shape[-1]))
-        first = 2 * np.arange(k)
-        after = first[self._next]
         speed = legs.velocity[0]
         pull = legs.acceleration[0]
         a, b, c, d = (entry[0] for entry in legs.near)
-        height = first
-        rate = first + 1
-        matrix[..., height, first] = speed * a
-        matrix[..., height, first + 1] = speed * b
-        matrix[..., rate, first] = c - pull * a
-        matrix[..., rate, first + 1] = d - pull * b
+        # The rows of an orbit's two equations of each leg are also the columns of its θ and v.
+        height, rate = self._places
+        after = height[self._next]
+        matrix[..., height, height] = speed * a
+        matrix[..., height, rate] = speed * b
+        matrix[..., rate, height] = c - pull * a
+        matrix[..., rate, rate] = d - pull * b
         matrix[..., height, after] -= speed
         matrix[..., rate, after] += pull
         matrix[..., rate, after + 1] -= 1
@@ -402,8 +409,10 @@ class OrbitEquations:
             slope = compared.slope(j, legs.residual)
             right, left = compared.sides(j, legs.residual)
             bend = np.abs(right + left - 2 * legs.residual[0])
-            jumps = (bend > _JUMP) & (bend > np.abs(right - left) / 2)
-            slope = np.where(jumps, np.nan, slope)
+            jumps = bend > _JUMP
+            if jumps.any():
+                jumps &= bend > np.abs(right - left) / 2
+                slope = np.where(jumps, np.nan, slope)
             matrix[..., : 2 * k, self.size + j] = slope.reshape(*y.shape[:-1], -1)
         if self.selects:
             self._fill_durations(matrix, compared)

@@ -128,7 +128,7 @@ class Change(NamedTuple):
 def changes_of_sign(events: Sequence[Event], before: np.ndarray, after: np.ndarray) -> list[Change]:
     """The events whose test functions differ in sign before and after a step."""
     changed = np.flatnonzero((before >= 0) != (after >= 0))
-    return [Change(events[k], float(before[k]), float(after[k])) for k in changed]
+    return [Change(events[k], float(before[k]), float(after[k])) for k in changed.tolist()]
 
 
 class Passage(NamedTuple):

@@ -41,10 +41,13 @@ class Exact:
         loss = self.loss + (2 * self.zeta * self.omega if held else 0)
         stiffness = self.stiffness + (self.omega**2 if held else 0)
         if loss == 0 and stiffness == 0:
-            table = lambda t, order: sum(  # noqa: E731
-                lam * a * k**order * mp.sin(k * t + order * mp.pi / 2)
-                for k, a in enumerate(self.sine, 1)
-            )
+
+            def table(t, order):
+                return sum(
+                    lam * a * k**order * mp.sin(k * t + order * mp.pi / 2)
+                    for k, a in enumerate(self.sine, 1)
+                )
+
             speed = rate + table(start, 1)
             height = gap + table(start, 0) + speed * time - time**2 / 2
             return height - table(start + time, 0), speed - time - table(start + time, 1)

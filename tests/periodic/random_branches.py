@@ -294,7 +294,15 @@ def verdict_on(last, along, reason):
     closes = defect < CLOSES or not last.is_admissible()
     right = _is_right(End(last, along, reason, slowest, border))
     verdict = "named" if right is None and closes else "right" if right and closes else "wrong"
-    return Verdict(last.model.name, last.impacts, along, reason, verdict, defect, slowest)
+    return Verdict(
+        model=last.model.name,
+        impacts=last.impacts,
+        along=along,
+        reason=reason,
+        verdict=verdict,
+        defect=defect,
+        slowest=slowest,
+    )
 
 
 def sample(count, seed):

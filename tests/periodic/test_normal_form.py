@@ -64,7 +64,8 @@ def test_the_coefficient_of_a_doubling_is_that_of_forty_digits():
         along = mp.pi * (1 - r) / (1 + r)
         across = 2 * (1 + r * r) / (1 + r) ** 2
         lam = mp.sqrt(along**2 + across**2)
-        phase, velocity = mp.atan2(across, along), -2 * mp.pi / (1 + r)
+        phase = mp.atan2(across, along)
+        velocity = -2 * mp.pi / (1 + r)
         assert abs(float(lam) - doubling.amplitude) < 1e-12
         image = _map_in_digits(r, lam)
 
@@ -83,8 +84,8 @@ def test_the_coefficient_of_a_doubling_is_that_of_forty_digits():
                     slopes[i, j] = mp.diff(entry, at[j])
             values, right = mp.eig(slopes)
             k = 0 if abs(values[0] + 1) < abs(values[1] + 1) else 1
-            q, w = right[:, k], right[:, 1 - k]
-            q = q / mp.norm(q)
+            q = right[:, k] / mp.norm(right[:, k])
+            w = right[:, 1 - k]
             basis = mp.matrix([[q[0], w[0]], [q[1], w[1]]])
             inverse = basis**-1
 

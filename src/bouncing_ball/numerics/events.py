@@ -93,18 +93,20 @@ def locate(
     left: np.ndarray,
     right: np.ndarray,
     settings: NewtonSettings = _PATIENT,
+    *,
+    values: tuple[float, float] | None = None,
 ) -> SpecialPoint | None:
     """The zero of an event between two points of the branch, each of shape (N + 1,).
 
     Newton's method on the extended system starts from the secant estimate. The result is None if
     the method does not converge, or converges outside the bracket, because a step of the
-    continuation was too long or because there is no zero.
+    continuation was too long or because there is no zero. ``values`` are those of the test function
+    at the two points, if they are known.
     """
     if event.is_sign:
         last = domain_limits(problem, lambda y: event.function(y) > 0, np.stack([left, right]))
         return SpecialPoint(event.name, last[0])
-    before = float(event.function(left))
-    after = float(event.function(right))
+    before, after = values or (float(event.function(point)) for point in (left, right))
     chord = right - left
     guess = left + before / (before - after) * chord
     condition = event.condition or vanishing(event.function)
@@ -115,10 +117,18 @@ def locate(
     return SpecialPoint(event.name, found.point)
 
 
-def changes_of_sign(events: Sequence[Event], before: np.ndarray, after: np.ndarray) -> list[Event]:
+class Change(NamedTuple):
+    """An event on a step, and its test function before and after the step, of different signs."""
+
+    event: Event
+    before: float
+    after: float
+
+
+def changes_of_sign(events: Sequence[Event], before: np.ndarray, after: np.ndarray) -> list[Change]:
     """The events whose test functions differ in sign before and after a step."""
-    changed = (before >= 0) != (after >= 0)
-    return [event for event, here in zip(events, changed, strict=True) if here]
+    changed = np.flatnonzero((before >= 0) != (after >= 0))
+    return [Change(events[k], float(before[k]), float(after[k])) for k in changed.tolist()]
 
 
 class Passage(NamedTuple):
@@ -135,17 +145,18 @@ class Passage(NamedTuple):
 
 
 def locate_all(
-    problem: Problem, events: Sequence[Event], left: np.ndarray, right: np.ndarray
+    problem: Problem, changes: Sequence[Change], left: np.ndarray, right: np.ndarray
 ) -> Passage:
     """The zeros of several events between two points of the branch, in order along the chord."""
     located = []
     missed = None
     last = right
     # What is beyond the end of the branch need not be located.
-    for event in sorted(events, key=lambda event: not event.terminal):
-        if last is not right and not _is_before(event, left, last):
+    for event, before, after in sorted(changes, key=lambda change: not change.event.terminal):
+        there = after if last is right else float(event.function(last))
+        if (before >= 0) == (there >= 0):
             continue
-        special = locate(problem, event, left, last)
+        special = locate(problem, event, left, last, values=(before, there))
         if special is None:
             missed = event
             continue
@@ -157,12 +168,6 @@ def locate_all(
         if event.terminal:
             return Passage(tuple(special for _, special in located[:count]), event, None)
     return Passage(tuple(special for _, special in located), None, missed)
-
-
-def _is_before(event: Event, left: np.ndarray, end: np.ndarray) -> bool:
-    """Whether a test function changes its sign up to the end of a branch, where it may vanish."""
-    here, there = (event.function(point) for point in (left, end))
-    return bool((here >= 0) != (there >= 0))
 
 
 def domain_limits(

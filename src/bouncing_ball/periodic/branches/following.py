@@ -124,9 +124,12 @@ class Orbits:
         return orbits_on(self.problem, y, kind)
 
     @cached_property
-    def row(self) -> Orbit:
-        """The orbits as a row."""
-        return orbits_on(self.problem, self.branch.points)
+    def with_special(self) -> Orbit:
+        """The orbits, and after them those at :attr:`special_points`, as one row, because its
+        equations cost hardly more than those of a part of it.
+        """
+        special = [each.point for each in self.special_points]
+        return orbits_on(self.problem, np.stack([*self.branch.points, *special]))
 
     @property
     def special_points(self) -> list[SpecialPoint]:

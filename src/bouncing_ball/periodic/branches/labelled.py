@@ -156,7 +156,7 @@ def labelled(found: Orbits, made_by: str, **attributes: str) -> dict[str, Any]:
     for name in _PHASES:
         dims, values = variables[name]
         variables[name] = dims, reduce_angle(values)
-    variables["phase"] = variables["phase"][0], found.row.phases
+    variables["phase"] = variables["phase"][0], found.with_special.phases[: len(found)]
     along = found.problem.equations.along
     changing = {*along, *(name for name in variables if f"special_{name}" in variables)}
     known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in changing}

@@ -14,7 +14,7 @@ import xarray as xr
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.numerics.branch import End
-from bouncing_ball.periodic.branches.following import Orbits, orbits_on, unrolled
+from bouncing_ball.periodic.branches.following import Orbits, unrolled
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import columns_of
@@ -112,18 +112,20 @@ def branch_columns(found: Orbits) -> xr.Dataset:
 def branch_variables(found: Orbits) -> dict[str, Any]:
     """The variables and the coordinates of :func:`branch_columns`."""
     special = _special_places(found)
-    return _variables(found, special, orbits_on(found.problem, special.points))
+    return _variables(found, special, _in_order(found, special))
 
 
-def _variables(found: Orbits, special: "_Special", there: Orbit) -> dict[str, Any]:
-    """The variables of :func:`branch_variables`, with the orbits at the special places."""
-    problem = found.problem
-    variables = _orbits_in_columns(
-        unrolled(problem, found.branch.points, found.row),
-        unrolled(problem, special.points, there),
-        special.kinds,
-        _reasons(found),
-    )
+def _in_order(found: Orbits, special: "_Special") -> Orbit:
+    """The orbits of a branch, and after them its special orbits in their order along it."""
+    count = len(found)
+    return found.with_special[np.concatenate([np.arange(count), count + special.order])]
+
+
+def _variables(found: Orbits, special: "_Special", orbits: Orbit) -> dict[str, Any]:
+    """The variables of :func:`branch_variables`, from the orbits in their order."""
+    points = np.concatenate([found.branch.points, special.points])
+    orbits = unrolled(found.problem, points, orbits)
+    variables = _orbits_in_columns(orbits, special.kinds, _reasons(found))
     variables["special_arclength"] = "special", special.arclength
     variables["special_point"] = "special", special.before
     return variables
@@ -174,12 +176,13 @@ def _merges(problem: Coordinates, points: np.ndarray) -> bool:
 def kept_variables(found: Orbits) -> dict[str, Any]:
     """The variables of :func:`branch_variables`, with all that the orbits need to come back."""
     special = _special_places(found)
-    there = orbits_on(found.problem, special.points)
-    along = columns_of(found.row, "point")
+    orbits = _in_order(found, special)
+    there = orbits[len(found) :]
+    along = columns_of(orbits[: len(found)], "point")
     # No special orbit has parameters of its own if there is none.
     empty = {f"special_{name}": ("special", np.empty(0)) for name in _over_points(along)}
     kept = columns_of(there, "special", "special_")
-    variables = _variables(found, special, there)
+    variables = _variables(found, special, orbits)
     return (empty if not there.size else {}) | kept | along | variables
 
 
@@ -190,9 +193,11 @@ def _over_points(variables: dict[str, Any]) -> list[str]:
 
 class _Special(NamedTuple):
     """The special points of a branch in the order along it: the grazing orbits are located one kind
-    after another. ``before`` and ``arclength`` are those of :func:`_places`.
+    after another. ``order`` are their numbers among :attr:`.Orbits.special_points`. ``before`` and
+    ``arclength`` are those of :func:`_places`.
     """
 
+    order: np.ndarray
     points: np.ndarray
     kinds: list[str]
     before: np.ndarray
@@ -205,7 +210,7 @@ def _special_places(found: Orbits) -> _Special:
     before, arclength = _places(special, y)
     order = np.argsort(arclength, kind="stable")
     kinds = [str(found.special_points[k].name) for k in order]
-    return _Special(special[order], kinds, before[order], arclength[order])
+    return _Special(order, special[order], kinds, before[order], arclength[order])
 
 
 def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -233,32 +238,33 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
 
 
-def _orbits_in_columns(
-    orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
-) -> dict[str, Any]:
-    """Orbits along a branch, its special orbits with their kinds, and the reasons for its two ends,
-    as in :func:`branch_columns`.
+def _orbits_in_columns(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict[str, Any]:
+    """Orbits along a branch, of which the last ones are its special orbits of these kinds, and the
+    reasons for its two ends, as in :func:`branch_columns`.
     """
-
-    def of_impacts(orbits: Orbit, name: str) -> np.ndarray:
-        return np.reshape(getattr(orbits, name), (orbits.size, orbits.impacts))
-
+    count = orbits.size - len(kinds)
     data: dict[str, Any] = {}
-    for name in orbit.along:
-        data[name] = "point", _values(orbit, name)
-        data[f"special_{name}"] = "special", _values(special, name)
-    data |= {name: (("point", "impact"), of_impacts(orbit, name)) for name in OBSERVED}
+    for name in orbits.along:
+        values = _values(orbits, name)
+        data[name] = "point", values[:count]
+        data[f"special_{name}"] = "special", values[count:]
+    observed = {
+        name: np.reshape(getattr(orbits, name), (orbits.size, orbits.impacts)) for name in OBSERVED
+    }
+    data |= {name: (("point", "impact"), values[:count]) for name, values in observed.items()}
     for name in ("phase", "contact_duration"):
-        data[f"special_{name}"] = ("special", "impact"), of_impacts(special, name)
-    data["stable"] = "point", orbit.is_stable()
-    data["admissible"] = "point", orbit.is_admissible()
-    data["residual"] = "point", orbit.defect()
-    data["digits_left"] = "point", orbit.digits_left()
-    floquet = orbit.multipliers()
+        data[f"special_{name}"] = ("special", "impact"), observed[name][count:]
+    data["stable"] = "point", orbits.is_stable()[:count]
+    # A special orbit is next to an inadmissible one, whose simulation is of no use.
+    data["admissible"] = "point", orbits[:count].is_admissible()
+    defect = orbits.defect()
+    data["residual"] = "point", defect[:count]
+    data["digits_left"] = "point", orbits.digits_left()[:count]
+    floquet = orbits.multipliers()[:count]
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     data["special_kind"] = "special", np.array(kinds, dtype=str)
-    data["special_residual"] = "special", special.defect()
+    data["special_residual"] = "special", defect[count:]
     data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
     data["special"] = "special", np.arange(len(kinds))
@@ -287,7 +293,7 @@ def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
 def no_branch(count: int, error: Exception, kept: bool = False) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
-    found = _orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+    found = _orbits_in_columns(none, [], [str(error)] * 2)
     found["special_arclength"] = "special", np.empty(0)
     found["special_point"] = "special", np.empty(0)
     if kept:

@@ -159,7 +159,7 @@ class Impacts(Batch):
 
     # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of the orbits, without the axis of the impacts."""
         turns = np.shape(self.turns)[:-1]

@@ -16,6 +16,7 @@ from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero
+from bouncing_ball.periodic.orbits.products import matrices_of
 
 # Rounds that find the time from a landing to the section, and the change relative to the time of a
 # leg at which they end; each round doubles the number of digits.
@@ -85,6 +86,11 @@ class Legs:
         :attr:`tangent` once they are satisfied.
         """
         return self._jacobian(lambda landing: (landing.near, landing.passed_near))
+
+    @cached_property
+    def matrices(self) -> np.ndarray:
+        """DP of each leg as a matrix, shape (..., k, 2, 2)."""
+        return matrices_of(self.tangent)
 
     @cached_property
     def contraction(self) -> np.ndarray:
@@ -183,4 +189,6 @@ def without_force(impact: Impact, lag: np.ndarray) -> Impact:
 def time_to_section(dynamics: Dynamics, impact: Impact) -> np.ndarray:
     """The time from the start of the contact to the section, as an angle."""
     phase, _ = dynamics.section(impact)
+    if phase is impact.phase:
+        return np.zeros(phase.shape)
     return reduce_angle(phase - impact.phase)

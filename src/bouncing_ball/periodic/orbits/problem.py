@@ -44,7 +44,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -55,7 +55,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, landed, without_force
-from bouncing_ball.periodic.orbits.products import matrices_of, product_of, shifted_determinant
+from bouncing_ball.periodic.orbits.products import product_of, shifted_determinant
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
@@ -250,6 +250,12 @@ class OrbitEquations:
         """The index of the impact after each impact of an orbit."""
         return np.roll(np.arange(self.impacts), -1)
 
+    @cached_property
+    def _places(self) -> tuple[np.ndarray, np.ndarray]:
+        """The indices of θ and of v of the impacts among the unknowns."""
+        theta = 2 * np.arange(self.impacts)
+        return theta, theta + 1
+
     def _lag(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Any:
         """κ of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
         if not resumes.any():
@@ -356,9 +362,11 @@ class OrbitEquations:
         for j, (column, (low, high)) in enumerate(zip(columns, limits, strict=True)):
             here = y[..., column]
             inside = (here >= low) & (here <= high)
-            moved = np.where(inside, step[..., column], 0.0)
-            right = np.where(inside, np.minimum(here + moved, high), here)
-            left = np.where(inside, np.maximum(here - moved, low), here)
+            moved = step[..., column]
+            if not inside.all():
+                moved = np.where(inside, moved, 0.0)
+            right = np.minimum(here + moved, np.maximum(here, high))
+            left = np.maximum(here - moved, np.minimum(here, low))
             points[1 + 2 * j, ..., column] = right
             points[2 + 2 * j, ..., column] = left
             lengths.append(right - left)
@@ -384,17 +392,16 @@ class OrbitEquations:
         legs = compared.legs
         k = self.impacts
         matrix = np.zeros((*y.shape[:-1], self.size, y.shape[-1]))
-        first = 2 * np.arange(k)
-        after = first[self._next]
         speed = legs.velocity[0]
         pull = legs.acceleration[0]
         a, b, c, d = (entry[0] for entry in legs.near)
-        height = first
-        rate = first + 1
-        matrix[..., height, first] = speed * a
-        matrix[..., height, first + 1] = speed * b
-        matrix[..., rate, first] = c - pull * a
-        matrix[..., rate, first + 1] = d - pull * b
+        # The rows of an orbit's two equations of each leg are also the columns of its θ and v.
+        height, rate = self._places
+        after = height[self._next]
+        matrix[..., height, height] = speed * a
+        matrix[..., height, rate] = speed * b
+        matrix[..., rate, height] = c - pull * a
+        matrix[..., rate, rate] = d - pull * b
         matrix[..., height, after] -= speed
         matrix[..., rate, after] += pull
         matrix[..., rate, after + 1] -= 1
@@ -402,8 +409,10 @@ class OrbitEquations:
             slope = compared.slope(j, legs.residual)
             right, left = compared.sides(j, legs.residual)
             bend = np.abs(right + left - 2 * legs.residual[0])
-            jumps = (bend > _JUMP) & (bend > np.abs(right - left) / 2)
-            slope = np.where(jumps, np.nan, slope)
+            jumps = bend > _JUMP
+            if jumps.any():
+                jumps &= bend > np.abs(right - left) / 2
+                slope = np.where(jumps, np.nan, slope)
             matrix[..., : 2 * k, self.size + j] = slope.reshape(*y.shape[:-1], -1)
         if self.selects:
             self._fill_durations(matrix, compared)
@@ -426,11 +435,11 @@ class OrbitEquations:
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return matrices_of(self.beside(y).tangent)[0]
+        return self.beside(y).matrices[0]
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
-        product = product_of(self.matrices(y))
+        product = self.compared(y).monodromy
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -448,7 +457,7 @@ class OrbitEquations:
         shapes (...,) and (..., N + parameters).
         """
         compared = self.compared(y, everywhere=True)
-        matrices = matrices_of(compared.legs.tangent)
+        matrices = compared.legs.matrices
         multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
         value, weights = shifted_determinant(matrices[0], multiplier)
         # tr(W_i dM_i) for each leg.
@@ -475,7 +484,8 @@ class OrbitEquations:
         return gradient
 
 
-class LegsBeside(NamedTuple):
+@dataclass(frozen=True)
+class LegsBeside:
     """Points beside some points y, and the legs there.
 
     The first axis of ``points`` and of the legs has y, and then a pair of points for each direction
@@ -488,6 +498,11 @@ class LegsBeside(NamedTuple):
     lengths: list[np.ndarray]
     legs: Legs
     everywhere: bool
+
+    @cached_property
+    def monodromy(self) -> np.ndarray:
+        """The derivative of the map Pᵏ at the points y, shape (..., 2, 2)."""
+        return product_of(self.legs.matrices[0])
 
     def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The values at the two points of a pair, of values of the legs."""

@@ -132,6 +132,8 @@ def sticking(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     is no whole number, and infinitely many bounces precede it. No function of the state is smooth
     there, whereas the equations of the orbit are, because the lift-off depends on Λ alone.
     """
+    if not np.any(equations.durations(y) > 0):
+        return np.ones(y.shape[:-1])
     legs = equations.legs(y)
     dynamics, inside = equations.dynamics(y)
     if dynamics is None:

@@ -16,7 +16,8 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic.branches.following import PATIENT, Window
+from bouncing_ball.periodic.branches.following import PATIENT
+from bouncing_ball.periodic.orbits.ends import Window
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import sticking
 
@@ -42,7 +43,7 @@ def sticking_curve(
 
     Parameters
     ----------
-    orbits : OrbitEquations
+    equations : OrbitEquations
         The equations, with the two parameters.
     start : ndarray, shape (N + 2,)
         An orbit at the end of sticking.

@@ -161,6 +161,17 @@ def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     return [Event(ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=ALL_VANISH)]
 
 
+def bound_in_words(name: str, bound: float) -> str:
+    """A parameter at an end of its range.
+
+    Examples
+    --------
+    >>> bound_in_words("frequency_ratio", 2.0)
+    'frequency ratio = 2'
+    """
+    return f"{name.replace('_', ' ')} = {bound:g}"
+
+
 def limits_of(name: str, within: Window, column: int) -> list[Event]:
     """The ends of a branch at the finite ends of the range of a parameter, an entry of y."""
     found = []
@@ -184,7 +195,7 @@ def limit(name: str, bound: float, sign: float, column: int) -> Event:
         gradient[..., column] = sign
         return inside(y), gradient
 
-    reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
+    reason = f"{bound_in_words(name, bound)} is reached"
     return Event(_BOUND, inside, True, reason, condition)
 
 
@@ -329,7 +340,7 @@ def accumulation(
     for (name, within), at in zip(ranges.items(), last[-2:], strict=True):
         for bound in within:
             if abs(np.arcsinh(bound) - at) < creep:
-                shown = f"{name.replace('_', ' ')} = {bound:g}"
+                shown = bound_in_words(name, bound)
                 return End(f"the points accumulate next to {shown}, the end of its range")
     if equations.impacts == 1:
         if _zero_ahead(points, lambda y: flight_time(equations, y)) is not None:

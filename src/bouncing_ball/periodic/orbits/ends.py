@@ -220,7 +220,7 @@ def with_explained_ends(
         found = explained(problem.equations, end, inner, tests, limits)
         if not (end.stuck and found.event == Special.RELEASE_LOST):
             return found, []
-        place = lost_release(problem.equations, inner[0])
+        place = lost_release(problem.equations, problem.inner(points[0]))
         if place is None:
             return found, []
         lost = SpecialPoint(Special.RELEASE_LOST, problem.outer(place))

@@ -286,3 +286,17 @@ def test_branch_and_follow_name_a_landing_without_speed_in_the_same_words():
     assert str(followed.end_reason[1].values) == str(whole.end_reason[0].values)
     assert str(whole.end_reason[0].values).startswith("grazing of an impact: ")
     assert float(followed.amplitude[-1]) == pytest.approx(first.amplitude, abs=1e-6)
+
+
+def test_branch_and_follow_name_a_lost_release_of_a_law_in_the_same_words():
+    """The durations of its contacts are no unknowns, so that the place is not located."""
+    ball = bouncing_ball.contact_law("hunt-crossley", restitution=0.326, duration=0.4755)
+    whole = bouncing_ball.branch(ball, amplitude_max=4.0, points=30)
+    lost = "the orbit is next to a release without speed, where its equations are not smooth"
+    assert str(whole.end_reason[0].values) == lost
+    first, _, inner, *_ = whole.states()
+    followed = bouncing_ball.follow(inner, to=1.1 * first.amplitude, points=60)
+    assert str(followed.end_reason[1].values) == lost
+    for found in (whole, followed):
+        assert "release lost" not in found.special_kind.values
+    assert float(followed.amplitude[-1]) == pytest.approx(first.amplitude, abs=1e-6)

@@ -29,9 +29,10 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.periodic.branches.curves import CurveProblem, condition_of, curve_through
-from bouncing_ball.periodic.branches.following import Window, branch_from
+from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.ends import Window
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.special import Special
 

@@ -11,4 +11,5 @@ Calls for balls with arrays of parameters:
 ``places``             results at each place of the grid of the arguments
 ``orbits_of_ball``     an orbit, all orbits at an amplitude, and the limits of a family
 ``branches_of_ball``   whole branches over Λ
+``read_orbits``        saved results, with their figures and their orbits
 """

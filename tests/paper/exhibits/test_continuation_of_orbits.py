@@ -16,6 +16,7 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
+from bouncing_ball.periodic.branches.following import orbits_along
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
     period_doubling,
     saddle_node,
@@ -236,11 +237,15 @@ def test_a_very_stiff_contact_is_stable_between_its_bifurcations(follow):
     assert first_limits(branch)[:, -1] == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
 
 
-def test_both_ends_in_contact_with_each_other(follow):
-    # ϖ = 0.6, n = 2: the branch lies between permanent contact at both ends.
-    branch = follow(2, 0.3, 0.6, 10.0).branch
-    reasons = (str(branch.start), str(branch.end))
-    assert all(reason.startswith(("flight lost", "contact lost")) for reason in reasons)
+def test_a_branch_between_permanent_contact_and_the_grazing_of_an_impact(follow):
+    # ϖ = 0.6, n = 2: the branch ends on both sides before Λ = 10.
+    branch = follow(2, 0.3, 0.6, 10.0)
+    merged = branch.branch.start
+    grazes = branch.branch.end
+    assert str(merged) == "the flight vanishes: the orbit merges with permanent contact"
+    assert str(grazes).startswith("grazing of an impact: ")
+    flight = orbits_along(branch.problem, branch.branch.points[[0, -1]]).flight_time
+    assert flight[0] < 1e-3 and flight[1] > 5.0
 
 
 def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_settings):

@@ -35,25 +35,22 @@ from bouncing_ball.periodic.branches.following import (
     PATIENT,
     STEPS,
     Orbits,
-    Window,
-    explained,
-    limits_of,
 )
 from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
+from bouncing_ball.periodic.orbits.ends import (
+    Window,
+    accumulation,
+    events_along,
+    explained,
+    limits_of,
+    release_lost,
+)
 from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition
-from bouncing_ball.periodic.orbits.special import (
-    MERGES,
-    Special,
-    events,
-    flight_margin,
-    flight_time,
-    impact_margin,
-    loss_of_release,
-)
+from bouncing_ball.periodic.orbits.special import Special, flight_margin, impact_margin
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CURVE_STEPS = replace(STEPS, creep=1e-3)
@@ -71,10 +68,6 @@ _ANOTHER = 1e-3
 # The coefficient of doublings is computed at every so many points of a curve: it takes about as
 # long as a point, and changes slowly.
 _STRIDE = 4
-# A curve whose points accumulate is continued linearly from these last points, up to this distance.
-# The error of the place is of the order of the square of the distance.
-_LAST = 17
-_AHEAD = 0.2
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_IMPACT: impact_margin,
@@ -114,7 +107,7 @@ def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
 class CurveProblem:
     """Special orbits in two parameters as a :class:`~bouncing_ball.numerics.corrector.Problem`.
 
-    ``orbits`` has two parameters that vary, and ``condition`` is g with its gradient.
+    ``equations`` has two parameters that vary, and ``condition`` is g with its gradient.
     """
 
     equations: OrbitEquations
@@ -183,7 +176,7 @@ def curve_through(
     problem = CurveProblem(equations, condition_of(equations, kind))
     limits = _limits(equations, windows)
     # Where an impact grazes, so does its release.
-    ends = [] if kind is Special.GRAZING_IMPACT else [loss_of_release(equations)]
+    ends = [] if kind is Special.GRAZING_IMPACT else [release_lost(equations)]
     first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
         places = orbit_of_point(equations, first).parameters.items()
@@ -201,59 +194,25 @@ def curve_through(
             *_resonances(problem, branch, kind),
             *_generalized(problem, branch, kind),
         ]
-        backwards = replace(branch, points=branch.points[::-1], end=branch.start)
         named = replace(
             branch,
             special=tuple(special),
-            start=_explained_end(equations, backwards, kind, windows),
-            end=_explained_end(equations, branch, kind, windows),
+            start=_explained_end(problem, branch.start, branch.points, kind, windows),
+            end=_explained_end(problem, branch.end, branch.points[::-1], kind, windows),
         )
     return Curve(equations, named, kind)
 
 
 def _explained_end(
-    equations: OrbitEquations, branch: Branch, kind: Special, ranges: dict[str, Window]
+    problem: CurveProblem, end: End, points: np.ndarray, kind: Special, ranges: dict[str, Window]
 ) -> End:
-    """The end of a curve, with what is there if its points accumulate."""
-    tests = [each for each in (*events(equations), loss_of_release(equations)) if each.name != kind]
-    end = explained(branch, tests, _limits(equations, ranges))
-    if not end.stuck or end != branch.end:
-        return end
-    last = branch.points[-1]
-    for (name, within), at in zip(ranges.items(), last[-2:], strict=True):
-        for bound in within:
-            if abs(np.arcsinh(bound) - at) < CURVE_STEPS.creep:
-                shown = f"{name.replace('_', ' ')} = {bound:g}"
-                return End(f"the points accumulate next to {shown}, the end of its range")
-    if (
-        equations.impacts == 1
-        and _zero_ahead(branch, lambda y: flight_time(equations, y)) is not None
-    ):
-        return End(MERGES)
-    place = _zero_ahead(branch, loss_of_release(equations).function)
-    if place is None:
-        return end
-    values = equations.values(place).items()
-    where = ", ".join(f"{name.replace('_', ' ')} = {value:.3g}" for name, value in values)
-    sentence = (
-        f"the orbit is next to a release without speed, at about {where}, where its equations are "
-        "not smooth"
-    )
-    return End(sentence, event=Special.RELEASE_LOST)
-
-
-def _zero_ahead(branch: Branch, function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray | None:
-    """The point ahead of a curve at which a function vanishes if it goes on falling linearly as
-    over the last points; None if there is none near.
-    """
-    last = branch.points[-1]
-    before = branch.points[-min(_LAST, len(branch.points))]
-    here = float(function(last))
-    falls = float(function(before)) - here
-    if not (here > 0 and falls > 0):
-        return None
-    step = here / falls * (last - before)
-    return last + step if np.linalg.norm(step) < _AHEAD else None
+    """An end of a curve, with what is there if its points accumulate."""
+    equations = problem.equations
+    tests = [each for each in events_along(equations) if each.name != kind]
+    found = explained(equations, end, points, tests, _limits(equations, ranges))
+    if not found.stuck:
+        return found
+    return accumulation(equations, found, points, ranges, CURVE_STEPS.creep)
 
 
 def _special_at(problem: CurveProblem, y: np.ndarray) -> np.ndarray:

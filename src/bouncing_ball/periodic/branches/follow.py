@@ -19,16 +19,14 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, ParameterError, shortened, suggesting
 from bouncing_ball.periodic.branches import curves, following, grazing, switching
 from bouncing_ball.periodic.branches.closed import one_turn, without_start
-from bouncing_ball.periodic.branches.following import Window
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.ends import ENDS, Window, reason_at
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.special import MEANINGS, Special
+from bouncing_ball.periodic.orbits.special import Special
 
 MOST_POINTS = 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""
-# A branch ends at these orbits, because an impact, a flight or a rest disappears there.
-_ENDS = (Special.GRAZING_IMPACT, Special.RELEASE_LOST, Special.STICKING)
 
 
 @overload
@@ -142,9 +140,8 @@ def follow(
     balls = Balls(orbit.model, orbit.amplitude)
     allowed = AMPLITUDE_OF_ORBIT if name == LAMBDA else balls.range_of(name)
     value = None if to is None else checked_number("to", to, allowed)
-    if orbit.kind in _ENDS:
-        kind = Special(orbit.kind)
-        raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
+    if orbit.kind in ENDS:
+        raise NoOrbitError(f"the branch ends at the {reason_at(Special(orbit.kind))}")
     start = orbit
     towards = None
     if orbit.kind == Special.PERIOD_DOUBLING:

@@ -1,37 +1,33 @@
 """A branch of periodic orbits, followed along a parameter from one orbit to a value or an end."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind, resample
+from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
 from bouncing_ball.numerics.continuation import continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.orbits.balls import LAMBDA
-from bouncing_ball.periodic.orbits.lost_release import lost_release
+from bouncing_ball.periodic.orbits.ends import (
+    AT_BOUND,
+    Window,
+    events_along,
+    flights_vanish,
+    limits_of,
+    reason_at,
+    with_explained_ends,
+)
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations, turns_of_half, twice
-from bouncing_ball.periodic.orbits.special import (
-    CLOSE,
-    MEANINGS,
-    MERGES,
-    Coordinates,
-    Special,
-    events,
-    flight_time,
-    halves,
-    loss_of_release,
-    next_to,
-    turns_apart,
-)
+from bouncing_ball.periodic.orbits.special import Coordinates, Special, halves, turns_apart
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
@@ -39,35 +35,18 @@ STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15, cr
 where its points accumulate, for example where its orbits merge with permanent contact."""
 PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 """Newton's method from a guess that is not the last point of a branch."""
-_BOUND = "bound"
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.
 # If there is no period doubling near, it is followed up to a smaller distance, several times.
 _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
-_ALL_VANISH = "the flights vanish: the orbit merges with permanent contact"
-_CORNER = "the branch has a corner, where the map of the model has no derivative"
-# If the steps become too short, a parameter this close to the end of its range is given as the
-# reason.
-_AT_END = 1e-6
 # The duration of a contact is that of the release near the unknown one, of which Newton's method
 # finds twelve digits; a release at another time is another one.
 _SAME_DURATION = 1e-6
-_PLACES = {kind: f"a {kind}" for kind in Special} | {
-    Special.STICKING: "the end of sticking",
-    Special.RELEASE_LOST: "a release without speed",
-}
 # Without a value at which a branch ends, it ends at this multiple of the first value of the
 # parameter, or of 1, if the range of the parameter has no end.
 _FARTHEST = 10.0
-
-
-class Window(NamedTuple):
-    """The range of a parameter in which a branch or a curve is followed."""
-
-    low: float
-    high: float
 
 
 def orbits_on(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
@@ -207,33 +186,6 @@ def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) 
     return Window(low, min(high, _FARTHEST * max(abs(here), 1.0)))
 
 
-def limits_of(name: str, within: Window, column: int) -> list[Event]:
-    """The ends of a branch at the finite ends of the range of a parameter, an entry of y."""
-    found = []
-    for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
-        if np.isfinite(bound):
-            found.append(limit(name, bound, sign, column))
-    return found
-
-
-def limit(name: str, bound: float, sign: float, column: int) -> Event:
-    """The end of a branch where a parameter, an entry of y, reaches a bound: from above if the sign
-    is positive, otherwise from below.
-    """
-    at = np.arcsinh(bound)
-
-    def inside(y: np.ndarray) -> np.ndarray:
-        return sign * (y[..., column] - at)
-
-    def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        gradient = np.zeros_like(y)
-        gradient[..., column] = sign
-        return inside(y), gradient
-
-    reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
-    return Event(_BOUND, inside, True, reason, condition)
-
-
 def branch_from(
     start: Orbit,
     along: str = LAMBDA,
@@ -299,10 +251,8 @@ def branch_from(
                 equations, last, limits, near=near, towards=ahead, control=control, most=left
             )
             branch = _joined(branch, further)
-        tests = [*events(equations), loss_of_release(equations)]
         branch = _up_to_limit(equations, branch, within)
-        whole = replace(branch, end=_explained_end(equations, branch, tests, limits))
-        return Followed(equations, _with_lost_release(equations, whole))
+        return Followed(equations, with_explained_ends(equations, branch, limits))
 
 
 def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> Branch:
@@ -313,7 +263,7 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     last = branch.points[-1]
     ends = np.arcsinh(np.array(within))
     at = ends[np.argmin(np.abs(ends - last[-1]))]
-    if not branch.end.stuck or not abs(at - last[-1]) < _AT_END:
+    if not branch.end.stuck or not abs(at - last[-1]) < AT_BOUND:
         return branch
     # Rounding of sinh must not lead out of the range.
     while not within.low <= np.sinh(at) <= within.high:
@@ -326,18 +276,6 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
         points=np.concatenate([branch.points, [point]]),
         tangents=np.concatenate([branch.tangents, branch.tangents[-1:]]),
     )
-
-
-def _with_lost_release(equations: OrbitEquations, branch: Branch) -> Branch:
-    """A branch with the orbit at which its ball no longer leaves the table, if it ends there."""
-    if branch.end.event != Special.RELEASE_LOST:
-        return branch
-    place = lost_release(equations, branch.points[-1])
-    if place is None:
-        return branch
-    special = (*branch.special, SpecialPoint(Special.RELEASE_LOST, place))
-    reason = f"{Special.RELEASE_LOST}: {MEANINGS[Special.RELEASE_LOST]}"
-    return replace(branch, special=special, end=End(reason, event=Special.RELEASE_LOST))
 
 
 def _joined(branch: Branch, further: Branch) -> Branch:
@@ -370,39 +308,19 @@ def _followed(
     # does, the branch is cut off there.
     initial = min(control.initial, near * np.sqrt(2 * equations.impacts) / 2)
     equal_turns = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
-    at_rest = _resting(equations, start)
+    at_rest = flights_vanish(equations, start)
     try:
         branch = continue_branch(
             equations,
             start,
             towards=towards,
-            events=[*events(equations), loss_of_release(equations), equal_turns, *at_rest, *limits],
+            events=[*events_along(equations), equal_turns, *at_rest, *limits],
             control=replace(control, initial=initial),
             max_points=most,
         )
     except ContinuationError as error:
         raise NoOrbitError(str(error)) from None
     return _cut_off(equations, branch)
-
-
-def _resting(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
-    """The end of a branch of orbits of the restitution models with a rest on the table where the
-    rest fills nearly the whole period.
-
-    All flights vanish together there, and the bounces before the rest are so much slower than the
-    first one that rounding errors decide on them, before the steps become short.
-    """
-    legs = equations.beside(start).first()
-    if equations.impacts == 1 or legs.departure is None or not legs.dynamics.forgets:
-        return []
-    if not np.any(legs.departure.sticks):
-        return []
-
-    def aloft(y: np.ndarray) -> np.ndarray:
-        return np.sum(equations.intervals(y) - equations.durations(y), axis=-1)
-
-    near = min(CLOSE, float(aloft(start)) / 2)
-    return [Event(_ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=_ALL_VANISH)]
 
 
 def _cut_off(equations: OrbitEquations, branch: Branch) -> Branch:
@@ -452,36 +370,5 @@ def _up_to_halving(equations: OrbitEquations, branch: Branch) -> Branch | None:
         tangents=np.concatenate([branch.tangents, [along / np.linalg.norm(along)]]),
         special=(*branch.special, special),
         start=branch.start,
-        end=End(f"{kind_here}: {MEANINGS[kind_here]}"),
+        end=End(reason_at(kind_here)),
     )
-
-
-def _explained_end(
-    equations: OrbitEquations, branch: Branch, tests: Sequence[Event], limits: Sequence[Event]
-) -> End:
-    """The end of a branch: see :func:`explained`.
-
-    Where the only flight of an orbit vanishes, so do the speeds of its impact and of its release.
-    """
-    if branch.end.stuck and equations.impacts == 1:
-        if float(flight_time(equations, branch.points[-1])) < CLOSE:
-            return End(MERGES)
-    return explained(branch, tests, limits)
-
-
-def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -> End:
-    """The end of a branch, with the event that is near if the steps became too short."""
-    end = branch.end
-    if not end.stuck:
-        return end
-    last = branch.points[-1]
-    for limit in limits:
-        if abs(float(limit.function(last))) < _AT_END:
-            return End(limit.reason)
-    nearest = next_to(tests, last)
-    if nearest is None:
-        return End(_CORNER) if end.kind is EndKind.CORNER and tests else end
-    sentence = (
-        f"the orbit is next to {_PLACES[Special(nearest.name)]}, where its equations are not smooth"
-    )
-    return End(sentence, event=nearest.name)

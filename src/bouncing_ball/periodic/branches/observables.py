@@ -13,21 +13,10 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.numerics.branch import End
 from bouncing_ball.periodic.branches.following import Orbits, unrolled
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import columns_of
-from bouncing_ball.periodic.orbits.special import (
-    CLOSE,
-    MEANINGS,
-    MERGES,
-    Coordinates,
-    LossOfContact,
-    Special,
-    flight_time,
-    impact_margin,
-)
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),
@@ -71,11 +60,6 @@ OBSERVED = (
 )
 """The quantities of orbits along a branch or along ϖ."""
 
-# The slope of a straight line over logarithms is the same on two pieces, up to a tenth. On each of
-# them the speed becomes larger by this factor at least.
-_STRAIGHT = 0.1
-_FASTER = 1.05
-
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
 
@@ -96,21 +80,16 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     return {name: getattr(orbit, name) for name in names} | judged
 
 
-def branch_columns(found: Orbits) -> xr.Dataset:
-    """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends.
-
-    Over ``point``, the dataset has each parameter that varies, ``stable``, ``admissible``,
-    ``residual`` and ``digits_left``, and over (point, impact) the observables of the orbits, with
-    phases that pass ±π continuously. The multipliers are over (point, multiplier), ``special_…``
-    over ``special``, of which phases and durations are over (special, impact) too, and
-    ``end_reason`` over ``end``.
-    ``special_point`` is the number of the last point before a special orbit.
-    """
-    return xr.Dataset(branch_variables(found))
-
-
 def branch_variables(found: Orbits) -> dict[str, Any]:
-    """The variables and the coordinates of :func:`branch_columns`."""
+    """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends,
+    as the variables and the coordinates of a dataset.
+
+    Over ``point``, they have each parameter that varies, ``stable``, ``admissible``, ``residual``
+    and ``digits_left``, and over (point, impact) the observables of the orbits, with phases that
+    pass ±π continuously. The multipliers are over (point, multiplier), ``special_…`` over
+    ``special``, of which phases and durations are over (special, impact) too, and ``end_reason``
+    over ``end``. ``special_point`` is the number of the last point before a special orbit.
+    """
     special = _special_places(found)
     return _variables(found, special, _in_order(found, special))
 
@@ -132,45 +111,8 @@ def _variables(found: Orbits, special: "_Special", orbits: Orbit) -> dict[str, A
 
 
 def _reasons(found: Orbits) -> list[str]:
-    """Why the two ends of a branch are there, in the same words for all branches."""
-    branch = found.branch
-    ends = ((branch.start, branch.points), (branch.end, branch.points[::-1]))
-    return [_reason(found.problem, end, points) for end, points in ends]
-
-
-def _reason(problem: Coordinates, end: End, points: np.ndarray) -> str:
-    """Why a branch ends, by its points from this end on; with the event that could not be located
-    on its last step, if there is one.
-    """
-    if end.event not in list(LossOfContact):
-        return str(end)
-    grazes = f"{Special.GRAZING_IMPACT}: {MEANINGS[Special.GRAZING_IMPACT]}"
-    why = MERGES if _merges(problem, points) else grazes
-    return why if end.finished else f"{why}; {end}"
-
-
-def _merges(problem: Coordinates, points: np.ndarray) -> bool:
-    """Whether the flight of an orbit with one impact vanishes at the end of a branch.
-
-    Where a release by force is below the level of the table, a ball may return to this level
-    without speed after a flight. The speed of the impact is a power of the flight time next to
-    permanent contact, with the exponent 1, or 3 without damping. Its logarithm is then a straight
-    line over that of the flight time, whereas at the grazing of an impact a flight remains.
-    """
-    inner = problem.inner(points)
-    flight = flight_time(problem.equations, inner)
-    if flight[0] < CLOSE:
-        return True
-    speed = impact_margin(problem.equations, inner)
-    rows = [0]
-    for row, here in enumerate(speed):
-        if here > _FASTER * speed[rows[-1]]:
-            rows.append(row)
-    if len(rows) < 3 or not speed[0] > 0:
-        return False
-    longer, faster = (np.diff(np.log(values[rows[:3]])) for values in (flight, speed))
-    first, second = longer / faster
-    return bool(abs(first - second) < _STRAIGHT * first)
+    """Why the two ends of a branch are there."""
+    return [str(found.branch.start), str(found.branch.end)]
 
 
 def kept_variables(found: Orbits) -> dict[str, Any]:
@@ -240,7 +182,7 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def _orbits_in_columns(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict[str, Any]:
     """Orbits along a branch, of which the last ones are its special orbits of these kinds, and the
-    reasons for its two ends, as in :func:`branch_columns`.
+    reasons for its two ends, as in :func:`branch_variables`.
     """
     count = orbits.size - len(kinds)
     data: dict[str, Any] = {}
@@ -278,7 +220,7 @@ def _values(orbit: Orbit, name: str) -> np.ndarray:
 
 
 def n_t_columns(found: Orbits, kept: bool = False) -> xr.Dataset:
-    """As :func:`branch_columns` for orbits with one impact, from the unstable to the stable side,
+    """As :func:`branch_variables` for orbits with one impact, from the unstable to the stable side,
     without an axis of the impacts; with all that the orbits need to come back if they are ``kept``.
     """
     return _of_one_impact(xr.Dataset((kept_variables if kept else branch_variables)(found)))

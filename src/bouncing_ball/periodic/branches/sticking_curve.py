@@ -16,7 +16,8 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic.branches.following import PATIENT, Window
+from bouncing_ball.periodic.branches.following import PATIENT
+from bouncing_ball.periodic.orbits.ends import Window, bound_in_words
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import sticking
 
@@ -42,7 +43,7 @@ def sticking_curve(
 
     Parameters
     ----------
-    orbits : OrbitEquations
+    equations : OrbitEquations
         The equations, with the two parameters.
     start : ndarray, shape (N + 2,)
         An orbit at the end of sticking.
@@ -108,11 +109,11 @@ def _one_way(
         if not within[other][0] <= found[other] <= within[other][1]:
             window = windows[other]
             bound = window.high if found[other] > within[other][1] else window.low
-            return points, End(f"{_said(equations, other)} = {bound:g} is passed")
+            return points, End(f"{bound_in_words(equations.along[other], bound)} is passed")
         points.append(found)
         if ahead == last:
             value = windows[given].high if heading > 0 else windows[given].low
-            return points, End(f"{_said(equations, given)} = {value:g} is reached")
+            return points, End(f"{bound_in_words(equations.along[given], value)} is reached")
         step = min(2 * step, _LARGEST)
         change = found - here
         if abs(change[other]) > _FASTER * abs(change[given]):
@@ -121,11 +122,6 @@ def _one_way(
             given = other
             heading = float(np.sign(change[other]))
     return points, End(f"reached the limit of {most} points", finished=False)
-
-
-def _said(equations: OrbitEquations, column: int) -> str:
-    """The name of the parameter in a column, in words."""
-    return equations.along[column].replace("_", " ")
 
 
 def _limit(equations: OrbitEquations, guess: np.ndarray, given: int) -> np.ndarray:

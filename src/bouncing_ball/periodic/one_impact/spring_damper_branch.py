@@ -6,7 +6,7 @@ At a fixed contact duration D they are *linear* in ::
     X = Λ cos φ,    Y = Λ sin φ,    u = δ′ at impact
 
 Let T = 2πn - D be the flight time, and g, G, h the responses of the contact at
-time D (see :mod:`bouncing_ball.models.spring_damper`). The equations are then
+time D (see :mod:`bouncing_ball.models.oscillator`). The equations are then
 
 * release (Eq. 23): ``δ_b + κ δ′_b = 0``, that is ``u g + X Im h + Y Re h = G``
   for the displacement release, κ = 0;

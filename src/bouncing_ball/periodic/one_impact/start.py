@@ -21,13 +21,21 @@ from bouncing_ball.numerics.continuation import continue_branch, continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.periodic.branches.following import Window, limit, limits_of
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
+from bouncing_ball.periodic.orbits.ends import (
+    ENDS,
+    AtMargin,
+    Window,
+    ends_of_one_impact,
+    limit,
+    limits_of,
+    with_explained_ends,
+)
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, in_order, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
+from bouncing_ball.periodic.orbits.special import bifurcations
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # The largest number of Newton steps for the impact speed.
@@ -232,7 +240,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     start = fold.point(problem)
     ahead = tangent(problem.jacobian(start), np.ones_like(start))
     events = [
-        *ends_of_contact(problem),
+        *ends_of_one_impact(problem),
         limit(LAMBDA, amplitude, sign=-1.0, column=problem.size),
         limit(LAMBDA, LOWEST, sign=1.0, column=problem.size),
     ]
@@ -281,7 +289,7 @@ def continued(
     here = float(np.arcsinh(amplitude))
     events = (
         *bifurcations(problem),
-        *ends_of_contact(problem),
+        *ends_of_one_impact(problem),
         Event(_HERE, lambda y: y[..., -1] - here),
         *limits_of(LAMBDA, Window(LOWEST, most), problem.size),
     )
@@ -291,10 +299,11 @@ def continued(
         )
     except ContinuationError:
         return ()
-    branch = with_ends(problem, branch)
+    branch = with_explained_ends(problem, branch)
     # If the continuation failed, there may be further events beyond, and the list would be
     # incomplete.
-    return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
+    ends = branch.end.finished or branch.end.event in [*ENDS, *AtMargin]
+    return branch.special if ends or len(branch.points) == _POINTS else ()
 
 
 def orbits(model: Model, n: int, amplitude: float) -> Orbit:

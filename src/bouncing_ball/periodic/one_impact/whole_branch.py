@@ -17,16 +17,22 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.setting import require_paper
-from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
+from bouncing_ball.numerics.branch import Branch, ContinuationError, EndKind
 from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.periodic.branches.following import Followed, Window, limits_of
+from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
+from bouncing_ball.periodic.orbits.ends import (
+    Window,
+    ends_of_one_impact,
+    limits_of,
+    with_explained_ends,
+)
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.special import ends_of_contact, passed_by, with_ends
+from bouncing_ball.periodic.orbits.special import passed_by
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 LARGEST_STEP = 0.1
@@ -222,23 +228,13 @@ def _followed(
 
 
 def _checked(problem: PaperUnknowns, branch: Branch | ContinuationError) -> Followed | NoBranch:
-    """A branch with its ends of contact, or an error if it is not followed to its ends."""
+    """A branch with the reasons for its ends, or an error if it is not followed to its ends."""
     if isinstance(branch, ContinuationError):
         return branch
     for end in (branch.start, branch.end):
         if end.kind is EndKind.POINTS:
             return ContinuationError(f"the branch is not followed to its end: {end}")
-    found = with_ends(problem, branch)
-    start = _with_missed(branch.start, found.start)
-    end = _with_missed(branch.end, found.end)
-    return Followed(problem, replace(found, start=start, end=end))
-
-
-def _with_missed(before: End, named: End) -> End:
-    """The name of an end; if an event on the last step could not be located, with this sentence."""
-    if before.finished:
-        return named
-    return before._replace(event=named.event)
+    return Followed(problem, with_explained_ends(problem, branch))
 
 
 def _default_top(model: Model, n: int) -> float:
@@ -274,7 +270,7 @@ def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -
     equations = problem.equations
     of_orbits = [
         *passed_by(equations),
-        *ends_of_contact(equations),
+        *ends_of_one_impact(equations),
         *limits_of(LAMBDA, Window(LOWEST, top), equations.size),
     ]
     return [

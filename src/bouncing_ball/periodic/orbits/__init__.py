@@ -9,8 +9,12 @@ In reading order:
 ``problem``       the equations of an orbit with k impacts in m periods of the table
 ``release``       the grazing of a release
 ``lost_release``  where a contact no longer opens
-``special``       all special orbits, as events on a branch
+``special``       all special orbits, and the functions that vanish there
+``ends``          the ends of a branch, each with the reason in words
 ``simulation``    from a simulated ball to an orbit, and whether a ball follows an orbit
 ``impacts``       the impacts of orbits, and what follows from them
 ``orbit``         an orbit of any model, or an array of orbits: its motion and its stability
+``saved``         orbits in datasets, from which they come back with the same bits
+``return_map``    the return map next to an orbit, with its derivative
+``normal_form``   whether a bifurcation is supercritical, by its normal form
 """

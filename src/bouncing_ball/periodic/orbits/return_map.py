@@ -36,7 +36,7 @@ def returned(
 
     Parameters
     ----------
-    orbits : OrbitEquations
+    equations : OrbitEquations
         The equations of one orbit.
     y : ndarray, shape (N + parameters,)
         The orbit.

@@ -1,6 +1,6 @@
 r"""Special orbits on a branch: where the orbit changes its stability, or meets another contact.
 
-Each event except the last is a zero of a smooth function along the branch, which is located
+Each of them except the last two is a zero of a smooth function along the branch, which is located
 together with the equations of the orbit, to the accuracy of Newton's method:
 
 * a saddle-node and a period doubling, where a multiplier is 1 or -1;
@@ -8,15 +8,17 @@ together with the equations of the orbit, to the accuracy of Newton's method:
 * the grazing of an impact: the ball lands with δ′ = 0, so that this impact appears or disappears;
 * the grazing of a release: within a contact the release function y = δ + κ δ′ touches 0, at a local
   maximum, so that the contact opens there;
+* a lost release: the rate with which a contact opens falls to 0, so that a flight disappears. It is
+  located by :mod:`~bouncing_ball.periodic.orbits.lost_release`;
 * the end of sticking in the restitution model: the ball comes to rest just when the table leaves it
   behind, so that it would no longer stick. It is bisected along the branch to the last digit.
 
 A minimum of δ in flight is unique in each interval in which Λ sin τ > 1, because δ″ = Λ sin τ - 1
 is positive there and nowhere else. All minima are therefore found.
+
+Which of them end a branch is said in :mod:`~bouncing_ball.periodic.orbits.ends`.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
 from enum import StrEnum
 from typing import Protocol
 
@@ -24,21 +26,14 @@ import numpy as np
 
 from bouncing_ball import datasets
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import Problem
-from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.legs import Legs
-from bouncing_ball.periodic.orbits.lost_release import lost_release, rise_of_release
+from bouncing_ball.periodic.orbits.lost_release import rise_of_release
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition, release_margin
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
-# Rounding errors of 1e-16 are divided by the impact speed and by the flight time where both vanish:
-# the margin limits each of them to about 1e-12.
-_MARGIN = 1e-4
-CLOSE = 1e-2
-"""How small the function of an event is where a branch with too short steps ends next to it. Close
-to an event the functions are of the order of the square root of the distance."""
 # The value of a function where there is no minimum or maximum, and thus no event near.
 _FAR = 1.0
 
@@ -60,13 +55,6 @@ class Coordinates(Problem, Protocol):
 
     def event(self, event: Event) -> Event:
         """An event of :attr:`equations` as a function of y."""
-
-
-class LossOfContact(StrEnum):
-    """Where an orbit with one impact ceases to exist, besides :attr:`Special.RELEASE_LOST`."""
-
-    IMPACT = "contact lost"
-    FLIGHT = "flight lost"
 
 
 class Special(StrEnum):
@@ -93,13 +81,6 @@ MEANINGS = {
     Special.STICKING: "the ball comes to rest as the table leaves it behind",
 }
 """What each kind of special orbit is."""
-MERGES = "the flight vanishes: the orbit merges with permanent contact"
-"""Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
-
-
-def _reason(kind: Special) -> str:
-    """Why a branch ends at a special orbit."""
-    return f"{kind}: {MEANINGS[kind]}"
 
 
 def flight_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
@@ -144,37 +125,31 @@ def sticking(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
 
 
+def opening_rate(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
+    """The rate δ′ + κ δ″ with which a contact opens relative to the speed of its impact, the
+    smallest of each orbit, of the leading shape of y.
+
+    Where it vanishes, a flight disappears. An impact that grazes also has a slow release, but their
+    ratio tends to 1.
+    """
+    legs = equations.beside(y)
+    if legs.departure is None:
+        return np.full(y.shape[:-1], np.nan)
+    _, closing = equations.states(y)
+    velocity = _at_point(legs, rise_of_release(legs))
+    approach = np.where(equations.resuming, closing, -closing)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lowest = (velocity / approach).min(axis=-1)
+    if not legs.dynamics.forgets:
+        return lowest
+    # The bounces before a rest on the table become arbitrarily slow.
+    rests = _at_point(legs, legs.departure.sticks).any(axis=-1)
+    return np.where(rests, _FAR, lowest)
+
+
 def _at_point(legs: Legs, values: np.ndarray) -> np.ndarray:
     """Flat values of the legs at y and beside it, for those at y, shape (..., k)."""
     return np.reshape(values, legs.duration.shape)[0]
-
-
-def loss_of_release(equations: OrbitEquations) -> Event:
-    """The rate δ′ + κ δ″ with which a contact opens relative to the speed of its impact, the
-    smallest of an orbit.
-
-    Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
-    smooth function of the state, so that the place is the end of a branch, which is located by
-    :mod:`~bouncing_ball.periodic.orbits.lost_release`. An impact that grazes also has a slow
-    release, but their ratio tends to 1.
-    """
-
-    def share(y: np.ndarray) -> np.ndarray:
-        legs = equations.beside(y)
-        if legs.departure is None:
-            return np.full(y.shape[:-1], np.nan)
-        _, closing = equations.states(y)
-        velocity = _at_point(legs, rise_of_release(legs))
-        approach = np.where(equations.resuming, closing, -closing)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            lowest = (velocity / approach).min(axis=-1)
-        if not legs.dynamics.forgets:
-            return lowest
-        # The bounces before a rest on the table become arbitrarily slow.
-        rests = _at_point(legs, legs.departure.sticks).any(axis=-1)
-        return np.where(rests, _FAR, lowest)
-
-    return Event(Special.RELEASE_LOST, share, terminal=True, reason=_reason(Special.RELEASE_LOST))
 
 
 def halves(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
@@ -232,93 +207,3 @@ def passed_by(equations: OrbitEquations) -> list[Event]:
             condition=lambda y: release_condition(equations, y),
         ),
     ]
-
-
-def events(equations: OrbitEquations) -> Sequence[Event]:
-    """The events along a branch, which ends where an impact grazes and where sticking ends."""
-
-    def end(kind: Special, margin) -> Event:
-        return Event(kind, lambda y: margin(equations, y), terminal=True, reason=_reason(kind))
-
-    return (
-        *passed_by(equations),
-        end(Special.GRAZING_IMPACT, impact_margin),
-        replace(end(Special.STICKING, sticking), is_sign=True),
-    )
-
-
-def flight_time(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
-    """The shortest flight of each orbit, of the leading shape of y."""
-    return (equations.intervals(y) - equations.beside(y).duration[0]).min(axis=-1)
-
-
-def ends_of_contact(equations: OrbitEquations) -> list[Event]:
-    """Where an orbit with one impact ceases to exist: the ball no longer approaches the table at
-    impact, it no longer leaves the table at the end of contact, or its flight time vanishes.
-
-    On such a branch an orbit that is not admissible is followed as well, so that it does not end
-    where it grazes. The relative impact velocity and the flight time vanish together where an orbit
-    merges with permanent contact, and the equations are singular there.
-    """
-
-    def end(name: str, why: str, left: Callable[[np.ndarray], np.ndarray]) -> Event:
-        return Event(name, left, terminal=True, reason=f"{name}: {why}")
-
-    def released(y: np.ndarray) -> np.ndarray:
-        legs = equations.beside(y)
-        if legs.departure is None:
-            return np.full(y.shape[:-1], np.nan)
-        return _at_point(legs, rise_of_release(legs)).min(axis=-1)
-
-    return [
-        end(
-            LossOfContact.IMPACT,
-            "the ball no longer closes in on the table at impact",
-            lambda y: impact_margin(equations, y) - _MARGIN,
-        ),
-        end(Special.RELEASE_LOST, MEANINGS[Special.RELEASE_LOST], released),
-        end(
-            LossOfContact.FLIGHT,
-            "the contact fills the whole cycle",
-            lambda y: flight_time(equations, y) - _MARGIN,
-        ),
-    ]
-
-
-def next_to(tests: Sequence[Event], y: np.ndarray) -> Event | None:
-    """The event next to a point at which the steps of a branch became too short, None if there is
-    none: one at which branches end, if one is near.
-    """
-    near = {k: abs(float(event.function(y))) for k, event in enumerate(tests)}
-    close = [k for k, value in near.items() if value < CLOSE]
-    if not close:
-        return None
-    return tests[min(close, key=lambda k: (not tests[k].terminal, near[k]))]
-
-
-def with_ends(problem: Coordinates, branch: Branch) -> Branch:
-    """A branch with its ends of contact where the steps became too short.
-
-    Where the ball no longer leaves the table, the time of the release is not a smooth function of
-    the state, so that a branch approaches this end up to the shortest step. The special point is
-    found by :mod:`~bouncing_ball.periodic.orbits.lost_release`, or else it is the last point.
-    """
-    ends = ends_of_contact(problem.equations)
-    start, first = _end_near(problem, branch.start, branch.points[0], ends)
-    end, last = _end_near(problem, branch.end, branch.points[-1], ends)
-    return replace(branch, special=(*first, *branch.special, *last), start=start, end=end)
-
-
-def _end_near(
-    problem: Coordinates, end: End, point: np.ndarray, ends: Sequence[Event]
-) -> tuple[End, list[SpecialPoint]]:
-    """The end of contact next to a point at which the steps became too short, with its point."""
-    if not end.stuck:
-        return end, []
-    inner = problem.inner(point)
-    nearest = next_to(ends, inner)
-    if nearest is None:
-        return end, []
-    place = lost_release(problem.equations, inner) if nearest.name == Special.RELEASE_LOST else None
-    there = point if place is None else problem.outer(place)
-    return End(nearest.reason, event=nearest.name), [SpecialPoint(nearest.name, there)]

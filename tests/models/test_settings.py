@@ -1,5 +1,7 @@
 """Tables of several harmonics, drag and springs: against a second code, and in their limits."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.special import lambertw
@@ -290,10 +292,11 @@ def test_balls_with_the_values_of_the_paper_are_those_of_the_paper():
     assert bouncing_ball.corrected(free) == bouncing_ball.corrected(paper)
 
 
-def test_an_orbit_without_drag_is_followed_along_the_drag():
-    start = bouncing_ball.orbit(rigid(restitution=0.5, flight=Drag(0.0)), amplitude=1.4)
+@pytest.mark.parametrize("maker", [rigid, partial(spring_damper, frequency_ratio=20.0)])
+def test_an_orbit_without_drag_is_followed_along_the_drag(maker):
+    start = bouncing_ball.orbit(maker(restitution=0.5, flight=Drag(0.0)), amplitude=1.4)
     along = bouncing_ball.follow(start, along="drag", to=0.1)
-    end = bouncing_ball.orbit(rigid(restitution=0.5, flight=Drag(0.1)), amplitude=1.4)
+    end = bouncing_ball.orbit(maker(restitution=0.5, flight=Drag(0.1)), amplitude=1.4)
     assert float(along.drag[0]) == 0 and abs(float(along.drag[-1]) - 0.1) < 1e-12
     assert abs(along.phase.isel(point=-1).item() - end.phase) < 1e-9
 

@@ -244,6 +244,19 @@ def test_what_is_wrong_is_said_in_one_line(wrong, says):
     assert says in str(caught.value) and "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("off", [0.9, 1.1])
+def test_a_resonance_is_as_near_to_each_harmonic(off):
+    """An undamped spring with |ν² - k²| below 1e-8 k² is refused, at k = 2 as at k = 1."""
+    table = Waveform([1.0, 0.2])
+    for harmonic in (1, 2):
+        frequency = harmonic * np.sqrt(1 + off * 1e-8)
+        if off < 1:
+            with pytest.raises(ModelError, match="resonance"):
+                rigid(restitution=0.5, table=table, flight=Spring(frequency))
+        else:
+            rigid(restitution=0.5, table=table, flight=Spring(frequency))
+
+
 @pytest.mark.parametrize(
     ("waveform", "flight", "is_paper"),
     [

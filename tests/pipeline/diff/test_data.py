@@ -140,6 +140,12 @@ def test_points_that_slide_along_their_curve_agree(pair):
         (lambda x: x.isel(case=slice(2)), "phase", "float64, case: ", "float64, case: 2"),
         (lambda x: x.assign_coords(phase=x.phase), "phase", "float64", "(coordinate)"),
         (
+            lambda x: x.assign(phase=x.phase.assign_attrs(comment="a word")),
+            "comment of phase",
+            None,
+            "'a word'",
+        ),
+        (
             lambda x: x.assign(phase=x.phase.assign_attrs(units="degree")),
             "units of phase",
             "'rad'",

@@ -148,8 +148,8 @@ EDITS = [
     Edit(ORBIT, "rising * rising / 2", "rising * rising / 4", "Eqs. 37-38"),
     Edit(
         "accuracy/errors.py",
-        "dtype=float) - reference) / reference",
-        "dtype=float) - reference) / exact",
+        "dtype=float) - base) / base",
+        "dtype=float) - base) / value",
         "Eqs. 37-38",
     ),
     Edit(

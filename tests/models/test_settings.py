@@ -109,6 +109,24 @@ def test_derivatives_and_their_bounds(case):
         assert np.all(np.abs(third) <= bounds.third_bound * (1 + 1e-12))
 
 
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("speed", [0.0, 1.0])
+def test_a_ball_is_aloft_before_its_earliest_landing(case, speed):
+    """Also one that leaves from rest where the table already falls faster than the ball."""
+    harmonics, flight = CASES[case]
+    phase = np.linspace(-np.pi, np.pi, 400)
+    none = np.zeros(phase.size)
+    path = LinearFlight(none, none + speed, phase, 4.0, Waveform(*harmonics), flight)
+    height, rate, second, _ = path.gap(none)
+    leaves = (second >= 0) | (rate > 0)
+    assert leaves.any() and not height.any()
+    earliest = np.where(leaves, path.earliest_landing(), 0.0)
+    for share in np.linspace(0, 1, 200):
+        height, *_ = path.gap(share * earliest)
+        # A bound that is the landing itself is so up to rounding.
+        assert np.all(height >= -1e-13)
+
+
 def test_responses_join_where_the_series_ends():
     for loss, stiffness in ((0.7, 0.0), (0.1, 1.0), (0.9, 0.25), (0.0, 4.0)):
         scale = max(np.sqrt(stiffness), loss)
@@ -216,6 +234,9 @@ def test_samples_of_a_table_are_its_harmonics():
     assert found == Waveform([0.7, 0.0, 0.0], [0.0, 0.0, -0.2])
     assert np.abs(found.height(phase) + 3.0 - given).max() < 1e-14
     assert hash(found) == hash(Waveform([0.7, 0.0, 0.0], [0.0, 0.0, -0.2]))
+    # Three samples have one harmonic.
+    fewest = Waveform.of_samples(np.sin(2 * np.pi * np.arange(3) / 3))
+    assert np.abs(fewest.height(phase) - np.sin(phase)).max() < 1e-15
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,11 @@
 """The n-T branch as an explicit curve."""
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from sixty_digits import Exact
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import LINEAR, Release
@@ -46,8 +48,24 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
     excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
     point = branch_point(excess, contact, n)
     orbit = orbits_of_points(point, contact, n)
-    # A 3 × 3 solve: its condition costs about two digits.
-    assert np.all(np.abs(scaled_residual(orbit, point, contact)) < 1e-13)
+    # A 3 × 3 solve: its condition costs about two digits. Near the undamped resonance the equations
+    # add two motions of the size Λ/√γ, with some ten roundings each.
+    steady = float(point.amplitude) / np.sqrt(float(contact.off_resonance) or np.inf)
+    allowed = 1e-13 + 20 * np.finfo(float).eps * steady
+    assert np.all(np.abs(scaled_residual(orbit, point, contact)) < allowed)
+
+
+@pytest.mark.parametrize("detuning", [1e-6, 3e-5, 7e-5, 1e-4, 1e-3])
+def test_next_to_the_undamped_resonance_a_point_has_all_its_digits(detuning):
+    """Against 60 digits, where the closed form of the motion in contact loses some."""
+    contact = SpringDamper(1 + detuning, 0.0)
+    for excess in (-0.5, 0.0, 0.2, 0.7):
+        point = branch_point(excess, contact, 1)
+        with mpmath.workdps(60):
+            expected = [float(x) for x in Exact(contact, 1).orbit(excess)]
+        found = [float(x) for x in (point.contact_duration, point.u, point.x, point.y)]
+        # Some twenty roundings of the largest of them.
+        np.testing.assert_allclose(found, expected, rtol=0, atol=5e-15 * np.max(np.abs(expected)))
 
 
 @pytest.mark.parametrize("release", LINEAR)

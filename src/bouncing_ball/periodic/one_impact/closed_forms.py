@@ -99,7 +99,8 @@ class SpringDamperBranch:
         setting = self.model.setting
         if setting is PAPER:
             return found
-        return replace(found, model=replace(found.model, setting=setting))
+        # The model of such an orbit is one of a contact, which has a setting.
+        return replace(found, model=replace(found.model, setting=setting))  # type: ignore[call-arg]
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node."""

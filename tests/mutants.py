@@ -353,6 +353,9 @@ def chosen(
     Beside it are those of its module and of its folders.
     """
     folder = path.relative_to(PACKAGE).parent
+    # The tests of a room's rooms stand in one folder.
+    while not Path("tests", folder).is_dir():
+        folder = folder.parent
     own = str(path), f"tests/{folder}/test_{path.stem}.py"
     # The tests of all models and laws are in a folder of their own.
     folders = f"tests/{folder}/", "tests/contracts/"

@@ -82,6 +82,8 @@ class Branch:
 
 # Number of rounds that equalise the chords between resampled points.
 _EQUALISING_ROUNDS = 10
+# Residuals of rounding are of one size at neighbouring points, and may be larger by this factor.
+_ROUNDINGS = 10
 # The largest size of a last step of Newton's method that rounding alone may cause, half the digits.
 _SMALL = 1e-8
 
@@ -125,7 +127,7 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
     wanted = np.linspace(0.0, arc[-1], count)
     points = branch.points
-    satisfied = np.abs(problem.residual(points)).max()
+    satisfied = _ROUNDINGS * np.abs(problem.residual(points)).max()
     for _ in range(_EQUALISING_ROUNDS):
         guess, along = _between(wanted, arc, branch.points, branch.tangents)
         found = newton(problem, guess, plane(along, guess))

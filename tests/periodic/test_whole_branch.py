@@ -53,13 +53,14 @@ def test_a_branch_is_kept_if_an_event_next_to_its_end_cannot_be_located():
     assert float(found.residual.max()) < 1e-11
 
 
-def test_a_branch_that_merges_with_a_ringing_contact_is_resampled():
+@pytest.mark.parametrize("points", [30, 300])
+def test_a_branch_that_merges_with_a_ringing_contact_is_resampled(points):
     """At ϖ = 1/2 without damping the contact rings with the period 4π. The 2-T branch merges with
     such a motion at Λ = 1; the speed of its impact is the cube of the flight time there, and
     rounding errors move its points by 1e-10 along the branch.
     """
     ball = bouncing_ball.spring_damper(restitution=1.0, frequency_ratio=0.5)
-    found = bouncing_ball.branch(ball, n=2, points=30)
+    found = bouncing_ball.branch(ball, n=2, points=points)
     why = str(found.end_reason.values[0])
     assert why == "the flight vanishes: the orbit merges with permanent contact"
     aloft = 4 * np.pi - found.contact_duration.values[:4]

@@ -1,5 +1,7 @@
 """Means over motions against quadrature, the energy balance, and orders of convergence."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
 
@@ -70,6 +72,24 @@ def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
     of = means(law, np.array([2.0, 0.9]), found, 400)
     assert abs(of[3, 0] - found.exponent[0]) < 8 * found.exponent_error[0]
     assert found.kind[1] == "permanent contact" and np.isnan(of[:, 1]).all()
+
+
+def test_a_deviation_grows_as_the_product_of_the_derivatives_says():
+    """Over eight impacts of a chaotic ball, from a deviation of the phase."""
+    model = SpringDamperModel(SpringDamper.from_restitution(0.85, 50.0, RELEASE))
+    found, of = found_and_means(model, 2.0, samples=8)
+    assert found.kind == "chaotic"
+    dynamics, first, relative, _ = model.dynamics(2.0).first_impacts(
+        found.end_phase, found.end_velocity
+    )
+    product = np.eye(2)
+    time = 0.0
+    for leg in islice(dynamics.legs(dynamics.start(first, relative), differentiate=True), 8):
+        by = leg.jacobian()
+        product = np.array([[by.a[0], by.b[0]], [by.c[0], by.d[0]]]) @ product
+        time += float(leg.passed[0])
+    growth = np.log(np.linalg.norm(product[:, 0]))
+    assert float(of[3]) == pytest.approx(2 * np.pi * growth / time, rel=1e-12)
 
 
 def test_a_law_whose_contact_is_a_spring_has_the_means_of_the_linear_contact():

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from flint import arb
 from mpmath import mp, mpf
 from sixty_digits import Exact
 
@@ -11,12 +12,25 @@ from bouncing_ball.beyond.proofs.balls import precision
 from bouncing_ball.beyond.proofs.certificates import Proved, period_doubling
 from bouncing_ball.beyond.proofs.problem import RationalProblem
 from bouncing_ball.beyond.proofs.return_map import flip_coefficient, return_map
+from bouncing_ball.beyond.proofs.series import Series, angle
 from bouncing_ball.models.damping import Release
 
 SPRING = {"frequency_ratio": Fraction(10), "restitution": Fraction(85, 100)}
 SOFT = {"frequency_ratio": Fraction(44, 100), "restitution": Fraction(144, 10_000)}
 # The truncation of central differences is about the square of this step, times higher derivatives.
 STEP = mpf(10) ** -10
+
+
+def test_the_angle_of_a_point_has_the_taylor_series_of_the_arctangent():
+    """Along a line on which x and y change together, so that all terms of a degree add up."""
+    with precision(120), mp.workdps(60):
+        x = Series.variable(arb("1.25"), 0, 3)
+        y = Series.variable(arb("0.5"), 1, 3)
+        found = [number(term) for term in angle(x, 2 * x + y).terms]
+        expected = mp.taylor(lambda t: mp.atan2(2 * (1.25 + t) + 0.5 + t, 1.25 + t), 0, 3)
+        # The terms of the degrees 0 to 3: 1, 2, 3 and 4 of them.
+        degrees = [mp.fsum(found[k * (k + 1) // 2 : (k + 1) * (k + 2) // 2]) for k in range(4)]
+        assert max(abs(a - b) for a, b in zip(degrees, expected, strict=True)) < 1e-20
 
 
 def number(ball):

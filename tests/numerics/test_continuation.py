@@ -5,6 +5,7 @@ import pytest
 from bounds_of_branches import parameter_bound
 
 from bouncing_ball.numerics.branch import STARTED, Branch, ContinuationError, resample
+from bouncing_ball.numerics.branch import _between as hermite
 from bouncing_ball.numerics.continuation import continue_both_ways, continue_branch, solve_at
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import StepControl
@@ -289,6 +290,18 @@ def test_resampled_points_are_solutions_from_end_to_end(count):
     assert points[[0, -1]] == pytest.approx(branch.points[[0, -1]], abs=EXACT)
     angle = np.arctan2(points[:, 1], points[:, 0])
     assert np.all(np.diff(angle) > 0)
+
+
+def test_the_predictor_of_resampled_points_has_its_derivative_as_direction():
+    """On a cubic it is exact: (t, t² - t³) between t = -1, 0 and 2."""
+    time = np.array([-1.0, 0.0, 2.0])
+    points = np.stack([time, time**2 - time**3], axis=-1)
+    rates = np.stack([np.ones(3), 2 * time - 3 * time**2], axis=-1)
+    wanted = np.array([-0.75, 0.5, 1.75])
+    at, direction = hermite(wanted, time, points, rates)
+    np.testing.assert_allclose(at, np.stack([wanted, wanted**2 - wanted**3], -1), atol=1e-14)
+    slope = 2 * wanted - 3 * wanted**2
+    np.testing.assert_allclose(direction[:, 1] / direction[:, 0], slope, rtol=0, atol=1e-13)
 
 
 def test_resampled_points_do_not_depend_on_the_step_control():

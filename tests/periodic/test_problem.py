@@ -8,6 +8,7 @@ from orbits_found import FOUND, balls, found_orbit, known_orbit
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.problem import twice
 from bouncing_ball.periodic.orbits.simulation import is_admissible
+from bouncing_ball.periodic.orbits.special import flight_margin, opening_rate
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
@@ -32,6 +33,17 @@ def test_an_orbit_with_one_impact_is_that_of_the_closed_form(name, along):
     ours = problem.trace_and_determinant(y)
     assert np.abs(np.subtract(ours, orbit.trace_and_determinant())).max() < 1e-12
     assert is_admissible(problem, y) == orbit.is_admissible()
+
+
+def test_the_functions_of_special_orbits_are_not_defined_outside_the_range_of_a_parameter():
+    _, problem, inside = known_orbit("restitution", 1.3, ("restitution",))
+    outside = inside.copy()
+    outside[-1] = np.arcsinh(1.5)
+    for rows in (outside, np.stack([outside, outside, outside])):
+        for function in (flight_margin, opening_rate):
+            values = function(problem, rows)
+            assert values.shape == rows.shape[:-1] and np.all(np.isnan(values))
+            assert np.isfinite(function(problem, inside))
 
 
 @pytest.mark.parametrize("name", CLOSED)

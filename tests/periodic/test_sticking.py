@@ -20,6 +20,8 @@ from orbits_found import balls
 import bouncing_ball
 from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.periodic.branches.following import branch_from
+from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
+from bouncing_ball.periodic.orbits.ends import Window
 from bouncing_ball.periodic.orbits.special import Special
 
 # The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
@@ -152,6 +154,19 @@ def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
         assert point.defect() < 1e-12
         r = point.model.impact_law
         self_similar(point, "amplitude", point.amplitude, r, within=ON_A_CURVE)
+
+
+@pytest.mark.slow
+def test_a_curve_of_ends_has_the_directions_from_point_to_point():
+    """Its points are found one by one, and have no tangent of their own."""
+    orbit = ended(*CASES[0])
+    equations = orbit.problem("amplitude", "restitution")
+    ranges = Window(0.0, np.inf), Window(0.0, 1.0)
+    curve = sticking_curve(equations, orbit.point(equations), ranges, 3)
+    chords = curve.points[2:] - curve.points[:-2]
+    assert len(curve.points) == 5
+    lengths = np.linalg.norm(chords, axis=-1, keepdims=True)
+    np.testing.assert_allclose(curve.tangents[1:-1], chords / lengths, rtol=0, atol=1e-12)
 
 
 @pytest.mark.long

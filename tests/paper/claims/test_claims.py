@@ -36,6 +36,18 @@ def test_names_are_unique_and_references_are_there():
     assert all(claim.restates in alone for claim in CLAIMS if claim.restates)
 
 
+@pytest.mark.parametrize(
+    ("dip", "thousandth", "hundredth"),
+    [(0.0099, True, False), (0.0101, True, True), (0.00099, False, False)],
+)
+def test_a_dip_is_visible_from_the_share_on_that_is_named(monkeypatch, dip, thousandth, hundredth):
+    monkeypatch.setattr("bouncing_ball.paper.claims.evidence.dip", lambda data, amplitude: dip)
+    (one,) = (claim for claim in CLAIMS if claim.id == "dip at 1.2")
+    findings = one.decide({})
+    seen = {reading: found.verdict == "reproduced" for reading, found in findings.items()}
+    assert seen == {"a thousandth is visible": thousandth, "a hundredth is visible": hundredth}
+
+
 def test_every_formula_is_claimed_or_explains(data):
     named = " ".join(path.read_text("utf-8") for path in (ROOT / "src").glob("*/paper/claims/*.py"))
     rows = {*data["formulas"].formula.values} - {*DEFINITIONS}

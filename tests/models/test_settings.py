@@ -171,9 +171,9 @@ def test_chattering_with_drag_ends_where_many_bounces_do():
         time = 0.0
         phase, speed = 0.3, 1e-6
         for _ in range(40):
-            flown = _first_landing(phase, 0.5 * speed, flight)
-            time += flown[0]
-            phase, speed = phase + flown[0], flown[1]
+            flown, speed = _first_landing(phase, 0.5 * speed, flight)
+            time += flown
+            phase += flown
         # The terms with g′ and l, which change the sum by 1e-13, are in it. The next ones are of
         # the order of T³ = 1e-17, and rounding errors of a landing are 1e-16 over its speed times
         # its time, some 1e-15.

@@ -39,11 +39,13 @@ def test_the_functions_of_special_orbits_are_not_defined_outside_the_range_of_a_
     _, problem, inside = known_orbit("restitution", 1.3, ("restitution",))
     outside = inside.copy()
     outside[-1] = np.arcsinh(1.5)
-    for rows in (outside, np.stack([outside, outside, outside])):
-        for function in (flight_margin, opening_rate):
-            values = function(problem, rows)
-            assert values.shape == rows.shape[:-1] and np.all(np.isnan(values))
-            assert np.isfinite(function(problem, inside))
+    several = np.stack([outside, outside, outside])
+    for function in (flight_margin, opening_rate):
+        assert np.isfinite(function(problem, inside))
+        one = function(problem, outside)
+        assert one.shape == () and np.isnan(one)
+        values = function(problem, several)
+        assert values.shape == (3,) and np.all(np.isnan(values))
 
 
 @pytest.mark.parametrize("name", CLOSED)

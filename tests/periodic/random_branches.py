@@ -25,9 +25,9 @@ GRAZES = 1e-5
 NEXT_TO = 1e-4
 # The rate of a located release without speed, which is a double zero: half the digits.
 LOST = 1e-6
-# How near a ball of the corrected model is to leaving, or to staying, where its branch ends: the
-# time of the highest point is known to half the digits of the last step.
-LEAVES = 1e-5
+# How near a ball of the corrected model is to leaving, or to staying, where its branch ends: its
+# height or its speed above the table, of the numbers of the second code, which keep eleven digits.
+LEAVES = 1e-11
 
 
 class Verdict(NamedTuple):
@@ -265,7 +265,10 @@ def _is_right(end):
         return float(np.max(np.abs(last.velocities[:half] - last.velocities[half:]))) < 1e-7
     if reason.startswith("release lost") and last.model.name != "corrected":
         return float(np.min(np.abs(_rates_of_release(last)))) < LOST
-    if reason.startswith("step too small") and last.model.name == "corrected":
+    if reason.startswith("permanent contact"):
+        # Steps along Λ become as short there as the difference by which the equations have slopes.
+        return 0 < float(last.amplitude) - 1 < 1e-4
+    if reason.startswith("end of sticking") and last.model.name == "corrected":
         return border < LEAVES
     return None
 
@@ -283,13 +286,17 @@ def judged(orbit, along, to):
 
 def verdict_on(last, along, reason):
     """What the second code says of the last orbit of a branch that ends for a reason."""
-    closing = last.velocities - float(last.amplitude) * np.cos(last.phases)
-    slowest = float(np.min(np.abs(closing)))
     border = np.inf
     if last.model.name == "corrected":
+        # The speed at the instants, which a grazing impact has lost as well.
+        delay = float(last.model.signature(1.0).delay)
+        instants = last.phases + delay
+        closing = last.velocities - delay - float(last.amplitude) * np.cos(instants)
         defect, border = corrected_defect(last)
     else:
+        closing = last.velocities - float(last.amplitude) * np.cos(last.phases)
         defect = defect_of(last)
+    slowest = float(np.min(np.abs(closing)))
     # The ball of an orbit that is not admissible moves otherwise, and the page says so.
     closes = defect < CLOSES or not last.is_admissible()
     right = _is_right(End(last, along, reason, slowest, border))

@@ -91,7 +91,7 @@ class Dynamics(Batch, ABC):
     forgets: ClassVar[bool] = False
     """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
     continues: ClassVar[bool] = False
-    """Whether :meth:`depart_after` can continue a contact beyond its first end."""
+    """Whether :meth:`depart_after` can continue a contact or a rest beyond its first end."""
 
     @classmethod
     def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
@@ -138,7 +138,7 @@ class Dynamics(Batch, ABC):
     def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
         """The ends of the contacts nearest to given durations, with their derivatives.
 
-        It is the first end, as in :meth:`depart`, unless the model :attr:`continues` contacts.
+        They are the first ends, as in :meth:`depart`, unless the model :attr:`continues` contacts.
         """
         return self.depart(impact, differentiate=True)
 
@@ -189,9 +189,15 @@ class Dynamics(Batch, ABC):
         monodromy would decide about stability.
         """
 
-    def settles(self, impact: Impact) -> np.ndarray:
-        """Whether a contact that :meth:`depart_after` ends at a given duration can begin with these
-        impacts; always, unless bounces must first end before the next lift-off.
+    def selects(self, impact: Impact, duration: np.ndarray) -> bool:
+        """Whether :meth:`depart_after` must be told these durations of contacts, because their
+        ends, or their rests on the table, follow from them.
+        """
+        return self.continues and bool(np.any(duration > 0))
+
+    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
+        """Whether balls rest on the table after these impacts where :meth:`depart_after` says so
+        for these durations, and nowhere else; always, if there is no rest.
         """
         return np.ones(impact.phase.shape, dtype=bool)
 
@@ -225,6 +231,12 @@ class Dynamics(Batch, ABC):
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The state of an impact on the Poincaré section: a phase and a relative velocity."""
         return impact.phase, impact.velocity
+
+    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray | float, np.ndarray | float]:
+        """κ of the section, where flights have δ + κ δ′ = 0 if they arrive with δ′, and
+        d(κ δ′)/dδ′; both are 0 if the section is the table's level.
+        """
+        return 0.0, 0.0
 
     def landed(
         self,

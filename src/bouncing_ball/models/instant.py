@@ -16,8 +16,8 @@ class Instant(NamedTuple):
     """The signature at an impact speed v, and its derivatives with respect to v.
 
     ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D are arrays that broadcast; t_c,
-    σ and D are times in units of 1/Ω. ``d_delay``, ``d_restitution`` and ``d_load`` are the
-    derivatives of t_c, r and σ with respect to v.
+    σ and D are times in units of 1/Ω. ``d_delay``, ``d_restitution``, ``d_load`` and
+    ``d_duration`` are the derivatives with respect to v.
     """
 
     delay: np.ndarray
@@ -27,6 +27,7 @@ class Instant(NamedTuple):
     d_delay: np.ndarray | float = 0.0
     d_restitution: np.ndarray | float = 0.0
     d_load: np.ndarray | float = 0.0
+    d_duration: np.ndarray | float = 0.0
 
     def at(self, speed: ArrayLike) -> Instant:
         """This signature, which is the same at every speed, in the shape of the speeds."""

@@ -34,6 +34,7 @@ from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.models.sticking import lifted, pressed, stay
+from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
@@ -170,14 +171,18 @@ class RestitutionDynamics(Dynamics):
         rests = self._left(impact, flight, duration > 0, none)
         return lifted(rests, self.amplitude, self.setting)
 
-    def settles(self, impact: Impact) -> np.ndarray:
-        """Whether the bounces after each impact end before the next lift-off, so that the ball
-        comes to rest.
+    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
+        """Whether the bounces before each rest, which has a positive duration, end before the next
+        lift-off, so that the ball comes to rest.
 
         Next to the limit this takes the more bounces, the nearer r is to 1: some 300 for r = 0.9.
         """
-        settled = np.zeros(impact.phase.shape, dtype=bool)
-        balls = np.arange(settled.size)
+        balls = np.flatnonzero(duration > 0)
+        if balls.size < duration.size:
+            settled = np.ones(duration.shape, dtype=bool)
+            settled[balls] = self.take(balls).settles(pick(impact, balls), duration[balls])
+            return settled
+        settled = np.zeros(duration.shape, dtype=bool)
         lift = self.setting.lift_off(impact.phase, self.amplitude)
         left = np.where(lift.never, np.nan, np.mod(lift.phase - impact.phase, 2 * np.pi))
         for leg in self.legs(impact, differentiate=True):

@@ -116,10 +116,6 @@ class Setting(Batch, ABC):
         """
 
     @abstractmethod
-    def arriving(self, flight: Any, time: np.ndarray, phase: np.ndarray, amplitude: Any) -> Any:
-        """δ″ at the end of a flight, at the table's phase."""
-
-    @abstractmethod
     def lift_off(self, phase: np.ndarray, amplitude: np.ndarray) -> LiftOff:
         """The next lift-offs of balls that rest on the table from a phase on."""
 
@@ -189,9 +185,6 @@ class PaperSetting(Setting):
     ) -> Any:
         x, y = level
         return Flight(displacement, velocity, x, y, amplitude)
-
-    def arriving(self, flight: Any, time: np.ndarray, phase: np.ndarray, amplitude: Any) -> Any:
-        return table(reduce_angle(phase), amplitude)[1] - 1
 
     def lift_off(self, phase: np.ndarray, amplitude: np.ndarray) -> LiftOff:
         # Λ sin τ rises through 1.
@@ -301,9 +294,6 @@ class GeneralSetting(Setting):
         amplitude: Any,
     ) -> Any:
         return LinearFlight(displacement, velocity, phase, amplitude, self.form, self.suspension)
-
-    def arriving(self, flight: Any, time: np.ndarray, phase: np.ndarray, amplitude: Any) -> Any:
-        return flight.gap(time)[2]
 
     def lift_off(self, phase: np.ndarray, amplitude: np.ndarray) -> LiftOff:
         push = Pressure(phase, amplitude, self.form, self.suspension)

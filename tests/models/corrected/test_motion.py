@@ -1,12 +1,15 @@
 """The corrected restitution model from any state, against the exact contact."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR
+from bouncing_ball.models.laws.hertzian import HuntCrossley
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
@@ -117,3 +120,52 @@ def test_after_a_weak_impact_the_ball_stays_until_the_table_falls_away():
     # spring, which lets go where its force has gone: a delay of order 1/ϖ.
     exact = SpringDamper(20.0, 0.3).dynamics(1.5).simulate(0.0, 1.5 - 1e-3, 1)
     assert float(exact.contact_duration[0]) == pytest.approx(phase, abs=4 / 20)
+
+
+class Falling(NamedTuple):
+    """A ball that lands at a phase of the table with a speed, and its delay t_c(v)."""
+
+    amplitude: float
+    phase: float
+    speed: float
+    delay: Callable
+
+    def missing(self, t):
+        """δ + h(v) after a time t, and its rounding error."""
+        lam, phase = self.amplitude, self.phase
+        speed = self.speed + t + lam * (np.cos(phase + t) - np.cos(phase))
+        delay = self.delay(speed)
+        falls = (lam * np.cos(phase) - self.speed) * t - t * t / 2
+        moved = lam * (np.sin(phase + t) - np.sin(phase))
+        rounding = 8 * np.finfo(float).eps * (1 + lam) * (1 + delay)
+        return falls - moved + speed * delay, rounding
+
+
+@pytest.mark.parametrize(
+    ("contact", "count"),
+    [
+        (SpringDamper.from_restitution, 300),
+        (lambda r, ratio: HuntCrossley(ratio**2.5, (1 - r) / 3), 50),
+    ],
+    ids=["linear", "Hunt-Crossley"],
+)
+def test_the_instant_after_a_slow_landing_is_the_first(contact, count):
+    """At the instant δ + h is 0 up to rounding, and before it positive."""
+    rng = np.random.default_rng(8)
+    for _ in range(count):
+        r, ratio = rng.uniform(0.05, 1.0), np.exp(rng.uniform(np.log(2.2), np.log(200.0)))
+        model = CorrectedModel.of_contact(contact(r, ratio))
+        lam, phase = rng.uniform(0.0, 4.0), rng.uniform(-np.pi, np.pi)
+        delay = float(model.signature(1.0).delay)
+        speed = delay * np.exp(rng.uniform(np.log(1e-3), np.log(4 * (1 + lam))))
+        descent = model.dynamics(np.array([lam]))._descent
+        found = float(descent(np.array([phase]), np.array([-speed]))[0])
+
+        def at(v, model=model):
+            return model.signature(np.maximum(v, 1e-30)).delay
+
+        ball = Falling(lam, phase, speed, at)
+        at_instant, rounding = ball.missing(found)
+        assert abs(at_instant) <= rounding
+        before, _ = ball.missing(np.linspace(0.0, found, 2001)[:-1])
+        assert np.all(before > -rounding)

@@ -125,8 +125,8 @@ EDITS = [
     ),
     Edit(
         "periodic/orbits/problem.py",
-        "height = speed * landing.late",
-        "height = speed + landing.late",
+        "faster = landing.velocity - velocity",
+        "faster = 0.9 * landing.velocity - velocity",
         "Eqs. 21-26",
     ),
     Edit(

@@ -28,11 +28,18 @@ from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.flight import Flight, emerge, land, table
 from bouncing_ball.models.sticking import lifted, stay
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero
+from bouncing_ball.numerics.first_zero import Zero, first_zero
 
-# Newton steps from the landing to the instant: the start has an error of third
-# order in t_c, and each step doubles the order.
+# Newton steps from the landing to the instant: the start has an error of third order in t_c, and
+# each step doubles the order.
 _DESCENT = 4
+# A landing is slow if its speed is below so many t_c (1 + Λ). During the descent of a faster one,
+# which takes 2 t_c at most, δ + h falls with a quarter of this speed at least.
+_SLOW = 4.0
+# A search for a slow instant, if the delay depends on the speed, takes steps of this part of the
+# time, and then bisects the step on which δ + h changes its sign.
+_STEP = 1 / 16
+_BISECTIONS = 20
 # A time that exceeds the duration of a contact by rounding still belongs to it.
 _LATER = 1e-12
 # Errors of the tabulated signature of an elastic contact, multiplied by the ratio of flight
@@ -45,6 +52,7 @@ class CorrectedDynamics(Dynamics):
     """Impacts and flights of the corrected model; ``law`` is the signature."""
 
     forgets: ClassVar[bool] = True
+    continues: ClassVar[bool] = True
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """First impacts that start at phases φ with δ′ at the table's level, and their instants."""
@@ -55,12 +63,29 @@ class CorrectedDynamics(Dynamics):
 
     def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """Impacts whose instants are at phases ψ, with the given relative velocity before them."""
-        arrival = velocity + table(phase, self.amplitude)[0]
-        hit = corrected_map.impact(self.law, self.amplitude, phase, arrival)
+        instant = reduce_angle(phase)
+        arrival = velocity + table(instant, self.amplitude)[0]
+        hit = corrected_map.impact(self.law, self.amplitude, instant, arrival)
         return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or of the rest on the table that follows it."""
+        departure = self._released(impact)
+        start, leaves = emerge(departure.flight)
+        departure = departure._replace(aloft=np.where(leaves, start, 0.0))
+        departure = stay(departure, ~leaves, self.amplitude)
+        return lifted(departure, self.amplitude) if differentiate else departure
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The end of each contact, or of the rest on the table after it: the one that is nearest to
+        the duration, also where the other one is that of the ball (:meth:`settles`).
+        """
+        released = self._released(impact)
+        departure = stay(released, self._rests(released, duration), self.amplitude)
+        return lifted(departure, self.amplitude)
+
+    def _released(self, impact: Impact) -> Departure:
+        """The ends of the contacts, and the flights from there, also of balls that do not rise."""
         hit = impact.known
         amplitude = self.amplitude
         x, y = table(hit.phase, amplitude)
@@ -70,11 +95,37 @@ class CorrectedDynamics(Dynamics):
         end = hit.phase + rest
         flight = Flight(displacement, velocity, *table(end, amplitude), amplitude)
         none = np.zeros_like(end)
-        start, leaves = emerge(flight)
-        aloft = np.where(leaves, start, 0.0)
-        departure = Departure(end, hit.instant.duration + none, flight, none, aloft=aloft)
-        departure = stay(departure, ~leaves, amplitude)
-        return lifted(departure, amplitude) if differentiate else departure
+        return Departure(end, hit.instant.duration + none, flight, none)
+
+    def _rests(self, released: Departure, duration: np.ndarray) -> np.ndarray:
+        """Which durations are nearer to the end of a rest on the table than to that of the contact
+        before it.
+        """
+        lift = self.setting.lift_off(released.phase, self.amplitude)
+        rest = np.where(lift.never, np.inf, lift.wait)
+        return duration > released.duration + rest / 2
+
+    def selects(self, impact: Impact, duration: np.ndarray) -> bool:
+        """Whether there is a rest after a contact; the contacts themselves have one end."""
+        return bool(np.any(self._rests(self._released(impact), duration)))
+
+    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
+        """Whether the balls that do not rise above the table after their contacts are those whose
+        durations are those of a rest.
+        """
+        released = self._released(impact)
+        _, leaves = emerge(released.flight)
+        return leaves != self._rests(released, duration)
+
+    def duration_slopes(
+        self, impact: Impact, departure: Departure
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Those of D(v), or of t_c(v) - ψ for a rest, which lasts until a fixed phase."""
+        instant = impact.known.instant
+        rests = departure.sticks
+        none = np.zeros(impact.phase.shape)
+        by_speed = np.where(rests, instant.d_delay, instant.d_duration)
+        return np.where(rests, -1.0, none), -by_speed
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The start of the next contact, and the time from the last start to it."""
@@ -108,6 +159,9 @@ class CorrectedDynamics(Dynamics):
         both = -velocity - pull + np.sqrt(velocity * velocity + pull * pull)
         falls = both > 0
         time = np.where(falls, -2 * delay * velocity / np.where(falls, both, 1.0), 2 * delay)
+        slow = np.flatnonzero(-velocity < _SLOW * delay * (1 + self.amplitude))
+        if slow.size:
+            time[slow] = self.take(slow)._slow_descent(fall.take(slow), delay[slow])
         for _ in range(_DESCENT):
             displacement, rate, acceleration, _ = fall.gap(time)
             if not self.law.is_constant:
@@ -117,6 +171,35 @@ class CorrectedDynamics(Dynamics):
             sinks = by_time < 0
             time = time - np.where(sinks, missing / np.where(sinks, by_time, -1.0), 0.0)
         return time
+
+    def _slow_descent(self, fall: Flight, delay: np.ndarray) -> np.ndarray:
+        """The first times at which falls from the table's level have the depth h; t_c is the delay
+        at the landing.
+
+        After a slow landing δ + h may rise at first, and become 0 several times.
+        """
+        speed = -fall.velocity
+        # Up to this time δ + h, which is u t_c at first, loses less than it has.
+        start = speed * delay / (2 * (speed + (1 + self.amplitude) * delay))
+        if self.law.is_constant:
+            return first_zero(fall.unloaded(-delay), start).time
+        early = late = start
+        above = np.ones(start.shape, dtype=bool)
+        while above.any():
+            early = np.where(above, late, early)
+            late = np.where(above, late * (1 + _STEP), late)
+            above &= self._above_depth(fall, late)
+        for _ in range(_BISECTIONS):
+            middle = (early + late) / 2
+            above = self._above_depth(fall, middle)
+            early = np.where(above, middle, early)
+            late = np.where(above, late, middle)
+        return late
+
+    def _above_depth(self, fall: Flight, time: np.ndarray) -> np.ndarray:
+        """Whether the balls are above the depth h of an impact with their speed."""
+        displacement, rate, _, _ = fall.gap(time)
+        return (rate < 0) & (displacement - rate * self.law(-rate).delay > 0)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -145,6 +228,11 @@ class CorrectedDynamics(Dynamics):
         """The phase of the instant and the relative velocity before it."""
         hit = impact.known
         return reduce_angle(hit.phase), -hit.speed
+
+    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """-t_c and -d(v t_c)/dv at v = -δ′: the ball is below the table by h = v t_c(v)."""
+        instant = self.law(-velocity)
+        return -instant.delay, instant.d_delay * velocity - instant.delay
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """The factor of areas at the instant, 0 if the ball sticks.

@@ -247,7 +247,7 @@ class Signature(Batch):
         values[1] /= row
         values = values.reshape(2, 4, *shape)
         delay, restitution, load, duration = values[0]
-        d_delay, d_restitution, d_load, _ = values[1]
+        d_delay, d_restitution, d_load, d_duration = values[1]
         return Instant(
             delay=delay,
             restitution=restitution,
@@ -256,4 +256,5 @@ class Signature(Batch):
             d_delay=d_delay,
             d_restitution=d_restitution,
             d_load=d_load,
+            d_duration=d_duration,
         )

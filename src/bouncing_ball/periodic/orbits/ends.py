@@ -45,6 +45,9 @@ to an event the functions are of the order of the square root of the distance.""
 AT_BOUND = 1e-6
 """A parameter this close to the end of its range is the reason of too short steps."""
 _BOUND = "bound"
+# Next to the threshold of permanent contact the lift-off moves as the root of the distance, so that
+# the steps become short at this distance.
+_AT_THRESHOLD = 1e-4
 # The speed of an impact is a power of the flight time next to permanent contact. The exponent is at
 # most this one, and a straight line over logarithms has the same slope on two pieces, up to a
 # tenth. On each of them the speed becomes larger by this factor at least.
@@ -62,6 +65,7 @@ MERGES = "the flight vanishes: the orbit merges with permanent contact"
 """Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
 ALL_VANISH = "the flights vanish: the orbit merges with permanent contact"
 """Why a branch of orbits with several impacts and a rest ends where the rest fills the cycle."""
+_HELD = "permanent contact: at a smaller Λ a ball at rest stays on the table"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 _PLACES = {kind: f"a {kind}" for kind in Special} | {
     Special.STICKING: "the end of sticking",
@@ -103,6 +107,11 @@ def release_lost(equations: OrbitEquations) -> Event:
     return _end(Special.RELEASE_LOST, lambda y: opening_rate(equations, y))
 
 
+def end_of_sticking(equations: OrbitEquations) -> Event:
+    """The end of a branch where a ball just stays on the table after an impact, or just leaves."""
+    return replace(_end(Special.STICKING, lambda y: sticking(equations, y)), is_sign=True)
+
+
 def _end(kind: Special, left: Callable[[np.ndarray], np.ndarray]) -> Event:
     """The end of a branch at a special orbit, where nothing of a quantity is left."""
     return Event(kind, left, terminal=True, reason=reason_at(kind))
@@ -110,18 +119,18 @@ def _end(kind: Special, left: Callable[[np.ndarray], np.ndarray]) -> Event:
 
 def events_along(equations: OrbitEquations) -> list[Event]:
     """The special orbits along any branch: those that it passes by, and those at which it ends."""
-    settles = _end(Special.STICKING, lambda y: sticking(equations, y))
     return [
         *passed_by(equations),
         _end(Special.GRAZING_IMPACT, lambda y: impact_margin(equations, y)),
-        replace(settles, is_sign=True),
+        end_of_sticking(equations),
         release_lost(equations),
     ]
 
 
 def ends_of_one_impact(equations: OrbitEquations) -> list[Event]:
     """The ends of a whole branch of orbits with one impact: the impact, the release or the flight
-    vanishes, of which the first and the last are met at a margin.
+    vanishes, of which the first and the last are met at a margin, or the ball just stays on the
+    table.
 
     On such a branch an orbit that is not admissible is followed as well, so that it does not end
     where it grazes.
@@ -138,7 +147,7 @@ def ends_of_one_impact(equations: OrbitEquations) -> list[Event]:
         terminal=True,
         reason=MERGES,
     )
-    return [impact, release_lost(equations), flight]
+    return [impact, release_lost(equations), flight, end_of_sticking(equations)]
 
 
 def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
@@ -273,10 +282,21 @@ def explained(
     for each in limits:
         if abs(float(each.function(last))) < AT_BOUND:
             return End(each.reason)
+    if _at_threshold(equations, last):
+        return End(_HELD)
     if nearest is None:
         return End(_CORNER) if end.kind is EndKind.CORNER and tests else end
     sentence = f"the orbit is next to {_PLACES[nearest]}, where its equations are not smooth"
     return End(sentence, end.finished, event=nearest)
+
+
+def _at_threshold(equations: OrbitEquations, y: np.ndarray) -> bool:
+    """Whether a ball rests on the table next to the Λ below which it would stay there."""
+    legs = equations.legs(y)
+    if legs.dynamics is None or not (legs.dynamics.forgets and np.any(legs.departure.sticks)):
+        return False
+    above = equations.amplitude(y) / legs.dynamics.setting.threshold() - 1
+    return bool(np.all(above < _AT_THRESHOLD))
 
 
 def next_to(tests: Sequence[Event], y: np.ndarray) -> Special | None:

@@ -367,14 +367,15 @@ class Impacts(Batch):
             for other in self.model.implied({name: balls.values[name]}):
                 if other in along:
                     raise ParameterError(f"{other} follows from {name}: both cannot vary")
-        dynamics, _ = self._start
-        lasting = bool(np.any(self.durations > 0))
+        dynamics, impact = self._start
+        whole = (*self.shape, self.impacts)
+        durations = np.broadcast_to(self.durations, whole).ravel()
         return OrbitEquations(
             balls=balls,
             impacts=self.impacts,
             turns=self.turns,
             along=along,
-            selects=dynamics.continues and lasting,
+            selects=dynamics.selects(impact, durations),
             resumes=np.broadcast_to(self.resumes, (self.impacts,)),
         )
 

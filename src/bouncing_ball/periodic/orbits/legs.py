@@ -5,7 +5,6 @@ depends smoothly on its start also where the flight grazes the table.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -15,13 +14,7 @@ import numpy as np
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero
 from bouncing_ball.periodic.orbits.products import matrices_of
-
-# Rounds that find the time from a landing to the section, and the change relative to the time of a
-# leg at which they end; each round doubles the number of digits.
-_ROUNDS = 6
-_SETTLED = 1e-15
 
 
 @dataclass(frozen=True)
@@ -30,8 +23,8 @@ class Legs:
 
     ``residual`` are the two equations of each leg, its height and its velocity in the words of
     :mod:`bouncing_ball.periodic.orbits.problem`, shape (..., k, 2), and ``duration`` the durations
-    of the contacts. ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1}, with y =
-    δ, or δ + κ δ′ where a contact resumes. ``dynamics``, which is None where no ball is inside the
+    of the contacts. ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1}, with y
+    of :class:`Landing`. ``dynamics``, which is None where no ball is inside the
     ranges of the parameters, ``impact``, ``departure`` and ``landing`` are flat.
     """
 
@@ -74,18 +67,37 @@ class Legs:
         )
 
     @cached_property
-    def tangent(self) -> Jacobian:
-        """DP, the derivative of the map from the start of each leg to its landing."""
-        return self._jacobian(lambda landing: (landing.after, landing.passed))
+    def after(self) -> tuple[Impact, np.ndarray]:
+        """The impacts with which the flights end, and the times from impact to impact."""
+        landing = self.landing
+        return self._arrived(
+            landing.time + landing.late, landing.velocity + landing.late * landing.acceleration
+        )
 
     @cached_property
-    def near(self) -> Jacobian:
+    def near(self) -> tuple[Impact, np.ndarray]:
+        """The states of the flights at the phases θ_{i+1} as impacts, and the times to them.
+
+        There the ball has not landed yet, or should have landed before.
+        """
+        return self._arrived(self.landing.time, self.landing.velocity)
+
+    def _arrived(self, time: np.ndarray, velocity: np.ndarray) -> tuple[Impact, np.ndarray]:
+        return arrived(self.dynamics, self.departure, time, velocity, self.landing.lag)
+
+    @cached_property
+    def tangent(self) -> Jacobian:
+        """DP, the derivative of the map from the start of each leg to its landing."""
+        return self._jacobian(near=False)
+
+    @cached_property
+    def tangent_near(self) -> Jacobian:
         """The derivative of the map from the start of each leg to the phase θ_{i+1}.
 
         It is that of a landing at this phase. It belongs to the equations, and is equal to
         :attr:`tangent` once they are satisfied.
         """
-        return self._jacobian(lambda landing: (landing.near, landing.passed_near))
+        return self._jacobian(near=True)
 
     @cached_property
     def matrices(self) -> np.ndarray:
@@ -99,7 +111,8 @@ class Legs:
             return self.duration
         with np.errstate(all="ignore"):
             factor = self.dynamics.contraction(self.impact, self.departure)
-            flown = self.landing.passed - self.departure.duration
+            _, passed = self.after
+            flown = passed - self.departure.duration
             factor = factor * self.dynamics.setting.contraction(flown)
         return np.reshape(factor, self.duration.shape)
 
@@ -112,29 +125,32 @@ class Legs:
             by_phase, by_velocity = self.dynamics.duration_slopes(self.impact, self.departure)
         return by_phase.reshape(self.duration.shape), by_velocity.reshape(self.duration.shape)
 
-    def _jacobian(self, end: Callable[["Landing"], tuple[Impact, np.ndarray]]) -> Jacobian:
-        """The derivative of the map up to an impact, after a time since the start of the leg."""
+    def _jacobian(self, near: bool) -> Jacobian:
+        """The derivative of the map up to the landing, or up to the phase θ_{i+1}."""
         if self.dynamics is None:
             return Jacobian(*(4 * [self.duration]))
         with np.errstate(all="ignore"):
-            found = self.dynamics.jacobian(self.impact, self.departure, *end(self.landing))
+            end = self.near if near else self.after
+            found = self.dynamics.jacobian(self.impact, self.departure, *end)
         return Jacobian(*(entry.reshape(self.duration.shape) for entry in found))
 
 
 class Landing(NamedTuple):
-    """Landings of flights near given times.
+    """Landings of flights near given times since their starts, where y = δ + κ δ′ vanishes.
 
-    ``after`` are the impacts, ``passed`` the times from impact to impact, and ``late`` the times by
-    which the impacts come later on the section than given. ``near`` is the state of the flight at
-    the given time, as an impact: there the ball has not landed yet, or should have landed before.
-    ``passed_near`` is the time from impact to impact if the flight ends there.
+    ``height``, ``velocity``, ``rate`` and ``acceleration`` are y, δ′, y′ and δ″ at these times,
+    and ``late`` are the times from there to the landings, by one step of Newton's method. If a
+    ball lands slowly, this step may be far too long, and yet ``rate`` times ``late`` is exactly
+    minus the height. ``lag`` is the κ of contacts that resume.
     """
 
-    after: Impact
-    passed: np.ndarray
+    time: np.ndarray
+    height: np.ndarray
+    velocity: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
     late: np.ndarray
-    near: Impact
-    passed_near: np.ndarray
+    lag: np.ndarray
 
 
 def landed(
@@ -145,31 +161,31 @@ def landed(
     interval: np.ndarray,
     lag: np.ndarray,
 ) -> Landing:
-    """The landings, where δ + κ δ′ = 0 with κ = ``lag``, near the time ``interval`` after the first
-    impacts.
+    """The landings near the times ``interval`` after the first impacts, both on the section.
 
-    In the corrected model the section is some time after the landing, which is found in a few
-    rounds; in other models the first round is enough.
+    κ is ``lag``, or that of the section (:meth:`.Dynamics.section_lag`).
     """
-    before = time_to_section(dynamics, impact)
-    none = np.zeros(interval.shape, dtype=bool)
-    to_section = np.zeros_like(interval)
-    for _ in range(_ROUNDS):
-        time = interval - duration - to_section
-        gap, rate, acceleration, _ = departure.flight.gap(time)
-        # One step of Newton's method. If the ball lands slowly, it may be far too long, and yet it
-        # is the one with which the height is exactly δ′ t.
-        later = -(gap + lag * rate) / (rate + lag * acceleration)
-        landing = Zero(time + later, -(rate + later * acceleration), none, none)
-        arrived, passed = dynamics.arrive(departure, landing)
-        after = without_force(arrived, lag)
-        whole = passed + time_to_section(dynamics, after) - before
-        last = to_section
-        to_section = whole - duration - landing.time
-        if not np.any(np.abs(to_section - last) > _SETTLED * interval):
-            break
-    there, passed_near = dynamics.arrive(departure, Zero(time, -rate, none, none))
-    return Landing(after, passed, whole - interval, without_force(there, lag), passed_near)
+    time = interval + time_to_section(dynamics, impact) - duration
+    gap, velocity, acceleration, _ = departure.flight.gap(time)
+    of_section, slope = dynamics.section_lag(velocity)
+    height = gap + (lag + of_section) * velocity
+    rate = velocity + (lag + slope) * acceleration
+    return Landing(time, height, velocity, rate, acceleration, -height / rate, lag)
+
+
+def arrived(
+    dynamics: Dynamics,
+    departure: Departure,
+    time: np.ndarray,
+    velocity: np.ndarray,
+    lag: np.ndarray,
+) -> tuple[Impact, np.ndarray]:
+    """The impacts on the section at times since the starts of flights, with these δ′, and the times
+    from impact to impact.
+    """
+    impact = dynamics.at_section(departure.phase + time, velocity)
+    passed = departure.duration + time - time_to_section(dynamics, impact)
+    return without_force(impact, lag), passed
 
 
 def lag_of(dynamics: Dynamics, resumes: np.ndarray) -> np.ndarray:

@@ -12,17 +12,17 @@ method, and not the first one. The equations therefore are smooth where a flight
 and a branch can be followed beyond this point, where no ball follows the orbit. With a landing that
 is late by t, the two equations of a leg are ::
 
-    height:    δ′ t = 0
-    velocity:  (δ′ at the landing - v_{i+1}) - δ″ t = 0
+    height:    δ′ t = -δ = 0
+    velocity:  (δ′ at the landing - v_{i+1}) - δ″ t = δ′ - v_{i+1} = 0
 
-They are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are smooth
-where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before Newton's
-method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase θ_{i+1}.
-Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
+with δ and δ′ at the phase θ_{i+1}, which are smooth where v_{i+1} vanishes, whereas t is not. The
+factor δ′ and the matrix in the Jacobian are those at the phase θ_{i+1} as well. Those of the
+monodromy are at the landing, so that they depend on θ_i and v_i alone.
 
 After a release by force a contact may resume below the level of the table, with δ + κ δ′ = 0 and
-δ′ > 0. Its state is also (θ, δ′), and in the equation of the height the factor δ′ of t becomes
-δ′ + κ δ″.
+δ′ > 0. Its state is also (θ, δ′), the height is δ + κ δ′, and the factor of t is δ′ + κ δ″. The
+section of the corrected model is such a line below the level too, with κ = -t_c(-δ′): a ball
+arrives there some time after its landing, also where it lands slowly.
 
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, which
@@ -285,19 +285,13 @@ class OrbitEquations:
         duration = np.where(bouncing, departure.duration, np.nan)
         lag = self._lag(dynamics, self.resuming[self._next], shape)
         landing = landed(dynamics, impact, departure, duration, interval, lag)
-        phase, velocity = (x[..., self._next].ravel() for x in self.states(y))
-        _, end_velocity = dynamics.section(landing.near)
-        _, landing_velocity = dynamics.section(landing.after)
-        flown = landing.passed_near - departure.duration
-        acceleration = dynamics.setting.arriving(departure.flight, flown, phase, dynamics.amplitude)
-        speed = end_velocity + lag * acceleration
-        height = speed * landing.late
-        faster = (landing_velocity - velocity) - acceleration * landing.late
+        _, velocity = self.states(y)
+        faster = landing.velocity - velocity[..., self._next].ravel()
         return Legs(
-            residual=np.stack([height, faster], axis=-1).reshape(*shape, 2),
+            residual=np.stack([-landing.height, faster], axis=-1).reshape(*shape, 2),
             duration=duration.reshape(shape),
-            velocity=speed.reshape(shape),
-            acceleration=acceleration.reshape(shape),
+            velocity=landing.rate.reshape(shape),
+            acceleration=landing.acceleration.reshape(shape),
             dynamics=dynamics,
             impact=impact,
             departure=departure,
@@ -394,7 +388,7 @@ class OrbitEquations:
         matrix = np.zeros((*y.shape[:-1], self.size, y.shape[-1]))
         speed = legs.velocity[0]
         pull = legs.acceleration[0]
-        a, b, c, d = (entry[0] for entry in legs.near)
+        a, b, c, d = (entry[0] for entry in legs.tangent_near)
         # The rows of an orbit's two equations of each leg are also the columns of its θ and v.
         height, rate = self._places
         after = height[self._next]

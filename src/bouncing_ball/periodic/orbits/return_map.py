@@ -12,7 +12,7 @@ import numpy as np
 
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.balls import Balls
-from bouncing_ball.periodic.orbits.legs import lag_of, landed, without_force
+from bouncing_ball.periodic.orbits.legs import arrived, lag_of, landed, without_force
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 # Newton's method for a landing doubles its digits in each round.
@@ -73,10 +73,13 @@ def returned(
                 due = due + landing.late
                 if not np.any(np.abs(landing.late) > _SETTLED * np.abs(due)):
                     break
-            change = dynamics.jacobian(impact, departure, landing.after, landing.passed)
+            time = landing.time + landing.late
+            speed = landing.velocity + landing.late * landing.acceleration
+            end, passed = arrived(dynamics, departure, time, speed, next_lag)
+            change = dynamics.jacobian(impact, departure, end, passed)
             matrix = np.moveaxis(np.array([[change.a, change.b], [change.c, change.d]]), -1, 0)
             derivative = matrix @ derivative
-            phase, velocity = dynamics.section(landing.after)
+            phase, velocity = dynamics.section(end)
             turned = reduce_angle(phase - phases[after])
     distance = np.stack([turned, velocity - velocities[0]], axis=-1)
     return Returned(distance, derivative)

@@ -46,10 +46,12 @@ def simulated(
     velocities = []
     durations = []
     resumes = []
+    selects = False
     for leg in islice(dynamics.legs(impact), impacts):
         after, passed = leg.fly()
         velocities.append(float(dynamics.section(leg.impact)[1][0]))
         durations.append(float(leg.departure.duration[0]))
+        selects |= dynamics.selects(leg.impact, leg.departure.duration)
         resumes.append(bool(leg.impact.displacement[0] < 0))
         later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, leg.impact)
         last = phases[-1] + float(later[0])
@@ -59,7 +61,6 @@ def simulated(
     turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
     if any(resumes):
         _check_resumption(dynamics)
-    selects = dynamics.continues and max(durations) > 0
     problem = OrbitEquations(
         balls=balls,
         impacts=impacts,

@@ -10,8 +10,9 @@ together with the equations of the orbit, to the accuracy of Newton's method:
   maximum, so that the contact opens there;
 * a lost release: the rate with which a contact opens falls to 0, so that a flight disappears. It is
   located by :mod:`~bouncing_ball.periodic.orbits.lost_release`;
-* the end of sticking in the restitution model: the ball comes to rest just when the table leaves it
-  behind, so that it would no longer stick. It is bisected along the branch to the last digit.
+* the end of sticking: in the restitution model the ball comes to rest just when the table leaves it
+  behind, so that it would no longer stick; in the corrected model it just leaves the table at the
+  end of a contact, or just stays on it. It is bisected along the branch to the last digit.
 
 A minimum of δ in flight is unique in each interval in which Λ sin τ > 1, because δ″ = Λ sin τ - 1
 is positive there and nowhere else. All minima are therefore found.
@@ -78,7 +79,7 @@ MEANINGS = {
     Special.GRAZING_RELEASE: "a contact touches its release: beyond it there is one flight more",
     Special.PERIOD_HALVING: "the orbit merges with one of half its period, whose period doubles",
     Special.RELEASE_LOST: "the ball no longer leaves the table as the contact ends",
-    Special.STICKING: "the ball comes to rest as the table leaves it behind",
+    Special.STICKING: "the ball just stays on the table after an impact, or just leaves it",
 }
 """What each kind of special orbit is."""
 
@@ -93,7 +94,8 @@ def flight_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     flight = legs.departure.flight
     duration = np.where(np.isfinite(legs.duration.ravel()), legs.departure.duration, np.nan)
     with np.errstate(all="ignore"):
-        lowest = flight.lowest(legs.landing.passed - duration)
+        _, passed = legs.after
+        lowest = flight.lowest(passed - duration)
     return lowest.reshape(legs.duration.shape).min(axis=-1)
 
 
@@ -106,23 +108,24 @@ def impact_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
 
 
 def sticking(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
-    """1 for orbits whose balls come to rest wherever the equations say so, also for those without a
-    rest, and -1 for others; of the leading shape of y.
+    """1 for orbits whose balls come to rest where the equations say so and nowhere else, and -1 for
+    others; of the leading shape of y.
 
-    Next to the end of sticking the rest vanishes as a power of the distance with an exponent that
-    is no whole number, and infinitely many bounces precede it. No function of the state is smooth
-    there, whereas the equations of the orbit are, because the lift-off depends on Λ alone.
+    Next to the end of sticking of the restitution model the rest vanishes as a power of the
+    distance with an exponent that is no whole number, and infinitely many bounces precede it. No
+    function of the state is smooth there, whereas the equations of the orbit are, because the
+    lift-off depends on Λ alone. In the corrected model there is a flight or a rest of finite length
+    on both sides, and the equations have the one of this orbit beyond the end as well.
     """
-    if not np.any(equations.durations(y) > 0):
-        return np.ones(y.shape[:-1])
     legs = equations.legs(y)
-    dynamics, inside = equations.dynamics(y)
-    if dynamics is None:
+    dynamics = legs.dynamics
+    if dynamics is None or not dynamics.forgets:
         return np.ones(y.shape[:-1])
-    rests = np.flatnonzero(inside & (equations.durations(y).ravel() > 0))
-    settles = np.ones(inside.shape, dtype=bool)
-    settles[rests] = dynamics.take(rests).settles(pick(legs.impact, rests))
-    return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
+    known = np.flatnonzero(np.isfinite(legs.duration.ravel()))
+    settles = np.ones(legs.duration.shape, dtype=bool)
+    durations = equations.durations(y).ravel()[known]
+    settles.ravel()[known] = dynamics.take(known).settles(pick(legs.impact, known), durations)
+    return np.where(settles.all(axis=-1), 1.0, -1.0)
 
 
 def opening_rate(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:

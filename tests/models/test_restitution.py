@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.history import motion_at
+from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import lift_off_phase
@@ -133,3 +134,19 @@ def test_parameters_and_states_out_of_range_are_refused_in_one_line(refusal):
     ):
         with refusal(ModelError, part):
             RestitutionModel(r).simulate(*arguments)
+
+
+@pytest.mark.parametrize("r", [0.05, 0.3, 0.9, 0.97])
+def test_the_bound_on_the_bounces_of_a_ball_that_comes_to_rest_is_not_too_short(r, monkeypatch):
+    """Without the bound each ball is followed through all its bounces."""
+    rng = np.random.default_rng(5)
+    lam, phase = rng.uniform(0.5, 3.0, 2000), rng.uniform(-np.pi, np.pi, 2000)
+    speed = np.exp(rng.uniform(np.log(1e-4), np.log(2.0), 2000))
+    held = np.flatnonzero((lam * np.sin(phase) < 1) & (lam > 1))
+    dynamics = RestitutionDynamics.of(r, lam[held])
+    impact = dynamics.start(phase[held], -speed[held])
+    rests = np.ones(held.size)
+    settles = dynamics.settles(impact, rests)
+    monkeypatch.setattr(RestitutionDynamics, "_rests_within", lambda self, impact, left: left < 0)
+    assert np.array_equal(settles, dynamics.settles(impact, rests))
+    assert 0.4 < np.mean(settles) < 1

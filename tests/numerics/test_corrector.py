@@ -103,6 +103,18 @@ def test_tangent_is_the_unit_null_vector_on_the_given_side():
         assert tangent(jacobian, -along) == pytest.approx(-vector, abs=1e-12)
 
 
+@pytest.mark.parametrize("cosine", [0.0, 1e-9, 1e-4])
+def test_a_tangent_nearly_at_a_right_angle_to_its_direction_keeps_its_digits(cosine):
+    """Beside it a row whose linear system is regular has the same bits as alone."""
+    jacobian = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    along = np.array([1.0, 0.0, cosine])
+    expected = np.array([0.0, 0.0, 1.0])
+    assert np.abs(tangent(jacobian, along)) == pytest.approx(expected, abs=4 * EPS)
+    both = tangent(np.array([jacobian, jacobian]), np.array([along, [0.0, 0.6, 0.8]]))
+    alone = tangent(jacobian, np.array([0.0, 0.6, 0.8]))
+    assert np.array_equal(both[1], alone) and alone == pytest.approx(expected, abs=4 * EPS)
+
+
 def test_the_tangent_is_unknown_only_where_the_jacobian_is_not_finite():
     matrices = np.array([[[1.0, 1.0]], [[np.nan, 1.0]], [[np.inf, 1.0]]])
     found = tangent(matrices, np.array([0.0, -1.0]))

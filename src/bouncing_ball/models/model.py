@@ -19,6 +19,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -134,6 +135,11 @@ class Model(Batch, Ball, ABC):
         >>> RestitutionModel(0.5).numbers()
         {'restitution': 0.5}
         """
+        return dict(self._all_numbers)
+
+    @cached_property
+    def _all_numbers(self) -> dict[str, Any]:
+        # Cached, because each step along a branch asks for the names.
         return _numbers(self)
 
     def range_of(self, name: str) -> Range:

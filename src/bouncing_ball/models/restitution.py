@@ -41,6 +41,9 @@ from bouncing_ball.numerics.first_zero import first_zero
 _CHATTER = 1e-5
 # Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
 _INSTANT = np.finfo(float).eps
+# The window in which a ball is proved to come to rest, in units of T₀; the longer it is, the more
+# the relative gravity may change within it.
+_WINDOW = 1.25
 # The smallest speed of an impact for which r is asked, and 1, as arrays without an axis.
 _SLOW = np.array(np.finfo(float).tiny)
 _ONE = np.array(1.0)
@@ -121,6 +124,8 @@ class RestitutionDynamics(Dynamics):
 
     forgets: ClassVar[bool] = True
     continues: ClassVar[bool] = True
+    is_constant: ClassVar[bool] = True
+    """Whether r is the same at every speed."""
 
     @classmethod
     def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
@@ -186,13 +191,35 @@ class RestitutionDynamics(Dynamics):
         lift = self.setting.lift_off(impact.phase, self.amplitude)
         left = np.where(lift.never, np.nan, np.mod(lift.phase - impact.phase, 2 * np.pi))
         for leg in self.legs(impact, differentiate=True):
-            sticks = leg.departure.sticks
-            settled[balls[sticks]] = True
-            left, balls = leg.keep(np.flatnonzero(~sticks), left, balls)
+            comes_to_rest = leg.departure.sticks | self.take(balls)._rests_within(leg.impact, left)
+            settled[balls[comes_to_rest]] = True
+            left, balls = leg.keep(np.flatnonzero(~comes_to_rest), left, balls)
             _, passed = leg.fly()
             left = left - passed
             left, balls = leg.keep(np.flatnonzero(left > 0), left, balls)
         return settled
+
+    def _rests_within(self, impact: Impact, left: np.ndarray) -> np.ndarray:
+        """Which balls certainly come to rest within these times, by a bound on all their bounces.
+
+        While the relative gravity is between g and G, a flight that begins with v takes 2v/g at
+        most and lands with (2G/g - 1) v at most, so that all bounces together take 2v/(g (1 - q))
+        with q = r (2G/g - 1). Within a time W the relative gravity changes by Λ W at most. This
+        holds for free flights and a constant r.
+        """
+        if not self.setting.is_paper or not self.is_constant:
+            return np.zeros(left.shape, dtype=bool)
+        _, height = self.table_at(impact)
+        gravity = 1 - height
+        first = -2 * self.law * impact.velocity
+        # There is no bound without a loss, or where the table falls away.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            window = _WINDOW * first / (gravity * (1 - self.law))
+            change = self.amplitude * window
+            least = gravity - change
+            ratio = self.law * (2 * (gravity + change) / least - 1)
+            whole = first / (least * (1 - ratio))
+        return (least > 0) & (ratio < 1) & (whole <= window) & (window <= left)
 
     def _left(
         self, impact: Impact, flight: Any, sticks: np.ndarray, settling: np.ndarray

@@ -69,6 +69,8 @@ class RestitutionLawDynamics(RestitutionDynamics):
     :class:`RestitutionLaw`.
     """
 
+    is_constant: ClassVar[bool] = False
+
     @classmethod
     def of(cls, law: RestitutionLaw, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
         """The dynamics of a law r(v) at Λ.

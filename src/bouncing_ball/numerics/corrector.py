@@ -17,6 +17,9 @@ _ROUNDING = np.finfo(float).eps
 # The largest size of a last step that is longer than the tolerance. Its product with the error of a
 # Jacobian by differences, about 1e-9, is a rounding error.
 _SMALL = 1e-8
+# A tangent is found by a linear system unless it is nearly at a right angle to the direction along
+# which it is oriented; the reciprocal of this is the cosine.
+_OBLIQUE = 1e3
 # The accuracy in the parameter with which folds are located.
 _LOCATED = 1e-12
 
@@ -227,18 +230,30 @@ def null_vector(matrix: np.ndarray) -> np.ndarray:
 def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Unit tangent of the solution curve, oriented along ``along``, shape (..., N + 1).
 
-    It is the null vector of the N × (N + 1) Jacobian, which is also defined at a fold. The
-    arguments have shapes (..., N, N + 1) and (..., N + 1). The tangent is NaN where the Jacobian is
-    not finite.
+    It is the null vector of the N × (N + 1) Jacobian, which is also defined at a fold. With the
+    row ``along`` the Jacobian is a regular matrix, by which the tangent is found unless it is
+    nearly at a right angle to this direction. The arguments have shapes (..., N, N + 1) and
+    (..., N + 1). The tangent is NaN where the Jacobian is not finite.
 
     Examples
     --------
     >>> tangent(np.array([[1.0, 1.0]]), np.array([0.0, -1.0])).round(6).tolist()
     [0.707107, -0.707107]
     """
-    vector = null_vector(jacobian)
-    ahead = np.sum(vector * along, axis=-1, keepdims=True)
-    return np.where(ahead < 0, -vector, vector)
+    along = np.broadcast_to(along, (*jacobian.shape[:-2], jacobian.shape[-1]))
+    defined = np.isfinite(jacobian).all(axis=(-2, -1))[..., np.newaxis]
+    one = np.eye(along.shape[-1])
+    border = np.concatenate([jacobian, along[..., np.newaxis, :]], axis=-2)
+    border = np.where(defined[..., np.newaxis], border, one)
+    vector = _solve_linear(border, np.broadcast_to(one[-1], along.shape))
+    length = _norm(vector)[..., np.newaxis]
+    vector = np.where(defined, vector / length, np.nan)
+    turned = ~(length * _norm(along)[..., np.newaxis] < _OBLIQUE)
+    if not turned.any():
+        return vector
+    of_null = null_vector(jacobian)
+    ahead = np.sum(of_null * along, axis=-1, keepdims=True)
+    return np.where(turned, np.where(ahead < 0, -of_null, of_null), vector)
 
 
 def solution_at(

@@ -1,5 +1,6 @@
 """The contact's flow against other integrators, and its exact Jacobian."""
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,6 +8,7 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 EPS = np.finfo(float).eps
 
@@ -94,6 +96,44 @@ def test_velocity_and_acceleration_are_derivatives_of_the_flow(s, omega, zeta):
     scale = np.abs(difference).max() + 1
     derivative = [float(now.velocity), float(now.acceleration)]
     assert derivative == pytest.approx(difference, abs=2e-8 * scale)
+
+
+def in_many_digits(contact, amplitude, velocity, phase, time):
+    """δ of Eq. 12 with 40 digits, for a contact that starts at δ = 0."""
+    with mpmath.workdps(40):
+        omega, zeta, lam = map(mpmath.mpf, map(float, (*contact_of(contact), amplitude)))
+        u, phi, s = map(mpmath.mpf, (velocity, phase, time))
+        damped = omega * mpmath.sqrt(1 - zeta**2)
+        gamma = (omega**2 - 1) ** 2 + (2 * zeta * omega) ** 2
+        in_phase, quadrature = (omega**2 - 1) / gamma, -2 * zeta * omega / gamma
+        x, y = lam * mpmath.cos(phi), lam * mpmath.sin(phi)
+        sine, cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
+        a = 1 / omega**2 - cosine
+        b = (u - sine + zeta * omega * a) / damped
+        free = a * mpmath.cos(damped * s) + b * mpmath.sin(damped * s)
+        steady = sine * mpmath.sin(s) + cosine * mpmath.cos(s)
+        return float(mpmath.exp(-zeta * omega * s) * free - 1 / omega**2 + steady)
+
+
+def contact_of(contact):
+    """ϖ and ζ."""
+    return contact.frequency_ratio, contact.damping_ratio
+
+
+@pytest.mark.parametrize("detuning", [1e-6, 1e-4, 0.01, 0.02, 0.1])
+@pytest.mark.parametrize("zeta", [0.0, 0.002])
+def test_next_to_the_undamped_resonance_a_motion_has_all_its_digits(detuning, zeta):
+    """Two parts of the size Λ/√γ, of opposite signs, may only be added where γ is large enough."""
+    rng = np.random.default_rng(1)
+    contact = SpringDamper(1 + detuning, zeta)
+    for _ in range(20):
+        lam, velocity, phase = rng.uniform(0.3, 3), -rng.uniform(0.1, 3), rng.uniform(-3, 3)
+        dynamics = SpringDamperModel(contact).dynamics(np.array([lam]))
+        impact = dynamics.start(np.array([phase]), np.array([velocity]))
+        inside = dynamics.release_function(impact, dynamics.depart(impact))
+        time = rng.uniform(0.2, 6.0)
+        expected = in_many_digits(contact, lam, velocity, impact.phase[0], time)
+        assert inside(np.array([time]))[0] == pytest.approx(expected, abs=1e-13)
 
 
 def test_the_acceleration_is_that_of_the_equation_of_motion():

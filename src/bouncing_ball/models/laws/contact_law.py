@@ -30,9 +30,9 @@ from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.signature import computed
 from bouncing_ball.models.setting import PAPER, Setting
 
-# The closed form of a motion is used for √γ above this value: the relative error of its steady part
-# is ε/√γ.
-_RESONANCE = 1e-4
+# The closed form of a motion is used for √γ above this value. Its steady part has the size Λ/√γ, so
+# that the motion has errors of some ten roundings over √γ, here 5e-14; the flow has 1e-14 at all γ.
+_RESONANCE = 0.03
 # How closely an oscillator with another r and duration is found, the rounds of the search, and the
 # difference of ζ for its slope.
 _FOUND = 1e-9

@@ -6,6 +6,7 @@ returns by how much it fails to close. The delay, the restitution, the load sens
 duration of the corrected model are integrals of a contact too.
 """
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -313,18 +314,17 @@ def verdict_on(last, along, reason):
 
 
 def sample(count, seed):
-    """Verdicts on so many random branches, of all models along each of their parameters."""
+    """Verdicts on so many random branches, of all models in turn along each of their parameters."""
     rng = np.random.default_rng(seed)
     verdicts = []
-    while len(verdicts) < count:
-        name = MODELS[len(verdicts) % len(MODELS)]
+    for name in itertools.cycle(MODELS):
         orbit = orbit_of(name, rng)
         for along, value in {**orbit.model.numbers(), "amplitude": orbit.amplitude}.items():
             factor = rng.choice([0.6, 1.5])
-            to = (
-                min(factor * float(value), 1.0) if along == "restitution" else factor * float(value)
-            )
-            if along == "damping_ratio":
-                continue
-            verdicts.append(judged(orbit, along, to))
-    return verdicts[:count]
+            to = factor * float(value)
+            if along == "restitution":
+                to = min(to, 1.0)
+            if along != "damping_ratio":
+                verdicts.append(judged(orbit, along, to))
+        if len(verdicts) >= count:
+            return verdicts[:count]

@@ -412,3 +412,12 @@ def test_a_closed_branch_ends_at_its_start():
         (kind, round(orbit.parameters["restitution"], 9)) for kind, orbit in found.special_states()
     }
     assert len(again) == found.sizes["special"] == 12
+
+
+def test_next_to_the_end_of_a_range_a_steep_height_is_no_jump():
+    """On this 3-T orbit the height of the landing changes by 250 for r, and r = 1 is the end."""
+    orbit = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.8), n=3, amplitude=1.24)
+    found = bouncing_ball.follow(orbit, along="restitution", to=1.0)
+    assert str(found.end_reason[1].values) == "restitution = 1 is reached"
+    assert float(found.restitution[-1]) == 1.0
+    assert float(found.phase[-1, 0]) == pytest.approx(np.pi / 2, abs=1e-12)

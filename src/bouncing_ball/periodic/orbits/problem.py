@@ -65,8 +65,8 @@ _DIFFERENCE = 6e-6
 _SLOW = 0.1
 _LEAST = 1e-3
 # Where the second difference of the height or the velocity of a leg is larger than this and than
-# half of the first one, it has no derivative but a jump. At an end of a range both differences are
-# equal, and smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
+# half of the first one, it has no derivative but a jump. A jump that is not noticed spoils a
+# solution by 1e-7 of its size.
 _JUMP = 1e-3
 # The ends of the range of a phase or a velocity.
 _UNLIMITED = np.array([-np.inf, np.inf])
@@ -402,10 +402,9 @@ class OrbitEquations:
         for j in range(len(self.along)):
             slope = compared.slope(j, legs.residual)
             right, left = compared.sides(j, legs.residual)
-            bend = np.abs(right + left - 2 * legs.residual[0])
-            jumps = bend > _JUMP
-            if jumps.any():
-                jumps &= bend > np.abs(right - left) / 2
+            if (np.abs(right + left - 2 * legs.residual[0]) > _JUMP).any():
+                bend = compared.bend(j, self.size + j, legs.residual)
+                jumps = bend > np.maximum(np.abs(right - left) / 2, _JUMP)
                 slope = np.where(jumps, np.nan, slope)
             matrix[..., : 2 * k, self.size + j] = slope.reshape(*y.shape[:-1], -1)
         if self.selects:
@@ -501,6 +500,17 @@ class LegsBeside:
     def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The values at the two points of a pair, of values of the legs."""
         return values[1 + 2 * j], values[2 + 2 * j]
+
+    def bend(self, j: int, column: int, values: np.ndarray) -> np.ndarray:
+        """The modulus of the second difference of values of the legs over a pair of points, one of
+        which is nearer at an end of the range of a parameter, an entry of y; none at the end.
+        """
+        right, left = self.sides(j, values)
+        here, ahead, behind = (self.points[k, ..., column] for k in (0, 1 + 2 * j, 2 + 2 * j))
+        axes_of_values = (1,) * (right.ndim - here.ndim)
+        ahead, behind = (x.reshape(x.shape + axes_of_values) for x in (ahead - here, here - behind))
+        apart = (right - values[0]) * behind - (values[0] - left) * ahead
+        return np.abs(apart) * 2 / (ahead + behind)
 
     def slope(self, j: int, values: np.ndarray) -> np.ndarray:
         """The derivative of values of the legs, by a parameter."""

@@ -17,7 +17,8 @@ def test_the_ends_of_random_branches_are_right_or_named(count, seed):
     wrong = [each for each in verdicts if each.verdict == "wrong"]
     assert not wrong
     # Of the 300 branches 297 were right, and 3 were named.
-    assert np.mean([each.verdict == "right" for each in verdicts]) > 0.95
+    named = [each for each in verdicts if each.verdict == "named"]
+    assert len(named) <= max(1, 0.05 * count)
 
 
 @pytest.mark.parametrize("name", ["rigid", "displacement", "force", "corrected"])

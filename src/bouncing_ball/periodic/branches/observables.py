@@ -17,6 +17,7 @@ from bouncing_ball.periodic.branches.following import Orbits, unrolled
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import columns_of
+from bouncing_ball.periodic.orbits.special import Special
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),
@@ -206,7 +207,9 @@ def _orbits_in_columns(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     data["special_kind"] = "special", np.array(kinds, dtype=str)
-    data["special_residual"] = "special", defect[count:]
+    # Where a release is lost, which is a double zero, rounding decides which release is found.
+    lost = np.array(kinds, dtype=str) == Special.RELEASE_LOST
+    data["special_residual"] = "special", np.where(lost, np.nan, defect[count:])
     data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
     data["special"] = "special", np.arange(len(kinds))

@@ -26,6 +26,7 @@ from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Continuation
+from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
 from bouncing_ball.pipeline import patience
 from bouncing_ball.pipeline.configuration import read_yaml
 
@@ -281,6 +282,23 @@ def described(declared):
 def continuation_settings():
     """The ``continuation`` section of the configuration."""
     return Continuation(**read_yaml(ROOT / "config" / "config.yaml")["continuation"])
+
+
+@pytest.fixture(scope="module")
+def searched_once():
+    """Checks of the configuration search the orbits of the same parameters once."""
+    search = OrbitsOfContacts.exists
+    known = {}
+
+    def exists(self, ratios):
+        question = (*self._replace(amplitudes=tuple(self.amplitudes)), *np.asarray(ratios))
+        if question not in known:
+            known[question] = search(self, ratios)
+        return known[question]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(OrbitsOfContacts, "exists", exists)
+        yield
 
 
 @pytest.fixture

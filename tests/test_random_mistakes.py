@@ -196,7 +196,7 @@ def test_the_declarations_are_found():
 
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 STUDIES = configuration_type(ARTIFACTS.values())
-# The whole configuration is checked each time, with a search for nine orbits: 0.2 s.
+# The whole configuration is checked each time, with a search for the orbits that are new.
 FEW = settings(max_examples=15)
 
 
@@ -214,6 +214,7 @@ def leaves(value: typing.Any, path: tuple = ()) -> typing.Iterator[tuple]:
     st.sampled_from([{}, [], None, math.nan, math.inf, -1e300, ""]) | WORDS,
 )
 @FEW
+@pytest.mark.usefixtures("searched_once")
 def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
     config = copy.deepcopy(CONFIG)
     section = config
@@ -229,6 +230,7 @@ def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
     st.text(string.ascii_lowercase, min_size=12),
 )
 @FEW
+@pytest.mark.usefixtures("searched_once")
 def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
     config = copy.deepcopy(CONFIG)
     section = config

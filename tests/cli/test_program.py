@@ -6,7 +6,6 @@ import inspect
 import json
 import os
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -88,7 +87,6 @@ def test_diff_for_nobody_who_reads(tmp_path):
     for side in ("record", "results"):
         (tmp_path / side).mkdir()
         (tmp_path / side / "paper.md").write_text(side if side == "record" else "", "utf-8")
-    shutil.copytree(ROOT / "config", tmp_path / "record" / "config")
     reader, writer = os.pipe()
     os.close(reader)
     done = program("diff", "record", "results", cwd=tmp_path, stdout=writer, text=True)

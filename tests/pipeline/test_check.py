@@ -22,6 +22,8 @@ FOLDER = Path(__file__).resolve().parents[2] / "config"
 CONFIG = read_yaml(FOLDER / "config.yaml")
 REMOVED = object()
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 
 @pytest.fixture(scope="module")
 def model():

@@ -165,7 +165,7 @@ def declared():
 
 @pytest.fixture(scope="session")
 def coarse():
-    """Fewer samples or starts of the studies that take as long as all others.
+    """Fewer samples, starts or compliant contacts of the studies that take as long as all others.
 
     At their whole size they are compared with the record by `make diff`, and weekly.
     """
@@ -174,6 +174,8 @@ def coarse():
         ("ext_cascades", "doublings"): 4,
         ("ext_flights", "samples"): 5,
         ("ext_flights", "flights"): 2,
+        # Balls on compliant contacts take most impacts to settle.
+        ("ext_flights", "min"): 50,
         ("ext_laws", "samples"): 4,
         ("ext_locked", "nodes"): 15,
     }

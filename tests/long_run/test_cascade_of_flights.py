@@ -9,27 +9,28 @@ from sixty_digits import Exact
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.cascade_of_flights import Openings, openings, stiff_openings
-from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 
-def motions(r, ratio, excess):
+def motions(r, ratio, excess, impacts=IMPACTS):
     """What a ball that is set down after the top of the table ends on, at E."""
     zeta = damping_ratio(r)
     excess = np.asarray(excess)
     lam = permanent_contact_threshold(ratio, zeta) + excess / np.square(ratio)
     phase = np.pi / 2 + 3 / ratio
     slow = lam * np.cos(phase) - 0.1 / np.square(ratio)
-    return final_motions(SpringDamperModel(SpringDamper(ratio, zeta)), lam, phase, slow)
+    model = SpringDamperModel(SpringDamper(ratio, zeta))
+    return final_motions(model, lam, phase, slow, impacts=impacts)
 
 
 # ϖ = 27.1 lies between the ratios at which the second opening of r = 0.95 exists.
 WEAK = 200 ** (1 - 13 / 24) * 5 ** (13 / 24)
-RESTITUTIONS = [0.3, 0.5, 0.65, 0.85, 0.95]
-RATIOS = [2.0, 6.3, 12.0, 20.0, WEAK, 31.6, 50.0, 60.0, 100.0, 200.0, 400.0]
+RESTITUTIONS = [0.3, 0.65, 0.85, 0.95]
+RATIOS = [2.0, 6.3, 12.0, WEAK, 31.6, 100.0, 200.0]
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +120,7 @@ def missed(exact, amplitude, touch, *impacts):
     return [*found, *exact.state(touch, *start)]
 
 
-@pytest.mark.parametrize(("r", "ratio", "k"), [(0.3, 100.0, 2), (0.5, 50.0, 3), (0.95, 60.0, 3)])
+@pytest.mark.parametrize(("r", "ratio", "k"), [(0.3, 100.0, 2), (0.65, 31.6, 3), (0.95, 100.0, 3)])
 def test_an_opening_is_that_of_its_equations_in_sixty_digits(r, ratio, k, opened):
     """By equations of their own: the touch is a time with δ = δ′ = 0 there, and an unknown."""
     zeta = damping_ratio(r)
@@ -158,9 +159,10 @@ def test_an_opening_is_that_of_its_equations_in_sixty_digits(r, ratio, k, opened
 
 
 def test_the_multipliers_are_those_of_the_motion(opened):
-    found = Openings(*(x[0, :2, 0] for x in opened([0.85], [20.0])))
-    excess = 400 * (found.amplitude - permanent_contact_threshold(20.0, damping_ratio(0.85)))
-    seen = motions(0.85, 20.0, (1 - 1e-9) * excess)
+    found = Openings(*(x[0, :2, 0] for x in opened([0.85], [31.6])))
+    held = permanent_contact_threshold(31.6, damping_ratio(0.85))
+    excess = 31.6**2 * (found.amplitude - held)
+    seen = motions(0.85, 31.6, (1 - 1e-9) * excess)
     np.testing.assert_allclose(np.exp(seen.exponent), found.multiplier, rtol=1e-3)
 
 
@@ -193,7 +195,7 @@ def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
 @pytest.mark.parametrize("r", [0.3, 0.65, 0.85, 0.95])
 def test_the_limits_are_reached_with_the_square_of_the_ratio(r, opened):
     zeta = float(damping_ratio(r))
-    ratio = np.array([200.0, 400.0])
+    ratio = np.array([100.0, 200.0])
     found = opened([r], ratio).amplitude[0, :2]
     excess = ratio**2 * (found - permanent_contact_threshold(ratio, zeta))
     off = stiff_openings(zeta, 2)[:, np.newaxis] - excess
@@ -249,7 +251,7 @@ def test_without_an_oscillation_that_dies_out_there_is_no_limit(zeta):
 def test_on_a_weakly_damped_contact_the_orbit_loses_its_stability_between_two_openings(opened):
     """At ϖ = 27.1 the first opening is at E = 5.5, and the equations have another one at 6.0."""
     r = 0.95
-    seen = motions(r, WEAK, [5.4, 5.6, 5.92])
+    seen = motions(r, WEAK, [5.4, 5.6, 5.92], impacts=500)
     assert seen.periods[0] == 1 and seen.impacts[0] == 1 and np.exp(seen.exponent[2]) > 1
     found = opened([r], [WEAK, 31.6]).amplitude[0]
     excess = WEAK**2 * (found[0, 0] - permanent_contact_threshold(WEAK, damping_ratio(r)))
@@ -263,10 +265,11 @@ def test_an_opening_is_the_first_from_below_and_does_not_depend_on_the_other_con
     lam = np.array([1.0614, 1.0617, 1.0745, 1.0755])
     excess = 144 * (lam - permanent_contact_threshold(12.0, zeta))
     assert motions(0.85, 12.0, excess).impacts.tolist() == [2, 3, 2, 3]
-    alone = openings([zeta], np.array([12.0]), 2)
-    assert alone.amplitude[0, 1, 0] == pytest.approx(1.06155, abs=1e-5)
-    for among_others, y in zip(opened([0.85], [12.0]), alone, strict=True):
-        np.testing.assert_allclose(among_others[0, :2], y[0], rtol=0, atol=1e-12)
+    among_others = opened([0.85], [12.0])
+    assert among_others.amplitude[0, 1, 0] == pytest.approx(1.06155, abs=1e-5)
+    alone = openings([zeta], np.array([12.0]), 1)
+    for x, y in zip(among_others, alone, strict=True):
+        np.testing.assert_allclose(x[0, :1], y[0], rtol=0, atol=1e-12)
 
 
 def test_no_compliant_contact_has_a_second_opening(opened):

@@ -290,12 +290,12 @@ def test_branch_and_follow_name_a_landing_without_speed_in_the_same_words():
 
 def test_branch_and_follow_name_a_lost_release_of_a_law_in_the_same_words():
     """The durations of its contacts are no unknowns, so that the place is not located."""
-    ball = bouncing_ball.contact_law("hunt-crossley", restitution=0.326, duration=0.4755)
-    whole = bouncing_ball.branch(ball, amplitude_max=4.0, points=30)
+    ball = bouncing_ball.contact_law("hunt-crossley", restitution=0.25, duration=0.4755)
+    whole = bouncing_ball.branch(ball, amplitude_max=3.3, points=10)
     lost = "the orbit is next to a release without speed, where its equations are not smooth"
     assert str(whole.end_reason[0].values) == lost
     first, _, inner, *_ = whole.states()
-    followed = bouncing_ball.follow(inner, to=1.1 * first.amplitude, points=60)
+    followed = bouncing_ball.follow(inner, to=1.1 * first.amplitude, points=20)
     assert str(followed.end_reason[1].values) == lost
     for found in (whole, followed):
         assert "release lost" not in found.special_kind.values

@@ -314,7 +314,8 @@ def short_runs(monkeypatch):
         monkeypatch.setattr(f"bouncing_ball.contacts.starts.{starts}", 3)
     # Balls of a law that come to rest on a stiff contact take longest.
     monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 3)
-    monkeypatch.setattr(means, "_BALLS_OF_CHANGE", 4)
+    for balls in ("_BALLS_OF_CHANGE", "_BALLS_OF_CHANGE_OF_LAW"):
+        monkeypatch.setattr(means, balls, 4)
     few = means.Sampling(unit=4, usual=4, impacts=(8,), before=4)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
         monkeypatch.setattr(means, samples, few)

@@ -1,6 +1,7 @@
 """A time step that is given: against a plain loop, and weekly against the engines themselves."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
 from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
+from bouncing_ball.contacts.engines import given_step
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.given_step import at_step, spread_in_steps, stiffest_contact
 from bouncing_ball.contacts.engines.impacts import FEWEST, has_stable_steps, impacts_in_steps
@@ -20,6 +22,14 @@ from bouncing_ball.models.spring_damper import SpringDamper
 pytestmark = pytest.mark.usefixtures("short_runs")
 
 FRACTIONS = np.linspace(0.02, 0.98, 17).tolist()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def each_spread_once():
+    """The range of r at a step is computed once for all engines with the same scheme."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(given_step, "spread_in_steps", cache(spread_in_steps))
+        yield
 
 
 def plain_loop(zeta, release, h, fraction):

@@ -10,7 +10,7 @@ while the table rises. For Λ ≤ 1 it never leaves.
 The landing on the table's level is found as in the other two models, and is proved to be the
 first. On the flight continued from there, the instant is where the ball has the depth
 h = v t_c(v). A few steps of Newton's method find it, starting from the solution for a constant
-load.
+load; after a slow landing the first such time is searched for.
 
 A state on the Poincaré section is (φ, δ′) at the start of contact, t_c before
 the instant. The height of the continued flight at this start differs from the table's level by

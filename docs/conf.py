@@ -87,8 +87,9 @@ PARTS = {
 
 
 def title_of(table):
-    """The title of a table of the record, which is that of its dataset."""
-    with xr.open_dataset(ROOT / f"{table}.nc") as data:
+    """The title of a table of the record: that of its dataset, or of an accepted sample."""
+    sample = ROOT / "config" / f"{Path(table).name}.nc"
+    with xr.open_dataset(sample if sample.exists() else ROOT / f"{table}.nc") as data:
         return data.attrs["title"]
 
 

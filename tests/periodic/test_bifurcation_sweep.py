@@ -45,13 +45,17 @@ def test_every_bifurcation_found_has_a_multiplier_of_plus_or_minus_one(release, 
     trace = np.trace(matrix, axis1=-2, axis2=-1)
     size = 1 + np.abs(matrix).max(axis=(-2, -1))
     lost = np.maximum(size, orbit.amplitude) * orbit.n * np.maximum(1, orbit.law.frequency_ratio)
+    # The rounding of a phase after n turns moves the speed of the table by Λ 2πn ε, of which the
+    # entries have the part over the slowest speed of the ball.
+    slowest = np.minimum(-orbit.relative_impact_velocity, orbit.relative_bounce_velocity)
     value = np.abs(KINDS[kind](trace, orbit.determinant()))
     # Balls that rise at the impact, or fall at the release, follow no orbit, and land with another
     # rounding.
-    bounces = (orbit.relative_impact_velocity < 0) & (orbit.relative_bounce_velocity > 0)
+    bounces = slowest > 0
+    lost = lost * (1 + 2 * np.pi * orbit.n * orbit.amplitude / np.abs(slowest))
     assert np.mean(bounces) > 0.9 and np.max((value / lost)[bounces]) < 200 * EPS
     # Where nothing changes sign but a pole or a grazing orbit it is of order one.
-    assert np.max(value) < 1e-6
+    assert np.all(value < 1e-6 + 200 * EPS * lost)
 
 
 def first_zero(contact: SpringDamper, n: int, kind: str, edges) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.orbits.stability import Side
 
+EPS = np.finfo(float).eps
 # For each of two rules and two sides.
 SIZES = [1_000, pytest.param(25_000, marks=pytest.mark.long)]
 
@@ -70,11 +71,13 @@ def test_newtons_method_on_the_full_system_returns_to_the_branch(drawn):
     rng = np.random.default_rng(0)
     guess = y + 1e-3 * rng.uniform(-1, 1, y.shape) * np.minimum(1, np.abs(y))
     found = newton(system, guess, plane(normal, y), NewtonSettings(max_iterations=20))
-    assert found.converged.all()
     # The formula's own error, a few 1e-15 of quantities up to 1e2, over the
     # smallest pivot of the system.
     scale = 1 + np.abs(y)
-    assert np.max(np.abs(found.point - y) / scale) < 1e-11
+    returns = found.converged & (np.max(np.abs(found.point - y) / scale, axis=-1) < 1e-11)
+    # A release without speed is a double zero, whose time keeps half the digits and has no slope.
+    slow = np.abs(orbit.relative_bounce_velocity) < 10 * np.sqrt(EPS)
+    assert np.all(returns | slow) and np.mean(returns) > 0.9999
 
 
 def test_the_simulation_returns_to_every_admissible_orbit(drawn):

@@ -415,8 +415,10 @@ def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
     "name", [pytest.param(x, marks=() if x in OFTEN else pytest.mark.long) for x in LAWS]
 )
 def test_every_law_is_designed_for_by_its_impact(name):
-    found = assessed(**PAPER, contact_time="0.3 ms", law=name)
-    assert found.measured_restitution == pytest.approx(0.65, rel=1e-12)
+    # The damping of Lankarani and Nikravesh is limited by e = 0, and r by 2/3.
+    r = 0.7 if name == "lankarani-nikravesh" else 0.65
+    found = assessed(**PAPER | {"restitution": r}, contact_time="0.3 ms", law=name)
+    assert found.measured_restitution == pytest.approx(r, rel=1e-12)
     assert found.contact_time == pytest.approx(3e-4, rel=1e-12)
     one = found.orbits[0]
     # The third order of small D = 0.094 against the second.

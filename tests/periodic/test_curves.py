@@ -7,8 +7,8 @@ import pytest
 from orbits_found import FOUND, balls, found_orbit
 
 import bouncing_ball
+from bouncing_ball.beyond.motions.cascade_of_flights import openings
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.long_run.cascade_of_flights import openings
 from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
@@ -116,7 +116,7 @@ def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):
 
 
 def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
-    """Against the equations of long_run.cascade_of_flights, with the multipliers there."""
+    """Against the equations of beyond.motions.cascade_of_flights, with the multipliers there."""
     ratio = 20.0
     zeta = float(damping_ratio(0.85))
     known = openings([zeta], np.array([ratio]), 2)

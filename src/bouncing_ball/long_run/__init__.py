@@ -1,4 +1,4 @@
-"""The motions on which balls end: repeating, locked or chaotic; their means, exponents, cascades.
+"""The motions on which balls end: repeating, locked or chaotic; their means and exponents.
 
 All of them step balls by the legs of :meth:`.Dynamics.legs`. ``destination`` follows balls until
 their motions are known: ``followed`` has what is known of each ball so far, ``recurrence`` examines
@@ -7,8 +7,5 @@ the motions out as labelled datasets, ``basins`` follows an even grid of first i
 ``basin_entropy`` is a measure, and ``motion_of`` has the functions that a user calls for all of
 them; ``orbit_of_motion`` gives the periodic orbit on which a ball ends. ``contraction`` is the sum
 of both exponents, and ``ensembles`` has balls whose r scatters. ``means`` averages over motions
-that repeat, ``sampled_means`` over samples of the others, and ``many_digits`` follows a ball whose
-digits doubles do not hold.
-``lift_off`` gives the locked orbits of the restitution model, ``period_doublings`` the cascades of
-the n-T orbits, and ``cascade_of_flights`` the orbits between permanent contact and chattering.
+that repeat, and ``sampled_means`` over samples of the others.
 """

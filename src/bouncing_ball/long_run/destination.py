@@ -14,7 +14,7 @@ With instantaneous impacts the motion after sticking does not depend on earlier 
 ball always leaves in the state of the lift-off. A motion that sticks twice is therefore locked. If
 rounding errors have grown to its size between the two stickings, its period is not known: another
 rounding gives another lap, but also one that begins and ends at the lift-off. Whether the true lap
-ends is examined with more digits in :mod:`bouncing_ball.long_run.many_digits`.
+ends only more digits can tell.
 
 In a contact of finite stiffness the dependence decreases by a finite factor, and the state is
 compared as for any other motion. If rounding errors grow too much for a return, a ball that sticks

@@ -14,8 +14,8 @@ from bouncing_ball.beyond.exhibits.locked_orbits import (
 )
 from bouncing_ball.beyond.exhibits.locking import laps_by_many_digits
 from bouncing_ball.beyond.exhibits.motion_samples import uncertainty_exponent
+from bouncing_ball.beyond.motions.lift_off import laps
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import laps
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.pipeline.configuration import typed
 

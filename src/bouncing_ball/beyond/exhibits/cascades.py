@@ -14,6 +14,12 @@ from pydantic import Field, model_validator
 
 from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.accuracy.thresholds import last_zero
+from bouncing_ball.beyond.motions.cascade_of_flights import (
+    balls_behind_the_top,
+    openings,
+    stiff_openings,
+)
+from bouncing_ball.beyond.motions.period_doublings import MOST, cascade
 from bouncing_ball.datasets.parameters import (
     Family,
     LossyRestitution,
@@ -23,13 +29,7 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.long_run.cascade_of_flights import (
-    balls_behind_the_top,
-    openings,
-    stiff_openings,
-)
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.period_doublings import MOST, cascade
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -114,7 +114,7 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     The dataset has, for the first r, ``threshold_amplitude`` Λ_SD (ϖ,). ``opening_amplitude``
     (flights, ϖ) is the lowest Λ up to which the orbit has this number of flights, and
     ``opening_multiplier`` the larger modulus of its multipliers there; both are NaN where no stable
-    orbit was found: see :func:`bouncing_ball.long_run.cascade_of_flights.openings`.
+    orbit was found: see :func:`bouncing_ball.beyond.motions.cascade_of_flights.openings`.
     ``opening_excess`` is E = ϖ²(Λ - Λ_SD) there, ``stiff_opening`` (restitution, flights) its limit
     for stiff contacts, and ``stiff_opening_ratio`` (restitution, opening) r² times the ratio of the
     limits of one opening and the one before.

@@ -15,6 +15,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     uncertainty_exponent,
     with_limits,
 )
+from bouncing_ball.beyond.motions.lift_off import laps
 from bouncing_ball.datasets.parameters import (
     Seed,
     Several,
@@ -23,7 +24,6 @@ from bouncing_ball.datasets.parameters import (
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import laps
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
 
@@ -157,8 +157,8 @@ def returns_at_places(
     dict of array
         ``periods``, shape (place,), of the locked orbit by as many digits as it needs, 0 if the
         ball does not stick again within the impacts; ``periods_by_doubles`` of
-        :class:`~bouncing_ball.long_run.lift_off.Lap`, shape (change, place), first without a change
-        of Λ and then with each change; ``same``, shape (ϖ, place), whether the
+        :class:`~bouncing_ball.beyond.motions.lift_off.Lap`, shape (change, place), first without a
+        change of Λ and then with each change; ``same``, shape (ϖ, place), whether the
         contact has a locked orbit of the same period; and ``known``, of this shape, whether that
         can be told: its motion is decided, and if it is locked, doubles tell its period.
     """

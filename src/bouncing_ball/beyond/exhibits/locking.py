@@ -13,11 +13,11 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     ParameterPlane,
     three_models,
 )
+from bouncing_ball.beyond.motions.many_digits import ManyDigits
 from bouncing_ball.datasets.parameters import number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.many_digits import ManyDigits
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
 from bouncing_ball.periodic.one_impact import n_t

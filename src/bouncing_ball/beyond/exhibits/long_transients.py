@@ -17,12 +17,12 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     share_with_limits,
     with_limits,
 )
+from bouncing_ball.beyond.motions.many_digits import ManyDigits
 from bouncing_ball.datasets.parameters import LossyRestitution, Many, Seed, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.grids import VARIABLES as OF_GRIDS
-from bouncing_ball.long_run.many_digits import ManyDigits
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.rigid import RestitutionModel
 

@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from sixty_digits import Exact
 
+from bouncing_ball.beyond.motions.cascade_of_flights import Openings, openings, stiff_openings
 from bouncing_ball.errors import ModelError
-from bouncing_ball.long_run.cascade_of_flights import Openings, openings, stiff_openings
 from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold

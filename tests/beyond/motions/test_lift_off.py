@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from bouncing_ball.beyond.motions.lift_off import laps
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import laps
 from bouncing_ball.models.rigid import RestitutionModel
 
 LYING = -np.pi / 2, 0.0

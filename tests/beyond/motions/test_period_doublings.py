@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from bouncing_ball.beyond.motions.period_doublings import FEIGENBAUM, cascade
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.period_doublings import FEIGENBAUM, cascade
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper

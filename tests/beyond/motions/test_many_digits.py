@@ -6,9 +6,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from bouncing_ball.beyond.motions.lift_off import laps
+from bouncing_ball.beyond.motions.many_digits import ManyDigits
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import laps
-from bouncing_ball.long_run.many_digits import ManyDigits
 from bouncing_ball.models.rigid import RestitutionModel
 
 

@@ -216,6 +216,31 @@ def test_lines_change_from_solid_to_dashed_at_the_period_doubling():
     assert solid.get_xdata()[-1] == dashed.get_xdata()[0] == place
 
 
+DRAWN = {
+    "rigid": RIGID,
+    "table and drag": bouncing_ball.rigid(
+        restitution=0.6, table=bouncing_ball.Waveform([1, 0.2]), flight=bouncing_ball.Drag(0.05)
+    ),
+    "spring and damper": bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0),
+    "corrected": bouncing_ball.corrected(
+        bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    ),
+    "law": bouncing_ball.contact_law("tsuji", stiffness=500.0, damping=0.1),
+}
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_a_branch_is_drawn_along_each_parameter(name):
+    """On the axis is the parameter that varies, and each point of the branch is a point there."""
+    one = bouncing_ball.orbit(DRAWN[name], amplitude=1.4)
+    for along, value in {"amplitude": 1.4, **one.model.numbers()}.items():
+        found = bouncing_ball.follow(one, along=along, to=1.002 * value, points=10)
+        (axes,) = found.plot().axes
+        drawn = np.concatenate([line.get_xdata() for line in axes.lines])
+        values = found[along].values
+        assert np.isin(values, drawn).all() and values[0] != values[-1]
+
+
 @pytest.mark.parametrize("along", ["restitution", "damping_ratio"])
 def test_no_coefficient_that_varies_along_a_branch_is_called_constant(along):
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)

@@ -31,7 +31,7 @@ def followed(data: xr.Dataset) -> Figure:
     Lines change their look at the special orbit between two points, if there is one.
     """
     figure, axes = canvas(WIDE, 3.4)
-    (along,) = _parameters_of(data)
+    along = data.attrs["along"]
     stability = np.where(data.stable, "stable", "unstable")
     looks = np.where(data.admissible, stability, "inadmissible")
     edges = [0, *(np.flatnonzero(looks[1:] != looks[:-1]) + 1), len(looks)]
@@ -62,7 +62,7 @@ def followed(data: xr.Dataset) -> Figure:
 def special_curve(data: xr.Dataset) -> Figure:
     """A curve of special orbits in the plane of its two parameters, with its special points."""
     figure, axes = canvas(WIDTH, 3.2)
-    first, second = _parameters_of(data)
+    first, second = data.attrs["along"].split(", ")
     shown = data.admissible
     look: Look = {"color": COLOURS[1], "label": data.attrs["curve_kind"]}
     axes.plot(data[second], data[first], **look | LINES["inadmissible"] | {"label": None})
@@ -71,12 +71,6 @@ def special_curve(data: xr.Dataset) -> Figure:
     axes.set(xlabel=symbol(second), ylabel=symbol(first), title=_orbit_title(data))
     legend_below(figure, ncols=3)
     return figure
-
-
-def _parameters_of(data: xr.Dataset) -> list[str]:
-    """The parameters of a branch or a curve."""
-    varied = (name for name in data if data[name].dims == ("point",) and name != "residual")
-    return [str(name) for name in varied if f"special_{name}" in data]
 
 
 def _mark_special(axes: Axes, data: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> None:

@@ -10,10 +10,11 @@ import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, contact_law, rigid, spring_damper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.contact import ContactSpan
-from bouncing_ball.models.held_contact import contact_path, held_threshold, largest
+from bouncing_ball.models.held_contact import contact_path, held_threshold
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.waveform import largest
 
 TWO = ([1.0, 0.3], [0.0, 0.2])
 THREE = ([0.7, 0.0, 0.2], [0.1, -0.15, 0.0])

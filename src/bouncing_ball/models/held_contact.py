@@ -27,7 +27,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,7 +38,7 @@ from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.linear_flight import LinearFlight
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.suspension import Suspension
-from bouncing_ball.models.waveform import Waveform, turned
+from bouncing_ball.models.waveform import Waveform, largest
 from bouncing_ball.numerics.elementary import exponential, sine_and_cosine
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 
@@ -53,9 +52,6 @@ _TURN = 2 * np.pi
 # A harmonic that is nearer to an undamped resonance than this has no periodic motion W_c within the
 # range of doubles.
 _RESONANCE = 1e-8
-# Parts of a period of the highest harmonic at which the search for the largest S begins, and the
-# number of times that they are halved.
-_PARTS, _HALVINGS = 16, 26
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,40 +130,6 @@ def response(coefficients: np.ndarray, orders: np.ndarray, lag: Any) -> np.ndarr
     """The harmonics of S, over Λ: those of -(W_c + κ W_c′), with a last axis for the harmonics."""
     turn = 1 + 1j * orders * np.asarray(lag, dtype=float)[..., np.newaxis]
     return -turn * coefficients
-
-
-def largest(harmonics: np.ndarray) -> np.ndarray:
-    """The largest values of ``Im Σ s_k e^{ikφ}`` for harmonics of shape (..., N).
-
-    The result is an upper bound that differs from the value by rounding errors.
-
-    Examples
-    --------
-    >>> float(largest(np.array([3.0 + 4.0j])).round(12))
-    5.0
-    """
-    rows = harmonics.reshape(-1, harmonics.shape[-1])
-    found = [_largest(tuple(row.tolist())) for row in rows]
-    return np.reshape(found, harmonics.shape[:-1])
-
-
-@lru_cache(maxsize=4096)
-def _largest(harmonics: tuple[complex, ...]) -> float:
-    row = np.array(harmonics)
-    k = np.arange(1, row.size + 1)
-    bend = float(np.sum(k * k * np.abs(row)))
-    # Half the width of the parts, and their centres.
-    half = np.pi / (_PARTS * row.size)
-    centre = -np.pi + half * (2 * np.arange(_PARTS * row.size) + 1)
-    for _ in range(_HALVINGS):
-        whole = turned(row, k, centre)
-        value = whole.imag.sum(axis=-1)
-        slope = (k * whole.real).sum(axis=-1)
-        most = value + np.abs(slope) * half + bend * half * half / 2
-        keep = centre[most >= value.max()]
-        half = half / 2
-        centre = np.concatenate([keep - half, keep + half])
-    return float(most.max())
 
 
 class _Forced(Motion):

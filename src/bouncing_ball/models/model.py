@@ -30,7 +30,6 @@ from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
 from bouncing_ball.models.setting import PAPER, PaperSetting, Setting
 from bouncing_ball.models.suspension import DRAG, SPRING_DAMPING, SPRING_FREQUENCY
@@ -106,9 +105,10 @@ class Model(Batch, Ball, ABC):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.
 
-        By default the threshold is 1, its value for instantaneous impacts (Eq. 9).
+        By default it is that of instantaneous impacts: 1 in the paper (Eq. 9), and 0 for a spring
+        that does not press the mass on its stop.
         """
-        return np.full(self.shape, RESTITUTION_THRESHOLD)
+        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int

@@ -58,12 +58,6 @@ class RestitutionModel(Model):
         """The impacts and flights of these balls on a table of amplitude Λ."""
         return RestitutionDynamics.of(self.restitution, amplitude, self.place)
 
-    def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which the ball stays on the table, of the model's shape; 1 in the paper (Eq. 9),
-        and 0 for a spring that does not press the mass on its stop.
-        """
-        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)
-
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r, without delay, load sensitivity and duration."""
         return rigid_instant(self.restitution, self.restitution, speed)

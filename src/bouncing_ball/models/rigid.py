@@ -56,7 +56,8 @@ class RestitutionModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return RestitutionDynamics.of(self.restitution, amplitude, self.place)
+        r = np.asarray(self.restitution, dtype=float)
+        return RestitutionDynamics.of(r, amplitude, self.place)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r, without delay, load sensitivity and duration."""

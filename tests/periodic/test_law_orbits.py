@@ -176,6 +176,22 @@ def test_a_row_of_corrected_models_is_that_of_its_laws(kind):
     np.testing.assert_allclose(fold, [n_t.saddle_node(x, 1).amplitude for x in one], rtol=1e-11)
 
 
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_the_linear_law_is_the_ball_of_the_spring_and_damper(release):
+    given = {"frequency_ratio": 2.0, "damping_ratio": 0.05, "release": release}
+    ball = contact_law("linear", **given)
+    assert ball == bouncing_ball.spring_damper(**given) and ball.parameters["law"] == "linear"
+    assert contact_law(SpringDamper(2.0, 0.05, release)) == ball
+    found = bouncing_ball.orbits(ball, amplitude=0.9)
+    searched = bouncing_ball.orbits(LawModel(ball.contact), amplitude=0.9)
+    assert len(found) == 3
+    # Newton's method for the orbits of any law has a tolerance of 1e-12.
+    assert max(one.distance(other) for one, other in zip(found, searched, strict=True)) < 1e-11
+    with_drag = contact_law("linear", flight=bouncing_ball.Drag(0.1), **given)
+    assert with_drag == bouncing_ball.spring_damper(flight=bouncing_ball.Drag(0.1), **given)
+    assert with_drag.parameters["drag"] == 0.1
+
+
 def test_an_overdamped_contact_with_a_force_release_has_orbits():
     """One cycle by scipy, which shares no code: the contact up to zero force, then a parabola."""
     omega, zeta, lam = 20.0, 1.5, 3.0

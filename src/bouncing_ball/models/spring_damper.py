@@ -111,6 +111,11 @@ class SpringDamper(OscillatorLaw):
         return self.release.is_linear and super().has_closed_form
 
     @property
+    def is_linear_and_underdamped(self) -> bool:
+        """Whether all contacts have a linear release and ζ < 1: their motion has a closed form."""
+        return self.release.is_linear and bool(np.all(np.asarray(self.damping_ratio) < 1))
+
+    @property
     def linear(self) -> SpringDamper:
         """A linear contact with the r and the duration of this one's free impact: itself, unless
         its damper acts on approach only.
@@ -366,7 +371,7 @@ class SpringDamper(OscillatorLaw):
         """Contacts in closed form if all of them are linear and underdamped, otherwise by
         collocation.
         """
-        if not self.release.is_linear or np.any(np.asarray(self.damping_ratio) >= 1):
+        if not self.is_linear_and_underdamped:
             return super().dynamics(amplitude, setting)
         if setting.is_paper:
             return LinearContactDynamics.of(self, amplitude)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.model import LawModel
+from bouncing_ball.models.spring_damper_model import model_of_law
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
@@ -68,7 +68,7 @@ def law_at_orbit(
     --------
     >>> from bouncing_ball.models.laws.hertzian import Tsuji
     >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
-    >>> speed = -n_t.orbit(LawModel(law), 1, 1.0).relative_impact_velocity
+    >>> speed = -n_t.orbit(model_of_law(law), 1, 1.0).relative_impact_velocity
     >>> round(float(law.signature(speed).duration), 12)
     0.1
     """
@@ -98,13 +98,13 @@ def orbit_of_law(
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
     law = law_of_impact(kind, restitution, taken, speed)
-    orbit = n_t.orbit(LawModel(law), n, amplitude, side)
+    orbit = n_t.orbit(model_of_law(law), n, amplitude, side)
     problem = orbit.problem()
     y = orbit.point(problem)
     for _ in range(_ROUNDS):
         lost = np.flatnonzero(np.isnan(y).any(axis=-1))
         if lost.size:
-            n_t.require_orbit(LawModel(law.take(lost[0])), n, amplitude, side)
+            n_t.require_orbit(model_of_law(law.take(lost[0])), n, amplitude, side)
         missed = -problem.states(y)[1][..., 0] - speed
         slope = np.full_like(taken, -1.0)
         np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
@@ -112,7 +112,7 @@ def orbit_of_law(
         missed_before = missed
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         law = law_of_impact(kind, restitution, taken, speed)
-        problem = replace(problem, balls=Balls(LawModel(law), amplitude))
+        problem = replace(problem, balls=Balls(model_of_law(law), amplitude))
         found = solve(problem.equations_at, y, _CLOSE)
         y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
         if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.flight import Rise
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.models.laws.panel import Start, slopes_of
@@ -252,7 +253,7 @@ def _sampled(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
         displacement, rate, second, _ = flight.gap(time)
         return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
 
-    rise = first_zero(flight.rise(), np.zeros_like(flight.velocity))
+    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
     now = held(share * rise.time)
     found = now.any(axis=0)

@@ -38,7 +38,7 @@ from bouncing_ball.models.setting import PAPER, Setting, require_paper, setting_
 from bouncing_ball.models.spring_damper_model import model_of_law
 from bouncing_ball.models.suspension import Suspension
 from bouncing_ball.models.waveform import Waveform
-from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.stability import Side
 
@@ -94,9 +94,8 @@ class FreeImpactBall(Ball):
 
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
         require_paper(self.setting, "the speed at an orbit, at which {duration} is that of the law")
-        return self._with(
-            law_at_orbit(self.law_type, self.restitution, self.duration, n, amplitude, Side(side))
-        )
+        given = self.law_type, self.restitution, self.duration
+        return self._with(orbit_of_law(*given, n, amplitude, Side(side)).law)
 
     def at_limits(self, n: ArrayLike) -> Any:
         return self.at_speed(rigid_speed(n, self.restitution))

@@ -1,4 +1,4 @@
-"""The contact law whose impact on an orbit has a given restitution and duration."""
+"""Orbits on the contact law that has a given restitution and duration at their impacts."""
 
 from dataclasses import replace
 
@@ -25,19 +25,20 @@ _SETTLED = 1e-10
 _CLOSE = NewtonSettings(tolerance=1e-7)
 
 
-def law_at_orbit(
+def orbit_of_law(
     kind: type[ContactLaw],
     restitution: float,
     duration: ArrayLike,
     n: int,
     amplitude: float,
     side: Side = Side.STABLE,
-) -> ContactLaw:
-    """The contact laws whose free impacts have r and D at the impact speed of their n-T orbit at Λ.
+) -> Orbit:
+    """The n-T orbits at Λ on contacts whose free impacts have r and D at the orbit's impact speed.
 
     The restitution and the duration of a law may depend on the speed. To compare models, r and D
     are therefore prescribed at the impact speed of the orbit in question. A secant iteration finds
-    this speed.
+    this speed. The unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so
+    that the orbits of one round are the guesses of the next.
 
     Parameters
     ----------
@@ -54,8 +55,8 @@ def law_at_orbit(
 
     Returns
     -------
-    ContactLaw
-        Has the shape of ``duration``.
+    Orbit
+        Has the shape of ``duration``; its ``law`` is the contact law.
 
     Raises
     ------
@@ -67,31 +68,9 @@ def law_at_orbit(
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import Tsuji
-    >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
-    >>> speed = -n_t.orbit(model_of_law(law), 1, 1.0).relative_impact_velocity
-    >>> round(float(law.signature(speed).duration), 12)
+    >>> orbit = orbit_of_law(Tsuji, 0.65, 0.1, 1, 1.0)
+    >>> round(float(orbit.law.signature(-orbit.relative_impact_velocity).duration), 12)
     0.1
-    """
-    return orbit_of_law(kind, restitution, duration, n, amplitude, side).law
-
-
-def orbit_of_law(
-    kind: type[ContactLaw],
-    restitution: float,
-    duration: ArrayLike,
-    n: int,
-    amplitude: float,
-    side: Side = Side.STABLE,
-) -> Orbit:
-    """The n-T orbits at Λ on the contacts of :func:`law_at_orbit`, which has the same arguments.
-
-    The unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so that the
-    orbits of one round are the guesses of the next.
-
-    Raises
-    ------
-    NoOrbitError, ModelError
-        As :func:`law_at_orbit`.
     """
     side = Side(side)
     taken = np.asarray(duration, dtype=float)

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.long_run.motions import Motions
-from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact, Leg
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Leg
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import require_paper

@@ -227,7 +227,7 @@ class Rise(Motion):
     def __call__(self, time: np.ndarray) -> Derivatives:
         at = self.flight.lagged(time, 0.0)
         _, rate, second, _ = at.values
-        return Derivatives(*at.values, *at.bounds, ended=(rate <= 0) & (second <= 0))
+        return Derivatives(*at.values, *at.bounds)._replace(ended=(rate <= 0) & (second <= 0))
 
 
 class Unloaded(Motion):
@@ -245,7 +245,7 @@ class Unloaded(Motion):
         y, rate, second, third = at.values
         # At the release y = 0 but for rounding; this zero is not the one that is searched for.
         y = np.where(time == 0, 0.0, y)
-        return Derivatives(-y, -rate, -second, -third, *at.bounds, ended=at.gap >= 0)
+        return Derivatives(-y, -rate, -second, -third, *at.bounds)._replace(ended=at.gap >= 0)
 
 
 class Fall(Motion):

@@ -31,8 +31,8 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Released
-from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.linear_contact import PATIENCE, ROUNDING, LinearContactDynamics
 from bouncing_ball.models.linear_flight import LinearFlight
 from bouncing_ball.models.suspension import Suspension
@@ -189,7 +189,7 @@ class HeldMotion(Motion):
         at = self.flight.lagged(time, self.lag)
         above = self._free_level(at) + self.most
         slack = ROUNDING * np.abs(self.rest)
-        return Derivatives(*at.values, *at.bounds, ended=above <= slack)
+        return Derivatives(*at.values, *at.bounds)._replace(ended=above <= slack)
 
     def _free_level(self, at: Any) -> np.ndarray:
         """b/Q + R, which with S is a bound of y."""

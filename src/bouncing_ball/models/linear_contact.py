@@ -25,8 +25,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian, Released
-from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_flow import flow as linear_flow

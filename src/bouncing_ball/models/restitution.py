@@ -27,8 +27,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.sticking import lifted, pressed, stay
 from bouncing_ball.numerics.arrays import pick

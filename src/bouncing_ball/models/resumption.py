@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.contact import ContactSpan, FiniteContact
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import Unloaded, land
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -85,7 +85,7 @@ class SpringDamperModel(Model):
         """
         contact = self.contact
         paper = self.setting.is_paper
-        found = contact.permanent_contact if paper else held_threshold(contact, self.setting)
+        found: Any = contact.permanent_contact if paper else held_threshold(contact, self.setting)
         return np.broadcast_to(found, self.shape).astype(float)
 
 

@@ -22,9 +22,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.corrected import impact as corrected_map
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import Flight, Unloaded, emerge, land, table
 from bouncing_ball.models.sticking import lifted, stay
 from bouncing_ball.numerics.elementary import reduce_angle

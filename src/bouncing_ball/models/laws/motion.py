@@ -23,8 +23,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics
 from bouncing_ball.models.flight import Rise
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march

@@ -8,7 +8,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import corrected_branch, n_t
 from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.one_impact.start import SearchedOrbits, continued
+from bouncing_ball.periodic.one_impact.start import SearchedOrbits, special_on_branch
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
@@ -65,13 +65,13 @@ def test_a_side_that_does_not_reach_an_amplitude_has_no_orbit_there():
     ],
 )
 def test_a_branch_is_followed_up_to_a_multiple_of_the_amplitude(amplitude, farther, most):
-    special = continued(SHORT, 1, amplitude, farther=farther)
+    special = special_on_branch(SHORT, 1, amplitude, farther=farther)
     assert special[-1].name == "bound"
     assert float(np.sinh(special[-1].point[-1])) == pytest.approx(most, rel=1e-12)
 
 
 def test_by_default_a_branch_is_followed_to_its_end():
-    special = continued(SHORT, 1, 0.9)
+    special = special_on_branch(SHORT, 1, 0.9)
     assert special[-1].name == "release lost"
     assert [each.name for each in special].count(Bifurcation.SADDLE_NODE) == 1
 

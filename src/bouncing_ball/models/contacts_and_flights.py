@@ -151,7 +151,7 @@ class ContactsAndFlights(Batch, ABC):
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
         return self.with_table(impact), departure.duration + landing.time
 
-    def landed(
+    def over_flight(
         self,
         released: Iterable[Deviation],
         departure: Departure,

@@ -245,7 +245,7 @@ class HeldContactDynamics(LinearContactDynamics):
         return held_by(self.law, self.setting)
 
     def _motion(self, impact: Impact) -> Any:
-        flight = contact_path(self.law, self.setting, impact, self.amplitude)
+        flight = gap_in_contact(self.law, self.setting, impact, self.amplitude)
         lag = self.law.lag
         waveform = self.setting.waveform
         unit = largest(response(self.oscillator.coefficients(waveform), waveform.orders, lag))
@@ -253,7 +253,7 @@ class HeldContactDynamics(LinearContactDynamics):
 
     def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ a time after the starts of contacts, whether they have ended or not."""
-        flight = contact_path(self.law, self.setting, impact, self.amplitude)
+        flight = gap_in_contact(self.law, self.setting, impact, self.amplitude)
         displacement, velocity, _, _ = flight.gap(duration)
         return displacement, velocity
 
@@ -263,7 +263,7 @@ class HeldContactDynamics(LinearContactDynamics):
         As in :class:`.LinearContactDynamics`, the deviation of φ is one along the motion less one
         of the state where a contact forgets its start.
         """
-        path = contact_path(self.law, self.setting, impact, self.amplitude)
+        path = gap_in_contact(self.law, self.setting, impact, self.amplitude)
         duration = departure.duration
         held = self.oscillator
         decay = exponential(-np.asarray(held.loss) / 2 * duration)
@@ -309,7 +309,7 @@ def held_threshold(law: Any, setting: Any) -> np.ndarray:
     return np.maximum(-held.load / np.asarray(held.stiffness), 0.0) / unit
 
 
-def contact_path(law: Any, setting: Any, start: Any, amplitude: Any) -> LinearFlight:
+def gap_in_contact(law: Any, setting: Any, start: Any, amplitude: Any) -> LinearFlight:
     """δ in the contacts of a linear law from their starts on, which have φ, δ and δ′."""
     held = held_by(law, setting)
     return LinearFlight(

@@ -316,7 +316,7 @@ class LinearContactDynamics(ResumingDynamics):
         """Derivative of the map over contact and flight, in closed form."""
         lag = self.law.lag * (after.displacement < _ZERO)
         released = departure.by or self._released(impact, departure)
-        return self.landed(released, departure, after, passed, lag)
+        return self.over_flight(released, departure, after, passed, lag)
 
     def _released(self, impact: Impact, departure: Departure) -> Released:
         """The deviations at the release of unit deviations of φ and of δ′ at the impact.

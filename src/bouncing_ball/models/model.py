@@ -1,7 +1,8 @@
 """The interface of every model of the impact.
 
-Code that uses a model calls the methods of this interface; only closed forms, which are a second
-route, and calls for rigid balls alone ask for its class. A model says how a ball comes into
+Code that uses a model calls the methods of this interface. Its class is asked for where the closed
+form or the search for its orbits is chosen (:func:`.orbits_of`), and by calls for rigid balls
+alone. A model says how a ball comes into
 contact, leaves the table and flies, and how small deviations grow on the way
 (:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
 (:mod:`bouncing_ball.periodic`)::
@@ -59,9 +60,9 @@ class Model(Batch, Ball, ABC):
 
     def __repr__(self) -> str:
         values = {each.name: getattr(self, each.name) for each in fields(self)}
-        # The setting of the paper goes without saying.
-        said = (name for name in values if not isinstance(values[name], PaperSetting))
-        text = ", ".join(f"{name}={in_words(values[name])}" for name in said)
+        # The setting of the paper is not shown.
+        shown = (name for name in values if not isinstance(values[name], PaperSetting))
+        text = ", ".join(f"{name}={in_words(values[name])}" for name in shown)
         return f"{type(self).__name__}({text})"
 
     @property
@@ -182,7 +183,7 @@ def _inner(law: Any) -> Iterator[Any]:
 
 
 def _implied(model: Any, values: Mapping[str, Any]) -> dict[str, Any]:
-    """What the laws inside of a model say of parameters that follow from others."""
+    """Parameters that follow from these values by the laws inside of a model, such as ζ from r."""
     found: dict[str, Any] = {}
     for law in _inner(model):
         of_law = getattr(law, "implied", None)

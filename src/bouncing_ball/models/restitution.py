@@ -234,7 +234,7 @@ class RestitutionDynamics(Dynamics):
         free = np.logical_not(departure.sticks).astype(float)
         by_phase = Deviation(free, none, none)
         by_velocity = Deviation(none, none, -slope * free)
-        return self.landed((by_phase, by_velocity), departure, after, passed)
+        return self.over_flight((by_phase, by_velocity), departure, after, passed)
 
     def duration_slopes(
         self, impact: Impact, departure: Departure

@@ -1,4 +1,4 @@
-"""What the impacts of a ball happen on: how the table moves, and what moves the ball in flight.
+"""The setting of the impacts: how the table moves, and what moves the ball in flight.
 
 In the setting of the paper the table moves as Λ sin τ and the ball flies freely, and all functions
 have their closed forms (:class:`PaperSetting`), with which a ball is simulated 2.5 to 4.6 times as
@@ -95,8 +95,8 @@ class Setting(Batch, ABC):
 
     @abstractmethod
     def forcing(self, amplitude: np.ndarray) -> np.ndarray:
-        """What a contact law needs of the load 1 + w″ of balls on the table: Λ in the setting of
-        the paper, and otherwise the harmonics of -w″, complex, shape (N, balls).
+        """The load 1 + w″ of balls on the table, for contact laws: Λ in the setting of the paper,
+        and otherwise the harmonics of -w″, complex, shape (N, balls).
         """
 
     @abstractmethod

@@ -36,7 +36,7 @@ from bouncing_ball.models.damping import (
 )
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.held_contact import HeldContactDynamics, contact_path
+from bouncing_ball.models.held_contact import HeldContactDynamics, gap_in_contact
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_contact import LinearContactDynamics
@@ -342,7 +342,7 @@ class SpringDamper(OscillatorLaw):
         if not self.release.is_linear:
             return super().during(span, time)
         if not span.setting.is_paper:
-            displacement, velocity, _, _ = contact_path(
+            displacement, velocity, _, _ = gap_in_contact(
                 self, span.setting, span, span.amplitude
             ).gap(time)
             return displacement, velocity

@@ -184,15 +184,15 @@ class ContactDynamics(ResumingDynamics):
             Deviation(1 + by_phase[:, 0], -by_phase[:, 1], -by_phase[:, 2]),
             Deviation(-by_speed[:, 0], by_speed[:, 1], by_speed[:, 2]),
         )
-        return self.landed(released, departure, after, passed)
+        return self.over_flight(released, departure, after, passed)
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """exp(-∫ ∂f/∂p′ dτ) over each contact.
 
-        For a law that remembers the speed at the start, it follows from the derivative of the
-        contact: with p′ = u at the release, the determinant of (φ + D, u) by (φ, v), times u/v.
+        If the law depends on the speed at the start, it follows from the derivative of the contact:
+        with p′ = u at the release, the determinant of (φ + D, u) by (φ, v), times u/v.
         """
-        if not self.law.remembers:
+        if not self.law.feels_start_speed:
             return departure.by.contraction
         by_phase, by_speed = (departure.by.jacobian[:, :, k] for k in range(2))
         determinant = (1 + by_phase[:, 0]) * by_speed[:, 2] - by_speed[:, 0] * by_phase[:, 2]

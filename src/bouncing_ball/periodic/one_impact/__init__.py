@@ -3,7 +3,7 @@
 In reading order:
 
 ``n_t``                          the orbits of any model, their saddle-nodes and period doublings
-``orbits_of_model``              what is asked of them, however they are found
+``orbits_of_model``              the interface of all formulas and searches for them
 ``closed_forms``                 those of the models that have a closed form
 ``restitution_branch``           that of the restitution model
 ``corrected_branch``             that of the corrected model

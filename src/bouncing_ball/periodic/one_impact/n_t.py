@@ -46,7 +46,8 @@ class Absence(StrEnum):
 
 @singledispatch
 def orbits_of(model: Model) -> OrbitsOfModel:
-    """The n-T orbits of a model: how they are found depends on its class and its setting.
+    """The n-T orbits of a model: its class and its setting decide by which formula or search they
+    are found.
 
     Examples
     --------

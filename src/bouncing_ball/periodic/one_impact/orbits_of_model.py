@@ -1,4 +1,4 @@
-"""What is asked of the n-T orbits of a model, however they are found."""
+"""The interface of the n-T orbits of a model, and the searches for one ball after the other."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator

@@ -203,7 +203,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     return np.nan
 
 
-def continued(
+def special_on_branch(
     model: Model, n: int, amplitude: float, farther: float = _FARTHER
 ) -> Sequence[SpecialPoint]:
     """Bifurcations and crossings of Λ along the branch of a single model.
@@ -322,7 +322,7 @@ class SearchedOrbits(OrbitsOfModel):
         """
         check_index(n)
         if amplitude >= self.saddle_node(n).amplitude:
-            special = continued(self.model, int(n), float(amplitude))
+            special = special_on_branch(self.model, int(n), float(amplitude))
             points = [each.point for each in special if each.name == _HERE]
             if points:
                 search, _, _ = _Search.of(self.model, [n])
@@ -365,7 +365,7 @@ class SearchedOrbits(OrbitsOfModel):
         y = np.where(good[:, np.newaxis], found.point, np.nan)
         for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
             near = float(np.nan_to_num(lam[k], nan=1.0))
-            special = continued(search.model.take(k), int(index[k]), near)
+            special = special_on_branch(search.model.take(k), int(index[k]), near)
             points = [each.point for each in special if each.name == kind]
             if points:
                 y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]

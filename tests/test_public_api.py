@@ -30,7 +30,7 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.orbits.stability import Side
 
 ROOT = Path(__file__).parents[1]
@@ -161,8 +161,8 @@ def test_the_name_of_a_side_means_the_side():
         assert (
             n_t.orbit(by_name, 1, 0.9, side.value).phase == n_t.orbit(by_name, 1, 0.9, side).phase
         )
-        by_name = law_at_orbit(Tsuji, 0.8, 0.2, 1, 0.9, side.value)
-        assert by_name == law_at_orbit(Tsuji, 0.8, 0.2, 1, 0.9, side)
+        by_name = orbit_of_law(Tsuji, 0.8, 0.2, 1, 0.9, side.value).law
+        assert by_name == orbit_of_law(Tsuji, 0.8, 0.2, 1, 0.9, side).law
     assert ball.at_orbit(1, 0.9).law != ball.at_orbit(1, 0.9, "unstable").law
 
 

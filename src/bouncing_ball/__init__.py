@@ -72,15 +72,15 @@ if TYPE_CHECKING:
     from bouncing_ball.long_run.motion_of import motion_of as motion_of
     from bouncing_ball.long_run.motion_of import orbit_diagram as orbit_diagram
     from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion as orbit_of_motion
+    from bouncing_ball.long_run.over_time import drop as drop
+    from bouncing_ball.long_run.over_time import history as history
+    from bouncing_ball.long_run.over_time import simulate as simulate
     from bouncing_ball.measured.fit import fit_contact as fit_contact
     from bouncing_ball.models.laws.start_speed import Flores as Flores
     from bouncing_ball.models.laws.start_speed import LankaraniNikravesh as LankaraniNikravesh
     from bouncing_ball.models.makers import corrected as corrected
     from bouncing_ball.models.makers import rigid as rigid
     from bouncing_ball.models.makers import spring_damper as spring_damper
-    from bouncing_ball.models.over_time import drop as drop
-    from bouncing_ball.models.over_time import history as history
-    from bouncing_ball.models.over_time import simulate as simulate
     from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
     from bouncing_ball.models.spring_damper_model import SpringDamperModel as SpringDamperModel
@@ -124,13 +124,13 @@ _MODULES = {
     "contact_law": "contacts.law_balls",
     "corrected": "models.makers",
     "describe_contact": "contacts.describe",
-    "drop": "models.over_time",
+    "drop": "long_run.over_time",
     "ensemble": "long_run.ensembles",
     "error_thresholds": "accuracy.error_thresholds",
     "fit_contact": "measured.fit",
     "follow": "periodic.branches.follow",
     "grazing_form": "periodic.branches.grazing",
-    "history": "models.over_time",
+    "history": "long_run.over_time",
     "limits": "periodic.orbits_of_ball",
     "lyapunov_exponent": "long_run.motion_of",
     "motion_of": "long_run.motion_of",
@@ -143,7 +143,7 @@ _MODULES = {
     "permanent_contact": "periodic.orbits_of_ball",
     "read_orbits": "periodic.read_orbits",
     "rigid": "models.makers",
-    "simulate": "models.over_time",
+    "simulate": "long_run.over_time",
     "spring_damper": "models.makers",
     "write_contact": "contacts.write",
 }

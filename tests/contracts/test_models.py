@@ -26,10 +26,11 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.paper.claims.witness import nearest
 from bouncing_ball.periodic.branches.following import orbits_along
-from bouncing_ball.periodic.one_impact import n_t, start
-from bouncing_ball.periodic.one_impact.closed_forms import nearest
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.start import SearchedOrbits
 from bouncing_ball.periodic.orbits.legs import time_to_section
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.orbits.special import bifurcations as events_of
@@ -334,25 +335,26 @@ def test_a_side_may_be_given_by_its_name(name):
 @pytest.mark.parametrize("name", [x for x in DISSIPATIVE if n_t.orbits_of(MODELS[x]).is_complete])
 def test_a_closed_form_is_what_the_continuation_finds(name):
     model = MODELS[name]
+    search = SearchedOrbits(model)
     n = np.array([1, 2])
     for kind, known in zip(Bifurcation, (n_t.saddle_node, n_t.period_doubling), strict=True):
         exact = known(model, n)
         # The test functions' rounding over their slope, of order one.
         np.testing.assert_allclose(
-            start.bifurcation(model, n, kind).amplitude, exact.amplitude, rtol=1e-9
+            search.bifurcation(n, kind).amplitude, exact.amplitude, rtol=1e-9
         )
     lam = n_t.saddle_node(model, n).amplitude + np.array([[1e-3], [0.3], [0.8]])
     for side in Side:
-        found = start.orbit(model, n, lam, side)
+        found = search.orbit(n, lam, side)
         exact = n_t.orbit(model, n, lam, side)
         assert found.exists.tolist() == exact.exists.tolist()
         # Next to the fold a rounding of Λ is its root in the phase.
         assert np.nanmax(found.distance(exact)) < 1e-10
     # A closed form may know orbits with long contacts that no branch from here leads to.
     exact = n_t.orbits(model, 1, 0.9)
-    for orbit in map(start.orbits(model, 1, 0.9).__getitem__, range(2)):
+    for orbit in map(search.orbits(1, 0.9).__getitem__, range(2)):
         assert np.min(orbit.distance(exact)) < 1e-10
-    assert np.isnan(start.orbit(model, 1, 1e-3, Side.STABLE).phase)
+    assert np.isnan(search.orbit(1, 1e-3, Side.STABLE).phase)
 
 
 @every_side

@@ -10,10 +10,11 @@ import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, contact_law, rigid, spring_damper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.contact import ContactSpan
-from bouncing_ball.models.held_contact import contact_path, held_threshold, largest
+from bouncing_ball.models.held_contact import gap_in_contact, held_threshold
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.waveform import largest
 
 TWO = ([1.0, 0.3], [0.0, 0.2])
 THREE = ([0.7, 0.0, 0.2], [0.1, -0.15, 0.0])
@@ -124,7 +125,7 @@ def test_bounds_of_the_motion_in_contact(flight, lag):
         release_velocity=none,
     )
     law = SpringDamper(7.0, 0.1)
-    path = contact_path(law, setting_of(Waveform(*TWO), kind), span, 1.2)
+    path = gap_in_contact(law, setting_of(Waveform(*TWO), kind), span, 1.2)
     start = rng.uniform(0, 3, 40)
     at = path.lagged(start, lag)
     step = 1e-4

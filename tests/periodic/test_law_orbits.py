@@ -24,11 +24,10 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbits_at as by_formula
-from bouncing_ball.periodic.one_impact.start import orbits as by_branch
-from bouncing_ball.periodic.one_impact.start import restitution_speed
+from bouncing_ball.periodic.one_impact.start import SearchedOrbits, restitution_speed
 from bouncing_ball.periodic.orbits.stability import Side
 
 KINDS = [SpringDamper, *LAWS.values()]
@@ -61,7 +60,7 @@ def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name
         else:
             # The damping of this law is limited by e = 0, and r by 2/3.
             r = 0.7 if LAWS[name] is LankaraniNikravesh else 0.65
-            law = law_at_orbit(LAWS[name], r, duration, 1, 1.0)
+            law = orbit_of_law(LAWS[name], r, duration, 1, 1.0).law
         orbit, corrected = (
             n_t.require_orbit(model, 1, 1.0)
             for model in (LawModel(law), CorrectedModel(Signature(law)))
@@ -95,9 +94,9 @@ def test_a_law_has_the_restitution_and_duration_that_were_asked_for(kind):
 
 
 def test_a_law_at_an_orbit_is_the_same_for_a_side_and_its_name():
-    of_side = law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, Side.UNSTABLE)
-    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, "unstable") == of_side
-    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0) != of_side
+    of_side = orbit_of_law(HuntCrossley, 0.65, 0.1, 1, 1.0, Side.UNSTABLE).law
+    assert orbit_of_law(HuntCrossley, 0.65, 0.1, 1, 1.0, "unstable").law == of_side
+    assert orbit_of_law(HuntCrossley, 0.65, 0.1, 1, 1.0).law != of_side
 
 
 def test_an_unknown_law_and_an_impossible_impact_are_refused():
@@ -147,7 +146,7 @@ def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, dura
 def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, number):
     """Also from far above the fold, which is at Λ = 0.18: the closed form has the same orbits."""
     contact = SpringDamper(2.0, 0.05)
-    found = by_branch(SpringDamperModel(contact), 1, amplitude)
+    found = SearchedOrbits(SpringDamperModel(contact)).orbits(1, amplitude)
     known = by_formula(contact, 1, amplitude)
     assert found.contact_duration.shape == (number,)
     assert np.abs(found.contact_duration - known.contact_duration).max() < 1e-11
@@ -174,6 +173,22 @@ def test_a_row_of_corrected_models_is_that_of_its_laws(kind):
     np.testing.assert_allclose(found, [n_t.orbit(x, 1, 1.0).max_height for x in one], rtol=1e-12)
     fold = n_t.saddle_node(row, 1).amplitude
     np.testing.assert_allclose(fold, [n_t.saddle_node(x, 1).amplitude for x in one], rtol=1e-11)
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_the_linear_law_is_the_ball_of_the_spring_and_damper(release):
+    given = {"frequency_ratio": 2.0, "damping_ratio": 0.05, "release": release}
+    ball = contact_law("linear", **given)
+    assert ball == bouncing_ball.spring_damper(**given) and ball.parameters["law"] == "linear"
+    assert contact_law(SpringDamper(2.0, 0.05, release)) == ball
+    found = bouncing_ball.orbits(ball, amplitude=0.9)
+    searched = bouncing_ball.orbits(LawModel(ball.contact), amplitude=0.9)
+    assert len(found) == 3
+    # Newton's method for the orbits of any law has a tolerance of 1e-12.
+    assert max(one.distance(other) for one, other in zip(found, searched, strict=True)) < 1e-11
+    with_drag = contact_law("linear", flight=bouncing_ball.Drag(0.1), **given)
+    assert with_drag == bouncing_ball.spring_damper(flight=bouncing_ball.Drag(0.1), **given)
+    assert with_drag.parameters["drag"] == 0.1
 
 
 def test_an_overdamped_contact_with_a_force_release_has_orbits():

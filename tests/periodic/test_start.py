@@ -6,9 +6,9 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import corrected_branch, n_t
 from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.one_impact.start import continued, orbit
+from bouncing_ball.periodic.one_impact.start import SearchedOrbits, special_on_branch
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
@@ -26,7 +26,7 @@ def along_the_branch(monkeypatch):
         # The signs of the sides are exchanged in the first guess, which is then refused.
         other = Side.UNSTABLE if side is Side.STABLE else Side.STABLE
         phase = "bouncing_ball.periodic.one_impact.corrected_branch.instant_phase"
-        original = orbit.__globals__["line"].instant_phase
+        original = corrected_branch.instant_phase
         with monkeypatch.context() as patch:
             seen = []
 
@@ -36,7 +36,7 @@ def along_the_branch(monkeypatch):
                 return original(n, instant, amplitude, side_taken)
 
             patch.setattr(phase, wrong_first)
-            return orbit(model, 1, amplitude, side)
+            return SearchedOrbits(model).orbit(1, amplitude, side)
 
     return found
 
@@ -50,8 +50,9 @@ def test_the_orbit_on_the_branch_is_the_one_next_to_the_fold(along_the_branch, a
 
 
 def test_a_side_that_does_not_reach_an_amplitude_has_no_orbit_there():
-    assert not orbit(COMPLIANT, 1, 3.0, Side.UNSTABLE).exists
-    assert orbit(COMPLIANT, 1, 3.0, Side.STABLE).exists
+    search = SearchedOrbits(COMPLIANT)
+    assert not search.orbit(1, 3.0, Side.UNSTABLE).exists
+    assert search.orbit(1, 3.0, Side.STABLE).exists
 
 
 @pytest.mark.parametrize(
@@ -64,13 +65,13 @@ def test_a_side_that_does_not_reach_an_amplitude_has_no_orbit_there():
     ],
 )
 def test_a_branch_is_followed_up_to_a_multiple_of_the_amplitude(amplitude, farther, most):
-    special = continued(SHORT, 1, amplitude, farther=farther)
+    special = special_on_branch(SHORT, 1, amplitude, farther=farther)
     assert special[-1].name == "bound"
     assert float(np.sinh(special[-1].point[-1])) == pytest.approx(most, rel=1e-12)
 
 
 def test_by_default_a_branch_is_followed_to_its_end():
-    special = continued(SHORT, 1, 0.9)
+    special = special_on_branch(SHORT, 1, 0.9)
     assert special[-1].name == "release lost"
     assert [each.name for each in special].count(Bifurcation.SADDLE_NODE) == 1
 

@@ -9,7 +9,7 @@ from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.cli.periodic import Answer, law_values
 from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, START, Range
-from bouncing_ball.models import over_time
+from bouncing_ball.long_run import over_time
 from bouncing_ball.models.sequence import Status
 
 _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")

@@ -1,4 +1,4 @@
-"""Balls on contacts of other laws than the linear spring and damper, made by :func:`contact_law`.
+"""Balls on contacts of any law, made by :func:`contact_law`.
 
 A contact law may be given by the r and D of a free impact. r and D may depend on the speed of the
 impact, so that such a ball has a model only at a speed: :meth:`.Ball.at_orbit` and
@@ -33,12 +33,12 @@ from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.makers import corrected, flattened
+from bouncing_ball.models.makers import corrected, flattened, numbers_of_flight
 from bouncing_ball.models.setting import PAPER, Setting, require_paper, setting_of
+from bouncing_ball.models.spring_damper_model import model_of_law
 from bouncing_ball.models.suspension import Suspension
 from bouncing_ball.models.waveform import Waveform
-from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.stability import Side
 
@@ -94,15 +94,14 @@ class FreeImpactBall(Ball):
 
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
         require_paper(self.setting, "the speed at an orbit, at which {duration} is that of the law")
-        return self._with(
-            law_at_orbit(self.law_type, self.restitution, self.duration, n, amplitude, Side(side))
-        )
+        given = self.law_type, self.restitution, self.duration
+        return self._with(orbit_of_law(*given, n, amplitude, Side(side)).law)
 
     def at_limits(self, n: ArrayLike) -> Any:
         return self.at_speed(rigid_speed(n, self.restitution))
 
     def _with(self, law: ContactLaw) -> Ball:
-        model = LawModel(law, self.setting).labelled(self.parameters)
+        model = model_of_law(law, self.setting).labelled(self.parameters)
         return corrected(model) if self.is_corrected else model
 
     def corrected(self) -> FreeImpactBall:
@@ -131,10 +130,11 @@ def contact_law(
     flight: Suspension | None = None,
     **parameters: Axis,
 ) -> Ball:
-    """A ball on a contact of another law than the linear spring and damper.
+    """A ball on a contact of any law by its name.
 
     The law is given by its parameters, such as ``stiffness=1000.0, damping=0.08``, or by the
-    restitution coefficient and the duration of a free impact.
+    restitution coefficient and the duration of a free impact. The ball of the linear law is that of
+    :func:`spring_damper` if ζ < 1 and the release is linear.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def contact_law(
         The shape of a table with several harmonics, in place of the sine.
     flight : Drag or Spring, optional
         Only ``Drag(0.0)``, the free flight: others are known for :func:`rigid` and
-        :func:`spring_damper`.
+        :func:`spring_damper`, and therefore for the linear law with ζ < 1.
     **parameters : float or array
         The parameters of the law.
 
@@ -172,17 +172,22 @@ def contact_law(
     LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
     >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=1.5).law
     SpringDamper(frequency_ratio=10, damping_ratio=1.5, release='displacement')
+    >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=0.5)
+    SpringDamperModel(contact=SpringDamper(frequency_ratio=10, damping_ratio=0.5, \
+release='displacement'))
     >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
     >>> ball.at_speed(3.0)
     LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
     """
     setting = setting_of(table, flight)
     if isinstance(law, ContactLaw):
-        return LawModel(law, setting)
+        model = model_of_law(law, setting)
+        return model.labelled({"law": law.name, **model.parameters})
     kind = law_named(law if isinstance(law, str) else shortened(law))
     if parameters:
         _refuse_free_impact(kind, parameters, restitution, duration, speed)
-        return _law_of_parameters(kind, parameters, release, setting)
+        found, labels = _law_of_parameters(kind, parameters, release)
+        return model_of_law(found, setting).labelled(labels | numbers_of_flight(flight))
     if restitution is None or duration is None:
         raise ParameterError(
             f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"
@@ -228,8 +233,9 @@ def _refuse_free_impact(
 
 
 def _law_of_parameters(
-    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None, setting: Setting
-) -> LawModel:
+    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None
+) -> tuple[ContactLaw, dict[str, Any]]:
+    """The law, and its parameters as labels of a ball."""
     known = kind.parameter_names()
     for name in parameters:
         if name not in known:
@@ -240,12 +246,13 @@ def _law_of_parameters(
             raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
     values = {name: checked(name, x, _RANGES.get(name, FINITE)) for name, x in parameters.items()}
     flat = flattened(values)
+    labels = {"law": kind.name, **values}
     if release is None:
-        return LawModel(kind(**flat), setting).labelled({"law": kind.name, **values})
+        return kind(**flat), labels
     if "release" not in kind.__dataclass_fields__:
         raise ParameterError(
             f"{{release}} is not allowed: {kind.name} determines where a contact ends"
         )
     rule = chosen("release", release, [str(each) for each in Release])
     law = kind(**flat, **{"release": Release.of(rule)})
-    return LawModel(law, setting).labelled({"law": kind.name, **values, "release": rule})
+    return law, labels | {"release": rule}

@@ -46,11 +46,8 @@ def exponent_sum(
             if not going.size:
                 break
             _, passed = leg.fly()
-            factor = leg.dynamics.contraction(leg.impact, leg.departure)
-            flown = passed - leg.departure.duration
-            factor = factor * leg.dynamics.setting.contraction(flown)
             with np.errstate(divide="ignore"):
-                logarithm[going] += np.log(np.abs(factor))
+                logarithm[going] += np.log(np.abs(leg.contraction()))
             time[going] += passed
     with np.errstate(invalid="ignore", divide="ignore"):
         return 2 * np.pi * np.where(time > 0, logarithm / time, np.nan)

@@ -51,7 +51,8 @@ from bouncing_ball.long_run.followed import (
 from bouncing_ball.long_run.lyapunov import DIGITS, FORGOTTEN, NEAR
 from bouncing_ball.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.long_run.recurrence import periods_in, returns_to_marks
-from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Impact, Leg
+from bouncing_ball.models.contacts_and_flights import Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Leg
 from bouncing_ball.models.sequence import Status
 
 IMPACTS = 2000

@@ -44,7 +44,8 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError, Range, count, suggesting
 from bouncing_ball.models.ball import Ball, a_single_ball
-from bouncing_ball.models.dynamics import Dynamics, Impact
+from bouncing_ball.models.contacts_and_flights import Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.rigid import RestitutionModel
 
 NOISE = Range(0, 0.5, "[)")

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.long_run.lyapunov import Stretching
 from bouncing_ball.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.long_run.recurrence import Mark
-from bouncing_ball.models.dynamics import Impact
+from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.setting import Setting
 
 # The reasons as an array, so that a ball can hold the index of one.

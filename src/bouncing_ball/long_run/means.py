@@ -17,15 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.long_run.motions import Motions
-from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact, Leg
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Leg
 from bouncing_ball.models.flight import table
+from bouncing_ball.models.linear_flow import change_in_contact
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import require_paper
-
-
-def _change(values: np.ndarray) -> np.ndarray:
-    """The value at the end of a contact minus the value at its start."""
-    return values[1] - values[0]
 
 
 def over_steps(
@@ -60,14 +57,14 @@ def over_steps(
     """
     w_rate, w = table(phase, amplitude)
     if law is None:
-        held = -_change(w_rate)
-        moved = _change(w * w) / 2
+        held = -change_in_contact(w_rate)
+        moved = change_in_contact(w * w) / 2
     else:
         held, moved = law.over_contact(amplitude, duration, phase, gap, rate)
     release_height = gap[1] + w[1]
     velocity = rate + w_rate
     height = held + (release_height + (velocity[1] / 2 - flown / 6) * flown) * flown
-    work = _change(velocity * w_rate + w) + moved
+    work = change_in_contact(velocity * w_rate + w) + moved
     return height, work
 
 

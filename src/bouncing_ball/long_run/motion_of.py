@@ -25,8 +25,8 @@ from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError, suggesting
 from bouncing_ball.long_run import grids
 from bouncing_ball.long_run.destination import IMPACTS
+from bouncing_ball.long_run.over_time import first_impacts
 from bouncing_ball.models.ball import Ball, a_single_ball
-from bouncing_ball.models.over_time import first_impacts
 
 
 @suggesting

@@ -18,8 +18,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from bouncing_ball.long_run.lyapunov import FORGOTTEN, NEAR
+from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Impact
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 

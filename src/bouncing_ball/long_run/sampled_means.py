@@ -37,7 +37,8 @@ import numpy as np
 import scipy
 
 from bouncing_ball.long_run.means import over_leg
-from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Impact
+from bouncing_ball.models.contacts_and_flights import Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.setting import require_paper
 from bouncing_ball.numerics.arrays import BLOCK

@@ -6,10 +6,13 @@ The modules in reading order:
 ``waveform``, ``suspension``  tables of several harmonics, drag and springs
 ``linear_flight``, ``setting``     flights over them, and where a ball bounces
 ``contact``, ``deviations``   the interface of a contact, and how small deviations of a ball grow
+``contacts_and_flights``      what a model says of them, for simulations and for periodic orbits
 ``sequence``, ``dynamics``    simulated impacts, and the simulation by contacts and flights
 ``restitution``, ``sticking``      impacts with a restitution coefficient, and rest on the table
-``damping``, ``oscillator``        the formulas of a linear contact
-``linear_flow``, ``linear_contact``, ``resumption``   the motion in it, to its release and after it
+``damping``, ``oscillator``, ``linear_flow``   the formulas of a linear contact and of its motion
+``resumption``                flight below the table's level, after a contact
+``laws``                      contact laws, of which the linear one is a case
+``linear_contact``            linear contacts to their release
 ``held_contact``              the same on any table, and beside a drag or a further spring
 ``permanent_contact``, ``approach_threshold``   the Λ up to which a ball stays on the table
 ``instant``                   a contact seen from outside, as an impact at an instant
@@ -17,8 +20,8 @@ The modules in reading order:
 ``rigid``, ``restitution_by_speed``   models with instantaneous impacts
 ``spring_damper``, ``spring_damper_model``   the paper's contact, and balls on it
 ``makers``                    balls by their parameters, which a user calls
-``history``, ``over_time``    the motion of balls over time
+``history``                   the motion of a ball over time
 ``as_text``                   models as text, from which they come back exactly
 
-The packages ``laws`` and ``corrected`` have the other contact laws and the corrected model.
+The package ``corrected`` has the corrected model.
 """

@@ -4,8 +4,8 @@ Every model is a ball (:class:`~bouncing_ball.models.model.Model`), also an arra
 The parameters of a contact law may be unknown, and given instead by the restitution r and the
 duration D of one free impact. These depend on the impact speed, so that such a ball
 (:class:`~bouncing_ball.contacts.law_balls.FreeImpactBall`) has a model only once this speed is
-chosen, by one of the methods ``at_…``. A ball whose parameters are known is its own model at every
-speed.
+chosen, by one of the methods ``at_…``. A ball whose parameters are known is itself the model at
+every speed.
 """
 
 from __future__ import annotations

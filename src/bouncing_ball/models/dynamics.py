@@ -1,97 +1,37 @@
 """The simulation of balls from impact to impact, by the contacts and flights of any model.
 
-A subclass of :class:`Dynamics` computes the ends of contacts and their derivatives; the simulation
-follows from them.
+A subclass of :class:`Dynamics` defines its contacts and flights
+(:mod:`bouncing_ball.models.contacts_and_flights`); the simulation follows from them.
 """
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, ClassVar, NamedTuple, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.models.contact import FiniteContact
-from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.flight import land
+from bouncing_ball.models.contacts_and_flights import ContactsAndFlights, Departure, Impact
+from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.sequence import RECORDED, Cycle, ImpactSequence, Status
 from bouncing_ball.models.setting import PAPER, Setting
-from bouncing_ball.numerics.arrays import BLOCK, Batch, as_numbers, blocks, pick
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero
+from bouncing_ball.numerics.arrays import BLOCK, as_numbers, blocks, pick
 
 # Rounding may give a ball at rest on the table a small upward velocity.
 _ROUNDING = 8 * np.finfo(float).eps
 
 
-class Level(NamedTuple):
-    """The table's velocity w′ and height w, in the paper Λ cos φ and Λ sin φ."""
-
-    x: np.ndarray
-    y: np.ndarray
-
-
-class Impact(NamedTuple):
-    """Starts of contact: the table's phase, δ and δ′, and further results of the model.
-
-    ``level`` is the table's state at this phase, if it is known.
-    """
-
-    phase: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
-    known: Any = None
-    level: Level | None = None
-
-    @classmethod
-    def at_level(cls, phase: np.ndarray, velocity: np.ndarray, known: Any = None) -> "Impact":
-        """Starts at the table's level, δ = 0."""
-        return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
-
-
-class Departure(NamedTuple):
-    """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
-    the :class:`~bouncing_ball.models.sequence.Status`.
-
-    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
-    flight before which the ball has not landed; it is used if it exceeds
-    :meth:`.Flight.earliest_landing`.
-    ``by`` has the derivatives of the contact's end, if they are computed together with it.
-    ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
-    it is None without derivatives.
-    """
-
-    phase: np.ndarray
-    duration: np.ndarray
-    flight: Any
-    status: np.ndarray
-    settling: np.ndarray | float = 0.0
-    aloft: np.ndarray | float = 0.0
-    by: Any = None
-    sticks: Any = None
-
-
 @dataclass(frozen=True, repr=False)
-class Dynamics(Batch, ABC):
-    """A law of the impact on a table of amplitude Λ.
+class Dynamics(ContactsAndFlights):
+    """A law of the impact on a table of amplitude Λ, with what follows from it.
 
-    Each model is a subclass, which computes the ends of contacts, and the ends of flights if these
-    are not landings. All arrays are one-dimensional with an entry per ball, and ``block`` is the
-    largest number of balls computed at the same time.
+    Each model is a subclass, which defines its contacts and flights. ``block`` is the largest
+    number of balls computed at the same time.
     """
-
-    law: Any
-    amplitude: np.ndarray
-    setting: Setting = PAPER
 
     block: ClassVar[int] = BLOCK
-    forgets: ClassVar[bool] = False
-    """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
-    continues: ClassVar[bool] = False
-    """Whether :meth:`depart_after` can continue a contact or a rest beyond its first end."""
 
     @classmethod
     def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
@@ -107,154 +47,6 @@ class Dynamics(Batch, ABC):
         lam = as_numbers(amplitude, name, allowed)
         require((lam >= 0) & np.isfinite(lam), lam, name, allowed)
         return cls(law, lam, setting)
-
-    @property
-    def contact(self) -> FiniteContact | None:
-        """The law of contacts of finite duration, or None if impacts are instants."""
-        return None
-
-    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """First impacts, which start at phases φ with δ′ at the table's level (Eqs. 21, 22)."""
-        return self.with_table(Impact.at_level(phase, velocity))
-
-    def with_table(self, impact: Impact) -> Impact:
-        """The impacts with the state of the table, which is used several times."""
-        return impact._replace(level=Level(*self.setting.level(impact.phase, self.amplitude)))
-
-    def table_at(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """w′ and w at impacts, in the paper Λ cos φ and Λ sin φ."""
-        return impact.level or self.setting.level(impact.phase, self.amplitude)
-
-    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """The impacts with these states, in the coordinates of :meth:`section`."""
-        return self.start(phase, velocity)
-
-    @abstractmethod
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The ends of the contacts that start with these impacts; with ``differentiate`` also which
-        balls stick, and what :meth:`jacobian` needs.
-        """
-
-    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The ends of the contacts nearest to given durations, with their derivatives.
-
-        They are the first ends, as in :meth:`depart`, unless the model :attr:`continues` contacts.
-        """
-        return self.depart(impact, differentiate=True)
-
-    def release_function(
-        self, impact: Impact, departure: Departure
-    ) -> Callable[[np.ndarray], np.ndarray] | None:
-        """δ + κ δ′ within contacts as a function of the times since their starts, of shape (...,
-        contacts); None if impacts are instants, and for laws without a κ.
-        """
-        return None
-
-    def duration_slopes(
-        self, impact: Impact, departure: Departure
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the durations of contacts with respect to φ and δ′ at their starts.
-
-        They are needed only where the model :attr:`continues` contacts.
-        """
-        raise NotImplementedError(f"{type(self).__name__} does not continue its contacts")
-
-    @property
-    def clock(self) -> Any:
-        """Frequency of the contacts over that of the table, 1 for instants. Durations of contacts
-        times the clock are of order one.
-        """
-        return 1.0
-
-    def within(
-        self, impact: Impact, departure: Departure, time: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ s ≤ D since the starts of contacts, of shape (..., contacts).
-
-        A ball whose impact is an instant rests on the table until it leaves.
-        """
-        return np.zeros(time.shape), np.zeros(time.shape)
-
-    def gap_at_start(self, impact: Impact) -> np.ndarray:
-        """δ of the flight that ends with each impact, at the start of the contact."""
-        return impact.displacement
-
-    @abstractmethod
-    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """The factor by which the contacts multiply areas of the phase plane. Free flights keep
-        them, and others multiply them by :meth:`.Setting.contraction`.
-
-        The determinant of the monodromy of a periodic orbit is the product of these factors.
-        Without dissipation it is exactly 1, whereas the rounding errors of the entries of the
-        monodromy would decide about stability.
-        """
-
-    def selects(self, impact: Impact, duration: np.ndarray) -> bool:
-        """Whether :meth:`depart_after` must be told these durations of contacts, because their
-        ends, or their rests on the table, follow from them.
-        """
-        return self.continues and bool(np.any(duration > 0))
-
-    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
-        """Whether balls rest on the table after these impacts where :meth:`depart_after` says so
-        for these durations, and nowhere else; always, if there is no rest.
-        """
-        return np.ones(impact.phase.shape, dtype=bool)
-
-    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
-        """The next impact of balls that leave, and the time from the last impact to it.
-
-        Raises
-        ------
-        ModelError
-            If a flight is too long for floating-point numbers.
-        """
-        start = departure.flight.earliest_landing()
-        if departure.flight.may_miss:
-            start = np.maximum(start, departure.aloft)
-        return self.arrive(departure, land(departure.flight, start))
-
-    def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
-        """The next impact after a landing, and the time from the last impact to it."""
-        impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
-        return self.with_table(impact), departure.duration + landing.time
-
-    @abstractmethod
-    def jacobian(
-        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
-    ) -> Jacobian:
-        """Derivative of the map from one impact to the next, in the coordinates of :meth:`section`.
-
-        ``passed`` is the time between the two impacts.
-        """
-
-    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """The state of an impact on the Poincaré section: a phase and a relative velocity."""
-        return impact.phase, impact.velocity
-
-    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray | float, np.ndarray | float]:
-        """κ of the section, where flights have δ + κ δ′ = 0 if they arrive with δ′, and
-        d(κ δ′)/dδ′; both are 0 if the section is the table's level.
-        """
-        return 0.0, 0.0
-
-    def landed(
-        self,
-        released: Iterable[Deviation],
-        departure: Departure,
-        after: Impact,
-        passed: np.ndarray,
-        lag: np.ndarray | float = 0.0,
-    ) -> Jacobian:
-        """The derivative whose columns are the two deviations at the release after the flight.
-
-        The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
-        """
-        end = self.table_at(after)
-        time = passed - departure.duration
-        carried = departure.flight.carried
-        columns = (carried(each, end, time, after.velocity, lag) for each in released)
-        return Jacobian.of_columns(*columns)
 
     def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
         """The dynamics and states of balls, flattened, and the shape to which they broadcast."""
@@ -453,6 +245,12 @@ class Leg:
         if self.after is None:
             self.after, self.passed = self.dynamics.fly(self.departure)
         return self.after, self.passed
+
+    def contraction(self) -> np.ndarray:
+        """The factor by which this leg, contact and flight, multiplies areas of the phase plane."""
+        _, passed = self.fly()
+        of_contact = self.dynamics.contraction(self.impact, self.departure)
+        return of_contact * self.dynamics.setting.contraction(passed - self.departure.duration)
 
     def jacobian(self) -> Jacobian:
         """The derivative of the map over this leg, if its departures are differentiated."""

@@ -10,7 +10,7 @@ This form loses no digits in a short flight. The ball cannot land while it is
 above the table's highest point, z > Λ, and the search skips this part.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,6 +40,18 @@ def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray,
     """
     sine, versine = sine_and_versine(phase)
     return amplitude * (_ONE - versine), amplitude * sine
+
+
+class Lagged(NamedTuple):
+    """y = δ + κ δ′ and its derivatives up to the third order, bounds of those of the orders 2 to 4,
+    and δ; of a :class:`.LinearFlight` also p + κ p′ with its rate of change.
+    """
+
+    values: tuple[np.ndarray, ...]
+    bounds: tuple[np.ndarray, ...]
+    gap: np.ndarray
+    free: Any = None
+    free_rate: Any = None
 
 
 class Flight(Motion):
@@ -121,13 +133,18 @@ class Flight(Motion):
         """Λ, a bound of the rate of change of δ″."""
         return self.amplitude
 
-    def rise(self) -> Motion:
-        """δ as a motion, see :class:`Rise`."""
-        return Rise(self)
-
-    def unloaded(self, lag: Any) -> Motion:
-        """-(δ + κ δ′) as a motion, see :class:`Unloaded`."""
-        return Unloaded(self, lag)
+    def lagged(self, time: np.ndarray, lag: Any) -> Lagged:
+        """y = δ + κ δ′ after a time of flight, with the bounds of its derivatives."""
+        displacement, rate, second, third = self.gap(time)
+        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
+        values = (
+            displacement + lag * rate,
+            rate + lag * second,
+            second + lag * third,
+            third - lag * (1 + second),
+        )
+        forcing = self.amplitude * np.sqrt(1 + lag * lag)
+        return Lagged(values, (1 + forcing, forcing, forcing), displacement)
 
     def level_speed_squared(self) -> np.ndarray:
         """v² + 2(1 + Λ)δ_b: the square of the relative speed at the table's level against the
@@ -199,45 +216,36 @@ class Flight(Motion):
 
 
 class Rise(Motion):
-    """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
+    """The motion δ of balls below the table's level; the search stops if they fall ever faster.
 
-    def __init__(self, flight: Flight):
+    ``flight`` is a :class:`Flight` or a :class:`.LinearFlight`.
+    """
+
+    def __init__(self, flight: Any):
         self.flight = flight
 
     def __call__(self, time: np.ndarray) -> Derivatives:
-        displacement, rate, second, third = self.flight.gap(time)
-        lam = self.flight.amplitude
-        return Derivatives(
-            value=displacement,
-            rate=rate,
-            second=second,
-            third=third,
-            second_bound=1 + lam,
-            third_bound=lam,
-            fourth_bound=lam,
-            ended=(rate <= 0) & (second <= 0),
-        )
+        at = self.flight.lagged(time, 0.0)
+        _, rate, second, _ = at.values
+        return Derivatives(*at.values, *at.bounds)._replace(ended=(rate <= 0) & (second <= 0))
 
 
 class Unloaded(Motion):
-    """The motion -(δ + κ δ′) in free flight; the search ends where δ ≥ 0."""
+    """The motion -(δ + κ δ′) in flight; the search ends where δ ≥ 0.
 
-    def __init__(self, flight: Flight, lag):
+    ``flight`` is a :class:`Flight` or a :class:`.LinearFlight`.
+    """
+
+    def __init__(self, flight: Any, lag: Any):
         self.flight = flight
         self.lag = lag
-        self.forcing = flight.amplitude * np.sqrt(1 + lag * lag)
 
     def __call__(self, time: np.ndarray) -> Derivatives:
-        lag = self.lag
-        displacement, rate, second, third = self.flight.gap(time)
+        at = self.flight.lagged(time, self.lag)
+        y, rate, second, third = at.values
         # At the release y = 0 but for rounding; this zero is not the one that is searched for.
-        y = np.where(time == 0, 0.0, displacement + lag * rate)
-        y_rate = rate + lag * second
-        y_second = second + lag * third
-        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
-        y_third = third - lag * (1 + second)
-        bounds = 1 + self.forcing, self.forcing, self.forcing
-        return Derivatives(-y, -y_rate, -y_second, -y_third, *bounds, ended=displacement >= 0)
+        y = np.where(time == 0, 0.0, y)
+        return Derivatives(-y, -rate, -second, -third, *at.bounds)._replace(ended=at.gap >= 0)
 
 
 class Fall(Motion):

@@ -25,37 +25,27 @@ threshold of permanent contact, Λ = -b/(Q max S/Λ).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Released
-from bouncing_ball.models.dynamics import Departure, Impact
-from bouncing_ball.models.linear_contact import LinearContactDynamics
+from bouncing_ball.models.linear_contact import PATIENCE, ROUNDING, LinearContactDynamics
 from bouncing_ball.models.linear_flight import LinearFlight
-from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.suspension import Suspension
-from bouncing_ball.models.waveform import Waveform, turned
+from bouncing_ball.models.waveform import Waveform, largest
 from bouncing_ball.numerics.elementary import exponential, sine_and_cosine
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 
-# Number of steps after which the expensive bound of :meth:`HeldMotion.skip` is used.
-_PATIENCE = 12
-# Bound of the rounding errors of the three terms of the inequality above.
-_ROUNDING = 8 * np.finfo(float).eps
 # The result of a skip precedes the crossing by more than the rounding error of the crossing.
 _BEFORE = 1e-9
 _TURN = 2 * np.pi
 # A harmonic that is nearer to an undamped resonance than this has no periodic motion W_c within the
 # range of doubles.
 _RESONANCE = 1e-8
-# Parts of a period of the highest harmonic at which the search for the largest S begins, and the
-# number of times that they are halved.
-_PARTS, _HALVINGS = 16, 26
 
 
 @dataclass(frozen=True, repr=False)
@@ -101,7 +91,7 @@ class Held(Suspension):
         return self.outside.load
 
     @property
-    def frequency(self) -> np.ndarray:
+    def damped_frequency(self) -> np.ndarray:
         """√(Q - L²/4), the frequency of the free oscillations."""
         half = np.asarray(self.loss, dtype=float) / 2
         return np.sqrt(np.asarray(self.stiffness, dtype=float) - half * half)
@@ -134,40 +124,6 @@ def response(coefficients: np.ndarray, orders: np.ndarray, lag: Any) -> np.ndarr
     """The harmonics of S, over Λ: those of -(W_c + κ W_c′), with a last axis for the harmonics."""
     turn = 1 + 1j * orders * np.asarray(lag, dtype=float)[..., np.newaxis]
     return -turn * coefficients
-
-
-def largest(harmonics: np.ndarray) -> np.ndarray:
-    """The largest values of ``Im Σ s_k e^{ikφ}`` for harmonics of shape (..., N).
-
-    The result is an upper bound that differs from the value by rounding errors.
-
-    Examples
-    --------
-    >>> float(largest(np.array([3.0 + 4.0j])).round(12))
-    5.0
-    """
-    rows = harmonics.reshape(-1, harmonics.shape[-1])
-    found = [_largest(tuple(row.tolist())) for row in rows]
-    return np.reshape(found, harmonics.shape[:-1])
-
-
-@lru_cache(maxsize=4096)
-def _largest(harmonics: tuple[complex, ...]) -> float:
-    row = np.array(harmonics)
-    k = np.arange(1, row.size + 1)
-    bend = float(np.sum(k * k * np.abs(row)))
-    # Half the width of the parts, and their centres.
-    half = np.pi / (_PARTS * row.size)
-    centre = -np.pi + half * (2 * np.arange(_PARTS * row.size) + 1)
-    for _ in range(_HALVINGS):
-        whole = turned(row, k, centre)
-        value = whole.imag.sum(axis=-1)
-        slope = (k * whole.real).sum(axis=-1)
-        most = value + np.abs(slope) * half + bend * half * half / 2
-        keep = centre[most >= value.max()]
-        half = half / 2
-        centre = np.concatenate([keep - half, keep + half])
-    return float(most.max())
 
 
 class _Forced(Motion):
@@ -224,22 +180,16 @@ class HeldMotion(Motion):
         """The start: y is negative then, or falls."""
         return np.zeros(np.shape(self.flight.velocity))
 
+    def release(self, end: Zero, height: np.ndarray) -> np.ndarray:
+        """δ′ at a release, which is y′ there if κ = 0."""
+        _, velocity, _, _ = self.flight.gap(end.time)
+        return np.where(self.lag == 0, end.rate, velocity)
+
     def __call__(self, time: np.ndarray) -> Derivatives:
         at = self.flight.lagged(time, self.lag)
         above = self._free_level(at) + self.most
-        slack = _ROUNDING * np.abs(self.rest)
-        value, rate, second, third = at.values
-        by_second, by_third, by_fourth = at.bounds
-        return Derivatives(
-            value=value,
-            rate=rate,
-            second=second,
-            third=third,
-            second_bound=by_second,
-            third_bound=by_third,
-            fourth_bound=by_fourth,
-            ended=above <= slack,
-        )
+        slack = ROUNDING * np.abs(self.rest)
+        return Derivatives(*at.values, *at.bounds)._replace(ended=above <= slack)
 
     def _free_level(self, at: Any) -> np.ndarray:
         """b/Q + R, which with S is a bound of y."""
@@ -250,7 +200,7 @@ class HeldMotion(Motion):
         """A time up to which y is negative, because its bound is: that at which S reaches
         -(b/Q + R).
         """
-        if steps < _PATIENCE:
+        if steps < PATIENCE:
             return time
         level = -self._free_level(self.flight.lagged(time, self.lag))
         k = self.flight.waveform.orders
@@ -289,59 +239,23 @@ class HeldContactDynamics(LinearContactDynamics):
     True
     """
 
-    continues: ClassVar[bool] = True
-
     @property
-    def held(self) -> Held:
+    def oscillator(self) -> Held:
         """What moves the balls in contact."""
         return held_by(self.law, self.setting)
 
     def _motion(self, impact: Impact) -> Any:
-        flight = contact_path(self.law, self.setting, impact, self.amplitude)
+        flight = gap_in_contact(self.law, self.setting, impact, self.amplitude)
         lag = self.law.lag
         waveform = self.setting.waveform
-        unit = largest(response(self.held.coefficients(waveform), waveform.orders, lag))
+        unit = largest(response(self.oscillator.coefficients(waveform), waveform.orders, lag))
         return HeldMotion(flight, lag, self.amplitude * unit)
-
-    def _ended(self, impact: Impact, motion: Any, end: Zero) -> Departure:
-        """The departures of contacts that end at these zeros of their motion."""
-        lag = self.law.lag
-        _, rate, _, _ = motion.flight.gap(end.time)
-        velocity = np.where(lag == 0, end.rate, rate)
-        forever = end.ended | end.undecided
-        status = np.full(end.time.shape, int(Status.BOUNCING))
-        status[end.ended] = Status.PERMANENT_CONTACT
-        status[end.undecided] = Status.UNDECIDED
-        velocity = np.where(forever, np.nan, velocity)
-        duration = np.where(forever, np.inf, end.time)
-        phase = impact.phase + end.time
-        level = self.setting.level(phase, self.amplitude)
-        flight = self.setting.flight(-lag * velocity, velocity, phase, level, self.amplitude)
-        sticks = duration * self.held.frequency > _TURN
-        return Departure(phase, duration, flight, status, sticks=sticks)
 
     def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ a time after the starts of contacts, whether they have ended or not."""
-        flight = contact_path(self.law, self.setting, impact, self.amplitude)
+        flight = gap_in_contact(self.law, self.setting, impact, self.amplitude)
         displacement, velocity, _, _ = flight.gap(duration)
         return displacement, velocity
-
-    def release_function(
-        self, impact: Impact, departure: Departure
-    ) -> Callable[[np.ndarray], np.ndarray]:
-        """δ + κ δ′ within contacts."""
-        flight = contact_path(self.law, self.setting, impact, self.amplitude)
-        lag = self.law.lag
-
-        def at(time: np.ndarray) -> np.ndarray:
-            displacement, velocity, _, _ = flight.gap(time)
-            return displacement + lag * velocity
-
-        return at
-
-    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """exp(-L D)."""
-        return np.exp(-self.held.loss * departure.duration)
 
     def _released(self, impact: Impact, departure: Departure) -> Released:
         """The deviations at the release of unit deviations of φ and of δ′ at the impact.
@@ -349,9 +263,9 @@ class HeldContactDynamics(LinearContactDynamics):
         As in :class:`.LinearContactDynamics`, the deviation of φ is one along the motion less one
         of the state where a contact forgets its start.
         """
-        path = contact_path(self.law, self.setting, impact, self.amplitude)
+        path = gap_in_contact(self.law, self.setting, impact, self.amplitude)
         duration = departure.duration
-        held = self.held
+        held = self.oscillator
         decay = exponential(-np.asarray(held.loss) / 2 * duration)
         forgets = decay * np.sqrt(held.stiffness) < 1
         acceleration = path.gap(np.zeros(duration.shape))[2]
@@ -395,7 +309,7 @@ def held_threshold(law: Any, setting: Any) -> np.ndarray:
     return np.maximum(-held.load / np.asarray(held.stiffness), 0.0) / unit
 
 
-def contact_path(law: Any, setting: Any, start: Any, amplitude: Any) -> LinearFlight:
+def gap_in_contact(law: Any, setting: Any, start: Any, amplitude: Any) -> LinearFlight:
     """δ in the contacts of a linear law from their starts on, which have φ, δ and δ′."""
     held = held_by(law, setting)
     return LinearFlight(

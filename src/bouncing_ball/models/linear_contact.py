@@ -21,13 +21,13 @@ bounds of the higher derivatives follow from the equation of motion.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian, Released
-from bouncing_ball.models.dynamics import Departure, Impact
-from bouncing_ball.models.flight import Flight, table
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_flow import flow as linear_flow
 from bouncing_ball.models.oscillator import table_response
@@ -41,10 +41,10 @@ from bouncing_ball.numerics.elementary import (
 )
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
 
-# Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
-_PATIENCE = 12
-# Bound of the rounding errors of the three terms of the inequality above.
-_ROUNDING = np.array(8 * np.finfo(float).eps)
+PATIENCE = 12
+"""The number of steps after which the expensive bound of ``skip`` is used."""
+ROUNDING = np.array(8 * np.finfo(float).eps)
+"""A bound of the rounding errors of the three terms of the inequality above."""
 # Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
 _ZERO = np.array(0.0)
 _ONE = np.array(1.0)
@@ -84,10 +84,9 @@ class ContactMotion(Motion):
         self.start = displacement + self.lag * velocity
         self.start_rate = velocity + self.lag * acceleration
 
-    def release(self, rate, y):
-        """δ and δ′ at a release with the rate y′, where ``y`` is the table's height Λ sin τ."""
-        velocity = rate - self.lag * (y - _ONE)
-        return -self.lag * velocity, velocity
+    def release(self, end: Zero, height: np.ndarray) -> np.ndarray:
+        """δ′ at a release, where the table's height is Λ sin τ."""
+        return end.rate - self.lag * (height - _ONE)
 
     def earliest_release(self) -> np.ndarray:
         """A time before which the contact has certainly not ended, within half a period.
@@ -160,7 +159,7 @@ class ClosedFormMotion(ContactMotion):
             second_bound=bound + self.steady,
             third_bound=self.omega * bound + self.steady,
             fourth_bound=self.stiffness * bound + self.steady,
-            ended=envelope + (self.steady - level) <= _ROUNDING * level,
+            ended=envelope + (self.steady - level) <= ROUNDING * level,
         )
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
@@ -169,7 +168,7 @@ class ClosedFormMotion(ContactMotion):
         The bound is negative until the steady part rises through 1/ϖ² - R e^{-as}. Without it
         a stiff, weakly damped contact would need steps over about ϖ oscillations.
         """
-        if steps < _PATIENCE:
+        if steps < PATIENCE:
             return time
         level = 1 / self.stiffness - self.envelope * exponential(-self.decay * time)
         ratio = level / np.maximum(self.steady, 1e-300)
@@ -237,6 +236,11 @@ class LinearContactDynamics(ResumingDynamics):
 
     continues: ClassVar[bool] = True
 
+    @property
+    def oscillator(self) -> Any:
+        """What moves the balls in contact: its ``loss`` and its ``damped_frequency``."""
+        return self.law
+
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
         motion = self._motion(impact)
@@ -269,33 +273,34 @@ class LinearContactDynamics(ResumingDynamics):
         return self.law.frequency_ratio
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """exp(-2ζϖD), because areas contract only in contact, at the rate 2ζϖ."""
-        return np.exp(-self.law.loss * departure.duration)
+        """exp(-LD), because areas contract in contact at the rate L, which is 2ζϖ in the paper."""
+        return np.exp(-self.oscillator.loss * departure.duration)
 
-    def _motion(self, impact: Impact) -> ContactMotion:
+    def _motion(self, impact: Impact) -> Any:
+        """y = δ + κ δ′ in contact, as a motion with ``earliest_release`` and ``release``."""
         x, y = self.table_at(impact)
         kind = ClosedFormMotion if self.law.has_closed_form else ResonantMotion
         return kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
 
-    def _ended(self, impact: Impact, motion: ContactMotion, end: Zero) -> Departure:
+    def _ended(self, impact: Impact, motion: Any, end: Zero) -> Departure:
         """The departures of contacts that end at these zeros of their motion."""
         status = np.full(end.time.shape, int(Status.BOUNCING))
         duration = end.time
         phase = impact.phase + end.time
-        x, y = table(phase, self.amplitude)
-        displacement, velocity = motion.release(end.rate, y)
+        level = self.setting.level(phase, self.amplitude)
+        velocity = motion.release(end, level[1])
         forever = end.ended | end.undecided
         if forever.any():
             # Where the search ended without a release, the contact is permanent.
             status[end.ended] = Status.PERMANENT_CONTACT
             status[end.undecided] = Status.UNDECIDED
             duration = np.where(forever, np.inf, duration)
-            displacement = np.where(forever, np.nan, displacement)
             velocity = np.where(forever, np.nan, velocity)
-        flight = Flight(displacement, velocity, x, y, self.amplitude)
+        displacement = -self.law.lag * velocity
+        flight = self.setting.flight(displacement, velocity, phase, level, self.amplitude)
         # An undamped contact that starts at zero speed under a constant load lasts exactly one
         # oscillation. A longer contact therefore ends because the load changes.
-        sticks = duration * self.law.damped_frequency > _TURN
+        sticks = duration * self.oscillator.damped_frequency > _TURN
         return Departure(phase, duration, flight, status, sticks=sticks)
 
     def duration_slopes(
@@ -311,7 +316,7 @@ class LinearContactDynamics(ResumingDynamics):
         """Derivative of the map over contact and flight, in closed form."""
         lag = self.law.lag * (after.displacement < _ZERO)
         released = departure.by or self._released(impact, departure)
-        return self.landed(released, departure, after, passed, lag)
+        return self.over_flight(released, departure, after, passed, lag)
 
     def _released(self, impact: Impact, departure: Departure) -> Released:
         """The deviations at the release of unit deviations of φ and of δ′ at the impact.

@@ -17,10 +17,11 @@ remains within ``R = √((p - b/q)² + p′²/q)``: a mass with ``b/q - R > Λ �
 its stop.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from bouncing_ball.models.flight import Lagged
 from bouncing_ball.models.suspension import Suspension, free_responses
 from bouncing_ball.models.waveform import Waveform, turned
 from bouncing_ball.numerics.elementary import sine_and_versine
@@ -30,18 +31,6 @@ from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
 # are below this part of its terms.
 _ROUNDING = 1e-12
 _FAR = 1.0
-
-
-class Lagged(NamedTuple):
-    """y = δ + κ δ′ and its derivatives up to the third order, bounds of those of the orders 2 to 4,
-    δ, and p + κ p′ with its rate of change.
-    """
-
-    values: list[np.ndarray]
-    bounds: list[np.ndarray]
-    gap: np.ndarray
-    free: np.ndarray
-    free_rate: np.ndarray
 
 
 class LinearFlight(Motion):
@@ -230,14 +219,6 @@ class LinearFlight(Motion):
         """
         return self._level_speed_squared(self.strongest)
 
-    def rise(self) -> Motion:
-        """δ as a motion, see :class:`.Rise`."""
-        return _Rise(self)
-
-    def unloaded(self, lag: Any) -> Motion:
-        """-(δ + κ δ′) as a motion, see :class:`.Unloaded`."""
-        return _Unloaded(self, lag)
-
     def lagged(self, time: np.ndarray, lag: Any) -> Lagged:
         """y = δ + κ δ′ after a time, with the bounds of its derivatives from this time on.
 
@@ -245,17 +226,17 @@ class LinearFlight(Motion):
         derivatives, and a harmonic of W + κ W′ is √(1 + κ²k²) times that of W.
         """
         of_gap, free = self._moved(time)
-        y = [of_gap[j] + lag * of_gap[j + 1] for j in range(4)]
+        y = tuple(of_gap[j] + lag * of_gap[j + 1] for j in range(4))
         of_free = [free[j] + lag * free[j + 1] for j in range(5)]
         k = self.waveform.orders
         turn = np.asarray(lag, dtype=float)[..., np.newaxis] * k
         size = self.size * np.sqrt(1 + turn * turn)
         q = self.stiffness
-        bounds = [
+        bounds = tuple(
             np.sqrt(of_free[j] * of_free[j] + q * of_free[j - 1] * of_free[j - 1])
             + (k**j * size).sum(axis=-1)
             for j in (2, 3, 4)
-        ]
+        )
         return Lagged(y, bounds, of_gap[0], of_free[0], of_free[1])
 
     def carried(
@@ -333,45 +314,6 @@ class _Turning(Motion):
             third_bound=by_fourth,
             fourth_bound=by_fifth,
             ended=time > self.longest,
-        )
-
-
-class _Rise(Motion):
-    """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
-
-    def __init__(self, flight: LinearFlight) -> None:
-        self.flight = flight
-
-    def __call__(self, time: np.ndarray) -> Derivatives:
-        (gap, rate, second, third, _), free = self.flight._moved(time)
-        bounds = self.flight._bounds(free, (2, 3, 4))
-        return Derivatives(gap, rate, second, third, *bounds)._replace(
-            ended=(rate <= 0) & (second <= 0)
-        )
-
-
-class _Unloaded(Motion):
-    """The motion -(δ + κ δ′) in flight; the search ends where δ ≥ 0."""
-
-    def __init__(self, flight: LinearFlight, lag: Any) -> None:
-        self.flight = flight
-        self.lag = lag
-
-    def __call__(self, time: np.ndarray) -> Derivatives:
-        at = self.flight.lagged(time, self.lag)
-        y, rate, second, third = at.values
-        by_second, by_third, by_fourth = at.bounds
-        # At the release y = 0 but for rounding; this zero is not the one that is searched for.
-        y = np.where(time == 0, 0.0, y)
-        return Derivatives(
-            value=-y,
-            rate=-rate,
-            second=-second,
-            third=-third,
-            second_bound=by_second,
-            third_bound=by_third,
-            fourth_bound=by_fourth,
-            ended=at.gap >= 0,
         )
 
 

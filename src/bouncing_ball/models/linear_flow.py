@@ -79,7 +79,7 @@ def flow(
     return ContactFlow(d, v, acc)
 
 
-def _change(values: np.ndarray) -> np.ndarray:
+def change_in_contact(values: np.ndarray) -> np.ndarray:
     """The value at the end of a contact minus the value at its start."""
     return values[1] - values[0]
 
@@ -118,12 +118,12 @@ def integrals(
     stiffness = omega**2
     loss = 2 * np.asarray(damping_ratio) * omega
     # The right-hand sides of the equations for I and J, which are then solved for I.
-    of_rate = _change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
-    of_level = _change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
+    of_rate = change_in_contact(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
+    of_level = change_in_contact(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
     of_level = of_level + np.square(amplitude) * duration / 2
     s = stiffness - 1
     integral_of_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
-    integral_of_gap = -(_change(w_rate + rate + loss * gap) + duration) / stiffness
-    height = integral_of_gap - _change(w_rate)
-    work = _change(gap * w + w * w / 2) - integral_of_rate
+    integral_of_gap = -(change_in_contact(w_rate + rate + loss * gap) + duration) / stiffness
+    height = integral_of_gap - change_in_contact(w_rate)
+    work = change_in_contact(gap * w + w * w / 2) - integral_of_rate
     return height, work

@@ -80,12 +80,12 @@ def rigid(
     r = checked("restitution", restitution, RESTITUTION)
     flat = flattened({"restitution": r})
     setting = setting_of(table, flight)
-    given = {"restitution": r} | _single_numbers(flight)
+    given = {"restitution": r} | numbers_of_flight(flight)
     return RestitutionModel(flat["restitution"], setting).labelled(given)
 
 
-def _single_numbers(flight: Suspension | None) -> dict[str, float]:
-    """The parameters of what moves the ball, which must be single numbers.
+def numbers_of_flight(flight: Suspension | None) -> dict[str, float]:
+    """The parameters of what moves the ball in flight, which must be single numbers.
 
     Raises
     ------
@@ -166,7 +166,7 @@ def spring_damper(
         measured = loss == "measured_restitution"
         contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
     setting = setting_of(table, flight)
-    given = {**parameters, "release": str(release)} | _single_numbers(flight)
+    given = {**parameters, "release": str(release)} | numbers_of_flight(flight)
     return SpringDamperModel(contact, setting).labelled(given)
 
 

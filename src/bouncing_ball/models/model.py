@@ -1,7 +1,8 @@
 """The interface of every model of the impact.
 
-Code that uses a model calls the methods of this interface; only closed forms, which are a second
-route, and calls for rigid balls alone ask for its class. A model says how a ball comes into
+Code that uses a model calls the methods of this interface. Its class is asked for where the closed
+form or the search for its orbits is chosen (:func:`.orbits_of`), and by calls for rigid balls
+alone. A model says how a ball comes into
 contact, leaves the table and flies, and how small deviations grow on the way
 (:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
 (:mod:`bouncing_ball.periodic`)::
@@ -30,7 +31,6 @@ from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
 from bouncing_ball.models.setting import PAPER, PaperSetting, Setting
 from bouncing_ball.models.suspension import DRAG, SPRING_DAMPING, SPRING_FREQUENCY
@@ -60,9 +60,9 @@ class Model(Batch, Ball, ABC):
 
     def __repr__(self) -> str:
         values = {each.name: getattr(self, each.name) for each in fields(self)}
-        # The setting of the paper goes without saying.
-        said = (name for name in values if not isinstance(values[name], PaperSetting))
-        text = ", ".join(f"{name}={in_words(values[name])}" for name in said)
+        # The setting of the paper is not shown.
+        shown = (name for name in values if not isinstance(values[name], PaperSetting))
+        text = ", ".join(f"{name}={in_words(values[name])}" for name in shown)
         return f"{type(self).__name__}({text})"
 
     @property
@@ -106,9 +106,10 @@ class Model(Batch, Ball, ABC):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.
 
-        By default the threshold is 1, its value for instantaneous impacts (Eq. 9).
+        By default it is that of instantaneous impacts: 1 in the paper (Eq. 9), and 0 for a spring
+        that does not press the mass on its stop.
         """
-        return np.full(self.shape, RESTITUTION_THRESHOLD)
+        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
@@ -182,7 +183,7 @@ def _inner(law: Any) -> Iterator[Any]:
 
 
 def _implied(model: Any, values: Mapping[str, Any]) -> dict[str, Any]:
-    """What the laws inside of a model say of parameters that follow from others."""
+    """Parameters that follow from these values by the laws inside of a model, such as ζ from r."""
     found: dict[str, Any] = {}
     for law in _inner(model):
         of_law = getattr(law, "implied", None)

@@ -23,16 +23,14 @@ off (:mod:`bouncing_ball.models.sticking`).
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.models.damping import check_restitution
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.models.sticking import lifted, pressed, stay
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
@@ -105,7 +103,8 @@ def _aloft(departure: Departure) -> Departure:
 
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
-    """Impacts and flights of the restitution model; ``law`` holds numbers r.
+    """Impacts and flights of the restitution model; ``law`` holds numbers r in (0, 1], or what
+    :meth:`rebound` of a subclass needs.
 
     Examples
     --------
@@ -126,17 +125,6 @@ class RestitutionDynamics(Dynamics):
     continues: ClassVar[bool] = True
     is_constant: ClassVar[bool] = True
     """Whether r is the same at every speed."""
-
-    @classmethod
-    def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
-        """The dynamics of restitution coefficients r at Λ.
-
-        Raises
-        ------
-        ModelError
-            If r or Λ is outside its range.
-        """
-        return super().of(check_restitution(law), amplitude, setting)
 
     def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r."""
@@ -246,7 +234,7 @@ class RestitutionDynamics(Dynamics):
         free = np.logical_not(departure.sticks).astype(float)
         by_phase = Deviation(free, none, none)
         by_velocity = Deviation(none, none, -slope * free)
-        return self.landed((by_phase, by_velocity), departure, after, passed)
+        return self.over_flight((by_phase, by_velocity), departure, after, passed)
 
     def duration_slopes(
         self, impact: Impact, departure: Departure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -70,17 +70,6 @@ class RestitutionLawDynamics(RestitutionDynamics):
     """
 
     is_constant: ClassVar[bool] = False
-
-    @classmethod
-    def of(cls, law: RestitutionLaw, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
-        """The dynamics of a law r(v) at Λ.
-
-        Raises
-        ------
-        ModelError
-            If Λ is outside its range.
-        """
-        return super(RestitutionDynamics, cls).of(law, amplitude, setting)
 
     def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """r and d(r v)/dv at impact speeds v > 0."""

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.contact import ContactSpan, FiniteContact
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.models.flight import land
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.flight import Unloaded, land
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import first_zero
@@ -33,7 +34,7 @@ def resumption(flight: Any, lag: Any) -> tuple[np.ndarray, np.ndarray]:
 
     def certified(slow: Any, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The time at which y falls back to 0 or δ reaches 0, and whether y falls back first."""
-        found = first_zero(slow.unloaded(pick(lag, which)), np.zeros_like(slow.velocity))
+        found = first_zero(Unloaded(slow, pick(lag, which)), np.zeros_like(slow.velocity))
         return found.time, ~found.ended
 
     if not np.any(lag):

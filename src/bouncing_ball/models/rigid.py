@@ -56,13 +56,8 @@ class RestitutionModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return RestitutionDynamics.of(self.restitution, amplitude, self.place)
-
-    def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which the ball stays on the table, of the model's shape; 1 in the paper (Eq. 9),
-        and 0 for a spring that does not press the mass on its stop.
-        """
-        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)
+        r = np.asarray(self.restitution, dtype=float)
+        return RestitutionDynamics.of(r, amplitude, self.place)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r, without delay, load sensitivity and duration."""

@@ -32,10 +32,10 @@ class Status(IntEnum):
     PERMANENT_CONTACT = 1
     """The last contact never ends. This is proved for the linear contact only, see
     :mod:`bouncing_ball.models.linear_contact`."""
-    ALOFT = 3
-    """The last flight never ends: the mass on a spring does not reach its stop again."""
     UNDECIDED = 2
     """The last contact lasts for hundreds of oscillations at a Λ at which none is permanent."""
+    ALOFT = 3
+    """The last flight never ends: the mass on a spring does not reach its stop again."""
 
 
 class Cycle(NamedTuple):

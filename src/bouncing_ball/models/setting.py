@@ -1,4 +1,4 @@
-"""What the impacts of a ball happen on: how the table moves, and what moves the ball in flight.
+"""The setting of the impacts: how the table moves, and what moves the ball in flight.
 
 In the setting of the paper the table moves as Λ sin τ and the ball flies freely, and all functions
 have their closed forms (:class:`PaperSetting`), with which a ball is simulated 2.5 to 4.6 times as
@@ -18,8 +18,9 @@ import numpy as np
 from bouncing_ball.errors import ParameterError, shortened
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.linear_flight import LinearFlight, Pressure
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.suspension import Drag, Suspension
-from bouncing_ball.models.waveform import SINE, Waveform
+from bouncing_ball.models.waveform import SINE, Waveform, largest, turned
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.elementary import arctangent, reduce_angle
 from bouncing_ball.numerics.first_zero import first_zero
@@ -94,8 +95,8 @@ class Setting(Batch, ABC):
 
     @abstractmethod
     def forcing(self, amplitude: np.ndarray) -> np.ndarray:
-        """What a contact law needs of the load 1 + w″ of balls on the table: Λ in the setting of
-        the paper, and otherwise the harmonics of -w″, complex, shape (N, balls).
+        """The load 1 + w″ of balls on the table, for contact laws: Λ in the setting of the paper,
+        and otherwise the harmonics of -w″, complex, shape (N, balls).
         """
 
     @abstractmethod
@@ -209,7 +210,7 @@ class PaperSetting(Setting):
         return 1.0
 
     def threshold(self) -> Any:
-        return 1.0
+        return RESTITUTION_THRESHOLD
 
 
 PAPER = PaperSetting()
@@ -257,9 +258,10 @@ class GeneralSetting(Setting):
         return not self.shape and self.form.is_sine and self.is_free
 
     def level(self, phase: np.ndarray, amplitude: Any) -> tuple[np.ndarray, np.ndarray]:
-        turned = self.form._turned(phase)
-        velocity = (self.form.orders * turned.real).sum(axis=-1)
-        return amplitude * velocity, amplitude * turned.imag.sum(axis=-1)
+        form = self.form
+        whole = turned(form.coefficients, form.orders, phase)
+        velocity = (form.orders * whole.real).sum(axis=-1)
+        return amplitude * velocity, amplitude * whole.imag.sum(axis=-1)
 
     def at_rest(
         self, phase: np.ndarray, level: tuple[np.ndarray, np.ndarray], amplitude: Any
@@ -316,19 +318,10 @@ class GeneralSetting(Setting):
         return np.exp(-self.suspension.loss * time)
 
     def threshold(self) -> Any:
-        # The load of the table has its least value near one of these phases; one step of Newton's
-        # method for the extremum makes the error one of the fourth order of their distance.
-        waveform = self.form
-        phase = np.linspace(-np.pi, np.pi, 256 * waveform.orders[-1] + 1)
-        found = []
-        for k in range(self.size):
-            on = self.suspension.flat(self.suspension.shape).take(k)
-            free = Pressure(phase, 1.0, waveform, on)(np.zeros(phase.shape))
-            top = int(np.argmax(free.value))
-            best = free.value[top] - free.rate[top] ** 2 / (2 * free.second[top])
-            load = float(np.asarray(on.load))
-            found.append(max(-load, 0.0) / float(best - load))
-        return np.reshape(found, self.shape)
+        # Of a ball at rest δ″ = b + Λ Im Σ s_k e^{ikφ}, which reaches 0 first at this Λ.
+        by_table = -self.suspension.off_resonance(self.form.orders)
+        most = largest(by_table * self.suspension.coefficients(self.form))
+        return np.maximum(-np.asarray(self.suspension.load), 0.0) / most
 
 
 def require_setting(setting: Any) -> None:

@@ -36,7 +36,7 @@ from bouncing_ball.models.damping import (
 )
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.held_contact import HeldContactDynamics, contact_path
+from bouncing_ball.models.held_contact import HeldContactDynamics, gap_in_contact
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_contact import LinearContactDynamics
@@ -109,6 +109,11 @@ class SpringDamper(OscillatorLaw):
         that acts on approach only has none for the whole contact.
         """
         return self.release.is_linear and super().has_closed_form
+
+    @property
+    def is_linear_and_underdamped(self) -> bool:
+        """Whether all contacts have a linear release and ζ < 1: their motion has a closed form."""
+        return self.release.is_linear and bool(np.all(np.asarray(self.damping_ratio) < 1))
 
     @property
     def linear(self) -> SpringDamper:
@@ -337,7 +342,7 @@ class SpringDamper(OscillatorLaw):
         if not self.release.is_linear:
             return super().during(span, time)
         if not span.setting.is_paper:
-            displacement, velocity, _, _ = contact_path(
+            displacement, velocity, _, _ = gap_in_contact(
                 self, span.setting, span, span.amplitude
             ).gap(time)
             return displacement, velocity
@@ -366,7 +371,7 @@ class SpringDamper(OscillatorLaw):
         """Contacts in closed form if all of them are linear and underdamped, otherwise by
         collocation.
         """
-        if not self.release.is_linear or np.any(np.asarray(self.damping_ratio) >= 1):
+        if not self.is_linear_and_underdamped:
             return super().dynamics(amplitude, setting)
         if setting.is_paper:
             return LinearContactDynamics.of(self, amplitude)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,8 +12,9 @@ from bouncing_ball.errors import ModelError, ParameterError, shortened
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.held_contact import held_by, held_threshold
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
-from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.setting import PAPER, Setting, require_setting
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -83,8 +84,19 @@ class SpringDamperModel(Model):
         :func:`.held_threshold` in another setting than that of the paper.
         """
         contact = self.contact
-        if not self.setting.is_paper:
-            return np.broadcast_to(held_threshold(contact, self.setting), self.shape).astype(float)
-        return permanent_contact_threshold(
-            contact.frequency_ratio, contact.damping_ratio, contact.release
-        )
+        paper = self.setting.is_paper
+        found: Any = contact.permanent_contact if paper else held_threshold(contact, self.setting)
+        return np.broadcast_to(found, self.shape).astype(float)
+
+
+def model_of_law(law: ContactLaw, setting: Setting = PAPER) -> SpringDamperModel | LawModel:
+    """The ball on a contact of any law: that of the closed forms for linear contacts with ζ < 1.
+
+    Examples
+    --------
+    >>> [type(model_of_law(SpringDamper(10.0, zeta))).__name__ for zeta in (0.5, 1.5)]
+    ['SpringDamperModel', 'LawModel']
+    """
+    if isinstance(law, SpringDamper) and law.is_linear_and_underdamped:
+        return SpringDamperModel(law, setting)
+    return LawModel(law, setting)

@@ -7,7 +7,7 @@ leaves at once. For Λ ≤ Λ_CR = 1 it never leaves: this is permanent contact 
 
 import numpy as np
 
-from bouncing_ball.models.dynamics import Departure
+from bouncing_ball.models.contacts_and_flights import Departure
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import pick

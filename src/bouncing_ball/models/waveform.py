@@ -9,7 +9,7 @@ the paper is a_1 = 1.
 """
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,9 @@ from bouncing_ball.numerics.elementary import reduce_angle, sine_and_versine
 # Coefficients of samples below this part of the largest one are rounding errors of the samples.
 _ROUNDING = 1e-14
 _ONE = np.array(1.0)
+# Parts of a period of the highest harmonic at which the search for a largest value begins, and the
+# number of times that they are halved.
+_PARTS, _HALVINGS = 16, 26
 
 
 class Waveform:
@@ -186,6 +189,40 @@ def turned(coefficients: np.ndarray, orders: np.ndarray, phase: ArrayLike) -> np
     a = coefficients.real
     b = coefficients.imag
     return (a * cosine - b * sine) + 1j * (a * sine + b * cosine)
+
+
+def largest(harmonics: np.ndarray) -> np.ndarray:
+    """The largest values of ``Im Σ s_k e^{ikφ}`` for harmonics of shape (..., N).
+
+    The result is an upper bound that differs from the value by rounding errors.
+
+    Examples
+    --------
+    >>> float(largest(np.array([3.0 + 4.0j])).round(12))
+    5.0
+    """
+    rows = harmonics.reshape(-1, harmonics.shape[-1])
+    found = [_largest(tuple(row.tolist())) for row in rows]
+    return np.reshape(found, harmonics.shape[:-1])
+
+
+@lru_cache(maxsize=4096)
+def _largest(harmonics: tuple[complex, ...]) -> float:
+    row = np.array(harmonics)
+    k = np.arange(1, row.size + 1)
+    bend = float(np.sum(k * k * np.abs(row)))
+    # Half the width of the parts, and their centres.
+    half = np.pi / (_PARTS * row.size)
+    centre = -np.pi + half * (2 * np.arange(_PARTS * row.size) + 1)
+    for _ in range(_HALVINGS):
+        whole = turned(row, k, centre)
+        value = whole.imag.sum(axis=-1)
+        slope = (k * whole.real).sum(axis=-1)
+        most = value + np.abs(slope) * half + bend * half * half / 2
+        keep = centre[most >= value.max()]
+        half = half / 2
+        centre = np.concatenate([keep - half, keep + half])
+    return float(most.max())
 
 
 SINE = Sine()

@@ -1,4 +1,4 @@
-"""Frozen dataclasses over arrays, one element per contact, ball or orbit, and rows in blocks.
+"""Frozen dataclasses over arrays, which have one element for each row, and rows in blocks.
 
 Their fields broadcast together, like the arguments of a function. A scalar field
 applies to all elements and remains a scalar.
@@ -80,10 +80,13 @@ class Batch:
 
     Examples
     --------
-    >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> contact = SpringDamper(np.array([5.0, 10.0]), 0.1)
-    >>> contact.shape, contact[1]
-    ((2,), SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement'))
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Line(Batch):
+    ...     slope: float | np.ndarray
+    ...     level: float | np.ndarray
+    >>> lines = Line(np.array([5.0, 10.0]), 0.1)
+    >>> lines.shape, lines[1]
+    ((2,), Line(slope=10, level=0.1))
     """
 
     def __repr__(self) -> str:
@@ -106,12 +109,15 @@ class Batch:
 
         Examples
         --------
-        >>> from bouncing_ball.models.spring_damper import SpringDamper
-        >>> SpringDamper([5.0, 10.0], [0.1, 0.2, 0.3])
+        >>> @dataclass(frozen=True, repr=False)
+        ... class Line(Batch):
+        ...     slope: np.ndarray
+        ...     level: np.ndarray
+        >>> Line(np.zeros(2), np.zeros(3)).check_shape()
         Traceback (most recent call last):
         ...
-        bouncing_ball.errors.ModelError: frequency_ratio of shape (2,) and damping_ratio of \
-shape (3,) do not broadcast to one shape
+        bouncing_ball.errors.ModelError: slope of shape (2,) and level of shape (3,) do not \
+broadcast to one shape
         """
         shapes = {f.name: np.shape(getattr(self, f.name)) for f in fields(self)}
         try:
@@ -154,13 +160,14 @@ shape (3,) do not broadcast to one shape
         return self[which] if self.shape else self
 
 
-# Largest number of balls in a block, chosen such that the arrays stay in the cache. Smaller blocks
-# cost more, because a few slow balls determine the number of steps of each block.
 BLOCK = 8192
+"""The largest number of rows in a block, chosen such that the arrays stay in the cache. Smaller
+blocks cost more, because a few slow rows determine the number of steps of each block.
+"""
 
 
 def blocks(size: int, largest: int = BLOCK) -> list[slice]:
-    """Slices of about equal length that cover all balls, each of at most ``largest``.
+    """Slices of about equal length that cover all rows, each of at most ``largest``.
 
     Examples
     --------
@@ -172,10 +179,10 @@ def blocks(size: int, largest: int = BLOCK) -> list[slice]:
 
 
 class Row:
-    """An object whose attributes are flat arrays over balls, or numbers that apply to all balls."""
+    """An object whose attributes are flat arrays over rows, or numbers that apply to all rows."""
 
     def take(self, which: Any) -> Self:
-        """The same object, restricted to some of the balls."""
+        """The same object, restricted to some of the rows."""
         part = object.__new__(type(self))
         vars(part).update({name: pick(value, which) for name, value in vars(self).items()})
         return part
@@ -184,7 +191,7 @@ class Row:
 def pick(value: Any, which: Any) -> Any:
     """Some entries of a flat array, of a tuple of arrays, of a :class:`Row` or a :class:`Batch`.
 
-    A number applies to all balls and is returned unchanged.
+    A number applies to all rows and is returned unchanged.
 
     Examples
     --------

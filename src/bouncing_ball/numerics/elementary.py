@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 # The constants are arrays without an axis, because numpy converts a Python float again in each
-# operation, which takes as long as the operation on a few hundred balls.
+# operation, which takes as long as the operation on a few hundred elements.
 # 2π = _TURN_HIGH + _TURN_LOW, where _TURN_HIGH has 33 significant bits, so that its product with
 # any integer below 2²⁰ is exact (Cody and Waite). ln 2 is split in the same way.
 _TURN_HIGH = np.array(float.fromhex("0x1.921fb544p+2"))

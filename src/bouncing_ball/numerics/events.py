@@ -151,7 +151,7 @@ def locate_all(
     located = []
     missed = None
     last = right
-    # What is beyond the end of the branch need not be located.
+    # Events beyond the end of the branch are not located.
     for event, before, after in sorted(changes, key=lambda change: not change.event.terminal):
         there = after if last is right else float(event.function(last))
         if (before >= 0) == (there >= 0):

@@ -19,7 +19,7 @@ taken until both
 * ``(\|y‴\| + L h₀) h₀² ≤ κ y′``, so that one more step, to the zero of the function's
   parabola, reaches the last digit; its error is of order κ⁴ h₀.
 
-Flights and contacts are both *motions* of this kind, see :class:`Motion`.
+A row of such functions is a *motion*, see :class:`Motion`.
 """
 
 from abc import ABC, abstractmethod

@@ -9,6 +9,7 @@ from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.claims import witness as witnesses
 from bouncing_ball.paper.claims.tables import witness as rows
 from bouncing_ball.paper.claims.witness import (
     CLOSES,
@@ -18,7 +19,6 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
-from bouncing_ball.periodic.one_impact import closed_forms
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 
 
@@ -105,7 +105,7 @@ def test_one_orbit_that_is_not_a_number_is_seen(recorded):
 @pytest.mark.parametrize(
     ("where", "blind", "replacement"),
     [
-        (closed_forms, "nearest", lambda orbit: orbit),
+        (witnesses, "nearest", lambda orbit: orbit),
         (PaperUnknowns, "residual", lambda self, y: 0 * y[..., 1:]),
     ],
 )
@@ -121,8 +121,8 @@ def test_formula_and_equations_each_see_what_is_off(
 def test_the_phase_of_a_bifurcation_is_compared_itself(recorded, monkeypatch):
     # The nearest point of the branch alone does not see what is off across the branch.
     first = next(all_orbits("table1", recorded["table1"]))
-    near = closed_forms.nearest(first.orbit)
-    monkeypatch.setattr(closed_forms, "nearest", lambda orbit: near)
+    near = witnesses.nearest(first.orbit)
+    monkeypatch.setattr(witnesses, "nearest", lambda orbit: near)
     moved = replace(first.orbit, phases=first.orbit.phases + 1e-9)
     found = formula_and_equations(first._replace(orbit=moved))
     assert found == pytest.approx(np.full(moved.size, 1e-9), rel=0.01)

@@ -22,10 +22,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.corrected import impact as corrected_map
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.models.flight import Flight, emerge, land, table
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.flight import Flight, Unloaded, emerge, land, table
 from bouncing_ball.models.sticking import lifted, stay
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero, first_zero
@@ -182,7 +183,7 @@ class CorrectedDynamics(Dynamics):
         # Up to this time δ + h, which is u t_c at first, loses less than it has.
         start = speed * delay / (2 * (speed + (1 + self.amplitude) * delay))
         if self.law.is_constant:
-            return first_zero(fall.unloaded(-delay), start).time
+            return first_zero(Unloaded(fall, -delay), start).time
         early = late = start
         above = np.ones(start.shape, dtype=bool)
         while above.any():

@@ -1,4 +1,4 @@
-"""Whether a force of one's own may be differentiated by imaginary steps.
+"""Whether the force of a user's law may be differentiated by imaginary steps.
 
 The derivatives of a force come from imaginary steps, which are exact for analytic functions and
 wrong without a sign of it for others: the imaginary part of ``np.abs(u + ih)`` is 0. They are

@@ -115,7 +115,7 @@ class ForceLaw(Batch, ABC):
         """
         return self.force(penetration, rate)
 
-    remembers: ClassVar[bool] = False
+    feels_start_speed: ClassVar[bool] = False
     """Whether the force depends on the speed at the start of the contact, see :meth:`started`."""
 
     def started(self, speed: ArrayLike) -> "ForceLaw":

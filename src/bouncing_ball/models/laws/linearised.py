@@ -79,7 +79,7 @@ def at_end(
     known[:, :, 0] += by_time[:, :, 0]
     known[:, :, 2] += felt * scaling_of(start, angle.T).T
     known[:, :, 3] += felt
-    if law.remembers:
+    if law.feels_start_speed:
         known[:, :, 1] -= lever * law.by_start(depth, rate).T
     pushed = np.linalg.solve(matrix, known)
     of_root = free_root + step * step * (rule.twice @ pushed)

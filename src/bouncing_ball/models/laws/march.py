@@ -179,7 +179,7 @@ class _March:
     ) -> None:
         np.empty(_KEPT, dtype=np.int8)
         size = start.rate.size
-        self.law = law.started(start.rate) if law.remembers else law
+        self.law = law.started(start.rate) if law.feels_start_speed else law
         self.start = start
         self.until = until
         self.differentiate = differentiate

@@ -25,9 +25,9 @@ from bouncing_ball.models.setting import PAPER, Setting, require_setting
 class LawModel(Model):
     """A ball on a contact of any law.
 
-    A :class:`.SpringDamper` is such a law for every ζ and release. Its contacts are the same as in
-    :class:`.SpringDamperModel`, for ζ < 1 and a linear release, but its orbits are searched for, as
-    those of any law, and are not taken from the closed form of the branch.
+    A :class:`.SpringDamper` is such a law for every ζ and release. For ζ < 1 and a linear release
+    :class:`.SpringDamperModel` has the same contacts and the closed form of the branch, whereas the
+    orbits of this model are searched for: :func:`.model_of_law` chooses between them.
 
     Parameters
     ----------

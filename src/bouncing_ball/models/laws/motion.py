@@ -23,8 +23,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics
+from bouncing_ball.models.flight import Rise
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.models.laws.panel import Start, slopes_of
@@ -182,15 +184,15 @@ class ContactDynamics(ResumingDynamics):
             Deviation(1 + by_phase[:, 0], -by_phase[:, 1], -by_phase[:, 2]),
             Deviation(-by_speed[:, 0], by_speed[:, 1], by_speed[:, 2]),
         )
-        return self.landed(released, departure, after, passed)
+        return self.over_flight(released, departure, after, passed)
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """exp(-∫ ∂f/∂p′ dτ) over each contact.
 
-        For a law that remembers the speed at the start, it follows from the derivative of the
-        contact: with p′ = u at the release, the determinant of (φ + D, u) by (φ, v), times u/v.
+        If the law depends on the speed at the start, it follows from the derivative of the contact:
+        with p′ = u at the release, the determinant of (φ + D, u) by (φ, v), times u/v.
         """
-        if not self.law.remembers:
+        if not self.law.feels_start_speed:
             return departure.by.contraction
         by_phase, by_speed = (departure.by.jacobian[:, :, k] for k in range(2))
         determinant = (1 + by_phase[:, 0]) * by_speed[:, 2] - by_speed[:, 0] * by_phase[:, 2]
@@ -252,7 +254,7 @@ def _sampled(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
         displacement, rate, second, _ = flight.gap(time)
         return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
 
-    rise = first_zero(flight.rise(), np.zeros_like(flight.velocity))
+    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
     now = held(share * rise.time)
     found = now.any(axis=0)

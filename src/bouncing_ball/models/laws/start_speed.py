@@ -66,7 +66,7 @@ class StartedContact(HuntCrossley):
 
     speed: float | np.ndarray
 
-    remembers: ClassVar[bool] = True
+    feels_start_speed: ClassVar[bool] = True
 
     def by_start(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """∂f/∂v₀ = -K p^{3/2} C p′/v₀."""
@@ -94,7 +94,7 @@ class DampedByStart(ContactLaw):
     stiffness: float | np.ndarray
     nominal_restitution: float | np.ndarray
 
-    remembers: ClassVar[bool] = True
+    feels_start_speed: ClassVar[bool] = True
     units: ClassVar[dict[str, Unit]] = {
         "stiffness": Hertz.units["stiffness"],
         "nominal_restitution": NUMBER,

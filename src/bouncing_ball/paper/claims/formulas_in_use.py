@@ -14,8 +14,8 @@ import numpy as np
 from bouncing_ball.accuracy.errors import Quantity, relative_errors
 from bouncing_ball.accuracy.thresholds import restitution_thresholds
 from bouncing_ball.models import permanent_contact as threshold
+from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball.models.dynamics import Impact
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel

@@ -6,7 +6,7 @@ so that their agreement checks the numerical methods and not these equations.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -17,8 +17,13 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.one_impact import closed_forms
+from bouncing_ball.periodic.one_impact import restitution_branch
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.spring_damper_branch import (
+    excess_angle,
+    nearest_excess,
+    orbits_on_branch,
+)
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -95,6 +100,22 @@ def all_orbits(name: str, data: xr.Dataset) -> Iterator[Shown]:
             )
 
 
+def nearest(orbit: Orbit) -> Orbit:
+    """The points nearest to given orbits on the closed form of the branch, of their shape.
+
+    The distance is that in (Λ cos φ, Λ sin φ), and in ε for the spring-damper model.
+    """
+    model: Any = orbit.model
+    x = orbit.amplitude * np.cos(orbit.phase)
+    y = orbit.amplitude * np.sin(orbit.phase)
+    if isinstance(model, RestitutionModel):
+        fold = restitution_branch.saddle_node(orbit.n, model.restitution)
+        return Orbit.of(model, orbit.n, np.hypot(fold, y), np.arctan2(y, fold))
+    contact = model.contact
+    excess = excess_angle(contact, orbit.contact_duration)
+    return orbits_on_branch(nearest_excess(contact, orbit.n, x, y, excess), contact, orbit.n)
+
+
 def formula_and_equations(shown: Shown) -> np.ndarray:
     """Distance of each orbit from the closed form, plus that of the closed form from the equations.
 
@@ -102,7 +123,7 @@ def formula_and_equations(shown: Shown) -> np.ndarray:
     test function. Of a bifurcation a dataset has Λ and φ only.
     """
     orbit = shown.orbit
-    near = closed_forms.nearest(orbit)
+    near = nearest(orbit)
     system = PaperUnknowns.of(near)
     y = system.point(near)
     condition = plane(null_vector(system.jacobian(y)), y)

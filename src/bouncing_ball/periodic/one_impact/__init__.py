@@ -3,6 +3,7 @@
 In reading order:
 
 ``n_t``                          the orbits of any model, their saddle-nodes and period doublings
+``orbits_of_model``              the interface of all formulas and searches for them
 ``closed_forms``                 those of the models that have a closed form
 ``restitution_branch``           that of the restitution model
 ``corrected_branch``             that of the corrected model
@@ -11,7 +12,7 @@ In reading order:
 ``start``                        the search for the orbits of models without a closed form
 ``other_settings``               rigid balls on another table, with drag or on a spring
 ``contact_orbits``               contacts of finite duration there
-``law_at_orbit``                 the contact law that has a given r and D at its orbit
+``law_at_orbit``                 orbits on the contact law that has a given r and D at their impacts
 ``paper_unknowns``               the equations in the unknowns of the paper
 ``whole_branch``                 a whole branch, from one end to the other
 """

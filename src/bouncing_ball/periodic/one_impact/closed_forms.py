@@ -9,8 +9,7 @@ branch of the spring-damper model. They are a second route beside the equations 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import singledispatch
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,16 +17,16 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.corrected.impact import impact
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.setting import PAPER
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.one_impact.spring_damper_branch import nearest_excess, orbits_on_branch
+from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
+from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
 from bouncing_ball.periodic.orbits.impacts import check_index
-from bouncing_ball.periodic.orbits.orbit import Orbit, in_order
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
@@ -35,27 +34,8 @@ from bouncing_ball.periodic.orbits.stability import Side
 _UNITS = 8
 
 
-class OrbitsOfModel(Protocol):
-    """The n-T orbits of a model. Entries are NaN where there is no such orbit."""
-
-    is_complete: ClassVar[bool]
-    """Whether an orbit that is not found does not exist: the branch is a formula."""
-
-    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
-        """The n-T orbits at Λ on one side of the saddle-node."""
-
-    def orbits(self, n: int, amplitude: float) -> Orbit:
-        """All n-T orbits of a single model at one Λ, in order of contact duration, in a row."""
-
-    def saddle_node(self, n: ArrayLike) -> Orbit:
-        """The orbits at the saddle-node."""
-
-    def period_doubling(self, n: ArrayLike) -> Orbit:
-        """The orbits at the period doubling nearest to the saddle-node on the stable side."""
-
-
 @dataclass(frozen=True)
-class RestitutionLine:
+class RestitutionLine(OrbitsOfModel):
     """The line Λ cos φ = nπ (1 - r)/(1 + r) of the restitution model (Eq. 6)."""
 
     model: RestitutionModel
@@ -71,10 +51,6 @@ class RestitutionLine:
         phase = formulas.phase(n, r, np.where(exists, lam, fold), side)
         return Orbit.of(self.model, n, lam, np.where(exists, phase, np.nan))
 
-    def orbits(self, n: int, amplitude: float) -> Orbit:
-        """The two orbits on both sides of the saddle-node."""
-        return in_order([self.orbit(n, amplitude, side) for side in Side], self.saddle_node(n))
-
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node (Eq. 7), where φ = 0."""
         return Orbit.of(self.model, n, formulas.saddle_node(n, self.model.restitution), 0.0)
@@ -87,7 +63,7 @@ class RestitutionLine:
 
 
 @dataclass(frozen=True)
-class SpringDamperBranch:
+class SpringDamperBranch(OrbitsOfModel):
     """The explicit branch of :mod:`~bouncing_ball.periodic.one_impact.spring_damper_branch`."""
 
     model: SpringDamperModel
@@ -137,7 +113,7 @@ class SpringDamperBranch:
 
 
 @dataclass(frozen=True)
-class CorrectedLine:
+class CorrectedLine(OrbitsOfModel):
     """The line of :mod:`~bouncing_ball.periodic.one_impact.corrected_branch`, for a signature that
     does not depend on the speed.
     """
@@ -156,10 +132,6 @@ class CorrectedLine:
         lam = np.asarray(amplitude, dtype=float)
         psi = line.instant_phase(n, self._instant, lam, side is Side.STABLE)
         return corrected_orbits(self.model, n, lam, psi)
-
-    def orbits(self, n: int, amplitude: float) -> Orbit:
-        """The two orbits on both sides of the saddle-node."""
-        return in_order([self.orbit(n, amplitude, side) for side in Side], self.saddle_node(n))
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node, ψ = -χ."""
@@ -192,37 +164,3 @@ def corrected_orbits(
     hit = impact(model.law, amplitude, psi, -launch)
     delay = hit.instant.delay
     return Orbit.of(model, n, amplitude, hit.phase - delay, hit.instant.duration, delay - launch)
-
-
-def nearest(orbit: Orbit) -> Orbit:
-    """The points nearest to given orbits on the closed form of the branch, of their shape.
-
-    The distance is that in (Λ cos φ, Λ sin φ), and in ε for the spring-damper model.
-
-    Raises
-    ------
-    TypeError
-        If no closed form of the model is used.
-    """
-    return _nearest(orbit.model, orbit)
-
-
-@singledispatch
-def _nearest(model: Model, orbit: Orbit) -> Orbit:
-    raise TypeError(f"no closed form of the branch of {type(model).__name__} is used")
-
-
-@_nearest.register
-def _(model: RestitutionModel, orbit: Orbit) -> Orbit:
-    fold = formulas.saddle_node(orbit.n, model.restitution)
-    lift = orbit.amplitude * np.sin(orbit.phase)
-    return Orbit.of(model, orbit.n, np.hypot(fold, lift), np.arctan2(lift, fold))
-
-
-@_nearest.register
-def _(model: SpringDamperModel, orbit: Orbit) -> Orbit:
-    contact = model.contact
-    excess = orbit.contact_duration * contact.damped_frequency - contact.free_angle
-    x = orbit.amplitude * np.cos(orbit.phase)
-    y = orbit.amplitude * np.sin(orbit.phase)
-    return orbits_on_branch(nearest_excess(contact, orbit.n, x, y, excess), contact, orbit.n)

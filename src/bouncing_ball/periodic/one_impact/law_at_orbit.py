@@ -1,4 +1,4 @@
-"""The contact law whose impact on an orbit has a given restitution and duration."""
+"""Orbits on the contact law that has a given restitution and duration at their impacts."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.model import LawModel
+from bouncing_ball.models.spring_damper_model import model_of_law
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
@@ -25,19 +25,20 @@ _SETTLED = 1e-10
 _CLOSE = NewtonSettings(tolerance=1e-7)
 
 
-def law_at_orbit(
+def orbit_of_law(
     kind: type[ContactLaw],
     restitution: float,
     duration: ArrayLike,
     n: int,
     amplitude: float,
     side: Side = Side.STABLE,
-) -> ContactLaw:
-    """The contact laws whose free impacts have r and D at the impact speed of their n-T orbit at Λ.
+) -> Orbit:
+    """The n-T orbits at Λ on contacts whose free impacts have r and D at the orbit's impact speed.
 
     The restitution and the duration of a law may depend on the speed. To compare models, r and D
     are therefore prescribed at the impact speed of the orbit in question. A secant iteration finds
-    this speed.
+    this speed. The unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so
+    that the orbits of one round are the guesses of the next.
 
     Parameters
     ----------
@@ -54,8 +55,8 @@ def law_at_orbit(
 
     Returns
     -------
-    ContactLaw
-        Has the shape of ``duration``.
+    Orbit
+        Has the shape of ``duration``; its ``law`` is the contact law.
 
     Raises
     ------
@@ -67,44 +68,22 @@ def law_at_orbit(
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import Tsuji
-    >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
-    >>> speed = -n_t.orbit(LawModel(law), 1, 1.0).relative_impact_velocity
-    >>> round(float(law.signature(speed).duration), 12)
+    >>> orbit = orbit_of_law(Tsuji, 0.65, 0.1, 1, 1.0)
+    >>> round(float(orbit.law.signature(-orbit.relative_impact_velocity).duration), 12)
     0.1
-    """
-    return orbit_of_law(kind, restitution, duration, n, amplitude, side).law
-
-
-def orbit_of_law(
-    kind: type[ContactLaw],
-    restitution: float,
-    duration: ArrayLike,
-    n: int,
-    amplitude: float,
-    side: Side = Side.STABLE,
-) -> Orbit:
-    """The n-T orbits at Λ on the contacts of :func:`law_at_orbit`, which has the same arguments.
-
-    The unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so that the
-    orbits of one round are the guesses of the next.
-
-    Raises
-    ------
-    NoOrbitError, ModelError
-        As :func:`law_at_orbit`.
     """
     side = Side(side)
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
     law = law_of_impact(kind, restitution, taken, speed)
-    orbit = n_t.orbit(LawModel(law), n, amplitude, side)
+    orbit = n_t.orbit(model_of_law(law), n, amplitude, side)
     problem = orbit.problem()
     y = orbit.point(problem)
     for _ in range(_ROUNDS):
         lost = np.flatnonzero(np.isnan(y).any(axis=-1))
         if lost.size:
-            n_t.require_orbit(LawModel(law.take(lost[0])), n, amplitude, side)
+            n_t.require_orbit(model_of_law(law.take(lost[0])), n, amplitude, side)
         missed = -problem.states(y)[1][..., 0] - speed
         slope = np.full_like(taken, -1.0)
         np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
@@ -112,7 +91,7 @@ def orbit_of_law(
         missed_before = missed
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         law = law_of_impact(kind, restitution, taken, speed)
-        problem = replace(problem, balls=Balls(LawModel(law), amplitude))
+        problem = replace(problem, balls=Balls(model_of_law(law), amplitude))
         found = solve(problem.equations_at, y, _CLOSE)
         y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
         if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):

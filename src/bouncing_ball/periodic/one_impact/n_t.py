@@ -23,11 +23,11 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact.closed_forms import (
     CorrectedLine,
-    OrbitsOfModel,
     RestitutionLine,
     SpringDamperBranch,
 )
 from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
+from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
 from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
 from bouncing_ball.periodic.one_impact.start import SearchedOrbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -46,7 +46,8 @@ class Absence(StrEnum):
 
 @singledispatch
 def orbits_of(model: Model) -> OrbitsOfModel:
-    """The n-T orbits of a model: how they are found depends on its class and its setting.
+    """The n-T orbits of a model: its class and its setting decide by which formula or search they
+    are found.
 
     Examples
     --------

@@ -12,68 +12,54 @@ over one period are bracketed and found. The extrema of P are saddle-nodes. For 
 w′ = nπ (1 - r)/(1 + r) (Eq. 6).
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.suspension import free_responses
 from bouncing_ball.models.waveform import Waveform, turned
+from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOneByOne
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # Samples of the equation in one period of the highest harmonic, between which its zeros are found.
 _SAMPLES = 64
 
 
-@dataclass(frozen=True)
-class OtherOrbits:
-    """The n-T orbits of balls in another setting than that of the paper."""
+class OtherOrbits(OrbitsOneByOne):
+    """The n-T orbits of rigid balls in another setting than that of the paper.
 
-    model: RestitutionModel
+    If several are on a side, as may be with several harmonics, the first one that is stable is
+    chosen, and otherwise the first one.
+    """
 
     is_complete: ClassVar[bool] = True
 
-    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
-        """The n-T orbits at Λ on one side of the saddle-node; NaN where there is none.
+    def rows(self, model: RestitutionModel, n: int, amplitude: float) -> Iterator[Orbit]:
+        """All orbits in order of their phases."""
+        family = _Family.of(model, n)
+        level = family.load * family.both
 
-        If several orbits are on this side, as may be with several harmonics, the first one that is
-        stable is chosen, and otherwise the first one.
-        """
-        check_index(n)
-        index, lam = np.broadcast_arrays(n, np.asarray(amplitude, dtype=float))
-        shape = np.broadcast_shapes(index.shape, self.model.shape)
-        index = np.broadcast_to(index, shape)
-        lam = np.broadcast_to(lam, shape)
-        phase = np.full(shape, np.nan)
-        velocity = np.full(shape, np.nan)
-        models = self.model.flat(shape)
-        for k, place in enumerate(np.ndindex(shape)):
-            model = models.take(k)
-            found = _orbits_of(model, int(index[place]), float(lam[place]))
-            if found is None:
-                continue
-            stable_side = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant()) > 0
-            here = np.flatnonzero(stable_side == (side is Side.STABLE))
-            if here.size:
-                best = here[np.argmax(np.atleast_1d(found.is_stable())[here])]
-                phase[place] = found.phase[best]
-                velocity[place] = found.impact_velocity[best]
-        return Orbit.of(self.model, index, lam, phase, 0.0, velocity)
+        def equation(phase: Any) -> Any:
+            return amplitude * family.side(phase) - level
 
-    def orbits(self, n: int, amplitude: float) -> Orbit:
-        """All n-T orbits of a single model at one Λ, in a row, in order of their phases."""
-        check_index(n)
-        found = _orbits_of(self.model, n, amplitude)
-        if found is None:
-            none = np.empty(0)
-            return Orbit.of(self.model, n, none, none, none, none)
-        return found
+        sample = family.samples()
+        value = equation(sample)
+        turns = np.flatnonzero((value[:-1] < 0) != (value[1:] < 0))
+        brackets = zip(sample[turns], sample[turns + 1], strict=True)
+        phase = np.array([scipy.optimize.brentq(equation, *x, xtol=1e-15) for x in brackets])
+        relative, absolute = family.arriving(amplitude, phase)
+        lands = relative < 0
+        lam = np.full(int(np.sum(lands)), amplitude)
+        yield Orbit.of(model, n, lam, phase[lands], 0.0, absolute[lands])
+
+    def rank(self, row: Orbit) -> np.ndarray:
+        """Stable orbits come first."""
+        return row.is_stable()
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the lowest Λ at which n-T orbits exist, a saddle-node; NaN for a spring
@@ -88,16 +74,6 @@ class OtherOrbits:
             values[(slice(None), *place)] = _lowest(models.take(k), int(index[place]))
         lam, phase, velocity = values
         return Orbit.of(self.model, index, lam, phase, 0.0, velocity)
-
-    def period_doubling(self, n: ArrayLike) -> Orbit:
-        """Raise an error: period doublings are found by :func:`bouncing_ball.follow`."""
-        raise ModelError(NO_LIMITS)
-
-
-NO_LIMITS = (
-    "the period doublings of limits are those of a table that moves as a sine, with free flight: "
-    "use follow(orbit(…)) for another table or flight"
-)
 
 
 class _Family(NamedTuple):
@@ -174,25 +150,3 @@ def _lowest(model: RestitutionModel, n: int) -> tuple[float, float, float]:
         return np.nan, np.nan, np.nan
     _, velocity = family.arriving(1 / highest, phase)
     return 1 / highest, phase, float(velocity)
-
-
-def _orbits_of(model: RestitutionModel, n: int, amplitude: float) -> Orbit | None:
-    """All n-T orbits of a single model at one Λ in order of phase, None if there are none."""
-    family = _Family.of(model, n)
-    level = family.load * family.both
-
-    def equation(phase: Any) -> Any:
-        return amplitude * family.side(phase) - level
-
-    sample = family.samples()
-    value = equation(sample)
-    turns = np.flatnonzero((value[:-1] < 0) != (value[1:] < 0))
-
-    found = [scipy.optimize.brentq(equation, sample[k], sample[k + 1], xtol=1e-15) for k in turns]
-    phase = np.array(found)
-    relative, absolute = family.arriving(amplitude, phase)
-    lands = relative < 0
-    if not np.any(lands):
-        return None
-    lam = np.full(int(np.sum(lands)), amplitude)
-    return Orbit.of(model, n, lam, phase[lands], 0.0, absolute[lands])

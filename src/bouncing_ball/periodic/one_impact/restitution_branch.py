@@ -29,7 +29,7 @@ from bouncing_ball.periodic.orbits.stability import Side
 
 
 class ImpactMap(StrEnum):
-    """The map of the impact whose stability is meant."""
+    """The map of the impact that determines the stability."""
 
     EXACT = "exact"
     """Eq. 5, in which the time of flight depends on the table's displacement."""

@@ -9,7 +9,7 @@ followed instead, for one model at a time.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,6 +22,7 @@ from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tang
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.one_impact import corrected_branch as line
+from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.ends import (
     ENDS,
@@ -174,60 +175,6 @@ def _orbits(
     return Orbit.of(model, n, lam, phase, duration, velocity), test
 
 
-def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
-    """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
-
-    Parameters
-    ----------
-    model : Model
-    n, amplitude : array_like
-        Index of the family and Λ, which broadcast with the model.
-    side : Side
-
-    Returns
-    -------
-    Orbit
-        Has the common shape. If Newton's method finds no orbit on this side, the branch of this
-        model is searched, for one orbit at a time.
-
-    Raises
-    ------
-    ModelError
-        If n is not a positive integer, or the side is unknown.
-
-    Examples
-    --------
-    The restitution model, whose orbits have a closed form:
-
-    >>> from bouncing_ball.models.rigid import RestitutionModel
-    >>> from bouncing_ball.periodic.one_impact import n_t
-    >>> model = RestitutionModel(0.5)
-    >>> found = orbit(model, [1, 2], 2.5, Side.STABLE)
-    >>> bool(np.all(found.distance(n_t.orbit(model, [1, 2], 2.5)) < 1e-12))
-    True
-    """
-    side = Side(side)
-    search, (lam,), shape = _Search.of(model, n, amplitude)
-    psi = line.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
-    # Next to the fold, the given Λ may lie below the fold of the corrected model.
-    psi = np.where(np.isnan(psi), line.saddle_node_phase(search.instant), psi)
-    problem, guess = search.guess(lam, psi)
-    y = _solved(problem, guess)
-    found, test = _orbits(problem, y, shape)
-    on_side = test > 0 if side is Side.STABLE else test < 0
-    if np.all(on_side):
-        return found
-    # The saddle-nodes of a single model, whose families have several Λ here.
-    folds: dict[int, Orbit] = {}
-    for k in np.flatnonzero(~np.broadcast_to(on_side, shape).reshape(-1) & np.isfinite(lam)):
-        one = search.model.take(k)
-        index = int(search.n[k])
-        if model.shape or index not in folds:
-            folds[index] = bifurcation(one, index, Bifurcation.SADDLE_NODE)
-        y[k] = _on_branch(folds[index], float(lam[k]), side)
-    return _orbits(problem, y, shape)[0]
-
-
 def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     """The first point at Λ on one side of the fold, or NaN.
 
@@ -256,7 +203,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     return np.nan
 
 
-def continued(
+def special_on_branch(
     model: Model, n: int, amplitude: float, farther: float = _FARTHER
 ) -> Sequence[SpecialPoint]:
     """Bifurcations and crossings of Λ along the branch of a single model.
@@ -306,89 +253,128 @@ def continued(
     return branch.special if ends or len(branch.points) == _POINTS else ()
 
 
-def orbits(model: Model, n: int, amplitude: float) -> Orbit:
-    """The n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
-
-    These are the orbits on the branch that comes from large Λ on its stable side. If this branch
-    cannot be followed, they are the orbits on both sides of the fold.
-
-    Raises
-    ------
-    ModelError
-        If n is not a positive integer.
-    """
-    check_index(n)
-    none = Orbit.of(model, n, amplitude, np.nan)
-    if amplitude >= bifurcation(model, n, Bifurcation.SADDLE_NODE).amplitude:
-        special = continued(model, int(n), float(amplitude))
-        points = [each.point for each in special if each.name == _HERE]
-        if points:
-            problem, _ = _Search.of(model, [n])[0].guess(np.array([amplitude]), np.zeros(1))
-            found = [orbit_of_point(problem.take(0), y) for y in points]
-            return in_order(found, none)
-    return in_order([orbit(model, n, amplitude, side) for side in Side], none)
-
-
-def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
-    """The orbits at a bifurcation, with the broadcast shape of n and the model; NaN where none is
-    found.
-
-    Newton's method starts from the bifurcation of the corrected model. Where it fails, the branch
-    is followed from large Λ, and the result is its first saddle-node or its last period doubling.
-
-    Examples
-    --------
-    >>> from bouncing_ball.models.rigid import RestitutionModel
-    >>> found = bifurcation(RestitutionModel(0.5), 1, Bifurcation.SADDLE_NODE)
-    >>> round(found.amplitude * 3 / np.pi, 10)
-    1.0
-    """
-    search, _, shape = _Search.of(model, n)
-    index = search.n
-    if kind is Bifurcation.SADDLE_NODE:
-        lam = line.saddle_node(index, search.instant)
-        psi = line.saddle_node_phase(search.instant)
-    else:
-        lam, psi = line.period_doubling(index, search.instant)
-    problem, guess = search.guess(lam, psi)
-    found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
-    low = (lam < LOWEST) & (kind is Bifurcation.SADDLE_NODE)
-    # Where Newton's method diverged Λ may overflow.
-    with np.errstate(over="ignore"):
-        reached = np.sinh(found.point[:, -1])
-    # The phase is not defined at Λ = 0: rounding decides where near it the fold of an elastic
-    # contact is found.
-    good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
-    y = np.where(good[:, np.newaxis], found.point, np.nan)
-    for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
-        near = float(np.nan_to_num(lam[k], nan=1.0))
-        special = continued(search.model.take(k), int(index[k]), near)
-        points = [each.point for each in special if each.name == kind]
-        if points:
-            y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
-    return _orbits(problem, y, shape)[0]
-
-
 @dataclass(frozen=True)
-class SearchedOrbits:
+class SearchedOrbits(OrbitsOfModel):
     """The n-T orbits of a model without a closed form, each from a search."""
 
-    model: Model
-
-    is_complete: ClassVar[bool] = False
-
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
-        """The n-T orbits at Λ on one side of the saddle-node: see :func:`orbit`."""
-        return orbit(self.model, n, amplitude, side)
+        """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
+
+        Parameters
+        ----------
+        n, amplitude : array_like
+            Index of the family and Λ, which broadcast with the model.
+        side : Side
+
+        Returns
+        -------
+        Orbit
+            Has the common shape. If Newton's method finds no orbit on this side, the branch of this
+            model is searched, for one orbit at a time.
+
+        Raises
+        ------
+        ModelError
+            If n is not a positive integer, or the side is unknown.
+
+        Examples
+        --------
+        The restitution model, whose orbits have a closed form:
+
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> from bouncing_ball.periodic.one_impact import n_t
+        >>> model = RestitutionModel(0.5)
+        >>> found = SearchedOrbits(model).orbit([1, 2], 2.5, Side.STABLE)
+        >>> bool(np.all(found.distance(n_t.orbit(model, [1, 2], 2.5)) < 1e-12))
+        True
+        """
+        side = Side(side)
+        search, (lam,), shape = _Search.of(self.model, n, amplitude)
+        psi = line.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
+        # Next to the fold, the given Λ may lie below the fold of the corrected model.
+        psi = np.where(np.isnan(psi), line.saddle_node_phase(search.instant), psi)
+        problem, guess = search.guess(lam, psi)
+        y = _solved(problem, guess)
+        found, test = _orbits(problem, y, shape)
+        on_side = test > 0 if side is Side.STABLE else test < 0
+        if np.all(on_side):
+            return found
+        # The saddle-nodes of a single model, whose families have several Λ here.
+        folds: dict[int, Orbit] = {}
+        for k in np.flatnonzero(~np.broadcast_to(on_side, shape).reshape(-1) & np.isfinite(lam)):
+            one = search.model.take(k)
+            index = int(search.n[k])
+            if self.model.shape or index not in folds:
+                folds[index] = SearchedOrbits(one).saddle_node(index)
+            y[k] = _on_branch(folds[index], float(lam[k]), side)
+        return _orbits(problem, y, shape)[0]
 
     def orbits(self, n: int, amplitude: float) -> Orbit:
-        """The n-T orbits of a single model at one Λ: see :func:`orbits`."""
-        return orbits(self.model, n, amplitude)
+        """The n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
+
+        These are the orbits on the branch that comes from large Λ on its stable side. If this
+        branch cannot be followed, they are the orbits on both sides of the fold.
+
+        Raises
+        ------
+        ModelError
+            If n is not a positive integer.
+        """
+        check_index(n)
+        if amplitude >= self.saddle_node(n).amplitude:
+            special = special_on_branch(self.model, int(n), float(amplitude))
+            points = [each.point for each in special if each.name == _HERE]
+            if points:
+                search, _, _ = _Search.of(self.model, [n])
+                problem, _ = search.guess(np.array([amplitude]), np.zeros(1))
+                found = [orbit_of_point(problem.take(0), y) for y in points]
+                return in_order(found, Orbit.of(self.model, n, amplitude, np.nan))
+        return super().orbits(n, amplitude)
+
+    def bifurcation(self, n: ArrayLike, kind: Bifurcation) -> Orbit:
+        """The orbits at a bifurcation, with the broadcast shape of n and the model; NaN where none
+        is found.
+
+        Newton's method starts from the bifurcation of the corrected model. Where it fails, the
+        branch is followed from large Λ, and the result is its first saddle-node or its last period
+        doubling.
+
+        Examples
+        --------
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> found = SearchedOrbits(RestitutionModel(0.5)).saddle_node(1)
+        >>> round(found.amplitude * 3 / np.pi, 10)
+        1.0
+        """
+        search, _, shape = _Search.of(self.model, n)
+        index = search.n
+        if kind is Bifurcation.SADDLE_NODE:
+            lam = line.saddle_node(index, search.instant)
+            psi = line.saddle_node_phase(search.instant)
+        else:
+            lam, psi = line.period_doubling(index, search.instant)
+        problem, guess = search.guess(lam, psi)
+        found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
+        low = (lam < LOWEST) & (kind is Bifurcation.SADDLE_NODE)
+        # Where Newton's method diverged Λ may overflow.
+        with np.errstate(over="ignore"):
+            reached = np.sinh(found.point[:, -1])
+        # The phase is not defined at Λ = 0: rounding decides where near it the fold of an elastic
+        # contact is found.
+        good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
+        y = np.where(good[:, np.newaxis], found.point, np.nan)
+        for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
+            near = float(np.nan_to_num(lam[k], nan=1.0))
+            special = special_on_branch(search.model.take(k), int(index[k]), near)
+            points = [each.point for each in special if each.name == kind]
+            if points:
+                y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
+        return _orbits(problem, y, shape)[0]
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node."""
-        return bifurcation(self.model, n, Bifurcation.SADDLE_NODE)
+        return self.bifurcation(n, Bifurcation.SADDLE_NODE)
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """The orbits at the period doubling nearest to the saddle-node on the stable side."""
-        return bifurcation(self.model, n, Bifurcation.PERIOD_DOUBLING)
+        return self.bifurcation(n, Bifurcation.PERIOD_DOUBLING)

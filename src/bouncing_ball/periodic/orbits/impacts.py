@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ParameterError, require
-from bouncing_ball.models.dynamics import Dynamics, Impact
+from bouncing_ball.models.contacts_and_flights import Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls

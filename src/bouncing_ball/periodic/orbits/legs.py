@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics, Leg
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.products import matrices_of
 
@@ -110,10 +111,7 @@ class Legs:
         if self.dynamics is None:
             return self.duration
         with np.errstate(all="ignore"):
-            factor = self.dynamics.contraction(self.impact, self.departure)
-            _, passed = self.after
-            flown = passed - self.departure.duration
-            factor = factor * self.dynamics.setting.contraction(flown)
+            factor = Leg(self.dynamics, self.impact, self.departure, *self.after).contraction()
         return np.reshape(factor, self.duration.shape)
 
     @cached_property

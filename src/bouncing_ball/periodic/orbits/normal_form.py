@@ -139,9 +139,8 @@ def coefficient(
     problem: OrbitEquations, y: np.ndarray, kind: Bifurcation
 ) -> tuple[float, float, np.ndarray, float]:
     """a or b of an orbit at a bifurcation, its error, q, and the other multiplier."""
-    multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
-    right, left = eigenvectors(problem, y, multiplier)
-    other = float(problem.trace_and_determinant(y)[1]) / multiplier
+    right, left = eigenvectors(problem, y, kind.multiplier)
+    other = float(problem.trace_and_determinant(y)[1]) / kind.multiplier
     _, speed = problem.states(y)
     longest = _STEP * min(1.0, float(np.min(np.abs(speed))))
     steps = longest * 0.5 ** np.arange(_HALVINGS)

@@ -48,8 +48,9 @@ from typing import Any, Self
 
 import numpy as np
 
+from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Dynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
@@ -451,8 +452,7 @@ class OrbitEquations:
         """
         compared = self.compared(y, everywhere=True)
         matrices = compared.legs.matrices
-        multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
-        value, weights = shifted_determinant(matrices[0], multiplier)
+        value, weights = shifted_determinant(matrices[0], kind.multiplier)
         # tr(W_i dM_i) for each leg.
         change = [
             np.einsum("...ij,...ji->...", weights, right - left)

@@ -58,6 +58,11 @@ class Bifurcation(StrEnum):
     SADDLE_NODE = datasets.SADDLE_NODE
     PERIOD_DOUBLING = datasets.PERIOD_DOUBLING
 
+    @property
+    def multiplier(self) -> float:
+        """The Floquet multiplier at the bifurcation, +1 or -1."""
+        return 1.0 if self is Bifurcation.SADDLE_NODE else -1.0
+
     def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
         """``1 ∓ tr + det``: zero at the bifurcation, positive where the orbit is stable.
 
@@ -66,8 +71,7 @@ class Bifurcation(StrEnum):
         >>> [float(kind.test(1.5, 0.5)) for kind in Bifurcation]
         [0.0, 3.0]
         """
-        sign = -1 if self is Bifurcation.SADDLE_NODE else 1
-        return 1 + sign * np.asarray(trace) + np.asarray(determinant)
+        return 1 - self.multiplier * np.asarray(trace) + np.asarray(determinant)
 
 
 def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:

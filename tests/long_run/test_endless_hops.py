@@ -5,7 +5,7 @@ import math
 import pytest
 
 import bouncing_ball as bb
-from bouncing_ball.models import over_time
+from bouncing_ball.long_run import over_time
 from bouncing_ball.models.model import Model
 
 BALLS = {

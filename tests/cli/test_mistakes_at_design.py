@@ -164,8 +164,8 @@ BALL TABLE --balls 1e3
     argument --balls: '1e3' is not a whole number from 1 to 100000: did you mean 1000?
 --mass "20 g" --from lammps --set kn=1e5 --set gamma_n=80 --stiffness 5
     --stiffness is not allowed with --from
---mass "20 g" --law kuwabara-kono --contact-time "1 ms" --restitution 0.001 --speed 1
-    restitution coefficient r = 0.001 is too small: no kuwabara-kono contact with it was found
+--mass "20 g" --law hunt-crossley --contact-time "1 ms" --restitution 0.001 --speed 1
+    restitution coefficient r = 0.001 is too small: no hunt-crossley contact with it was found
 --mass "20 g" --from mujoco --solref "[-10000, -20]"
     solref = '[-10000, -20]' is not 2 numbers: write it plainly, '-10000 -20'
 """.strip().splitlines()

@@ -146,7 +146,7 @@ class Assessment:
         """The judgement in words, or the contact that was chosen."""
         if self.chosen is None:
             law = None if self.case.law is None else self.case.law.name
-            found = said_of_orbit(self.on_orbit, self.frequency_ratio, law)
+            found = said_of_orbit(self.on_orbit, self.case.linear, law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         if self.on_motion is not None:
@@ -305,7 +305,7 @@ def _by_release(case: ResolvedContact) -> dict[str, float | None]:
     contact = case.contact
     if case.law is None:
         return {str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR}
-    at_surface = case.law.release.at_surface
+    at_surface = contact.release.at_surface
     r = float(contact.restitution)
     return {str(rule): r if rule.at_surface == at_surface else None for rule in LINEAR}
 

@@ -156,8 +156,9 @@ def _of_law(
 
     The error grows about as the duration: the secant method in logarithms needs a few steps.
     """
-    measured = contact.with_measured_restitution()
-    linear = choose(replace(measured, law=None, radius=None), table, question)
+    release = str(contact.by_stiffness_and_loss(written).rule)
+    measured = replace(contact.with_measured_restitution(), law=None, release=release)
+    linear = choose(replace(measured, radius=None), table, question)
     n = linear.n
     quantity = question.quantity
 

@@ -29,7 +29,8 @@ class Description:
     impacts by more. It is None without damping. At rest the ball lies ``static_deflection`` below
     the level at which it meets the table. ``law`` has the ``name`` of a contact law and its
     parameters, whose units are powers of kg, m and s; its r and contact time are those of one
-    impact speed, and stiffness, damping and ζ those of the linear contact with the same two.
+    impact speed, and stiffness, damping and ζ those of the linear contact with the same two and
+    the same ``release``.
     """
 
     KEYS: ClassVar[tuple[str, ...]] = (
@@ -103,12 +104,11 @@ def description_of(case: ResolvedContact) -> Description:
         whereas its r depends on the speed.
     """
     release = case.contact.release
-    own = release if case.law is None else case.law.release
     found = Description(
         mass=case.mass,
         stiffness=case.stiffness,
         natural_frequency=case.omega,
-        release=str(own),
+        release=str(release),
         case=case,
     )
     if case.needs_speed and case.law is None and case.is_of_no_impact:

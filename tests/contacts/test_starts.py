@@ -45,8 +45,8 @@ def test_a_law_is_followed_itself():
     """Balls rest on the law, and bounce on the linear contact beside it, which loses less."""
     law = Tsuji(500.0, tsuji_damping(0.3))
     other = SpringDamper.from_restitution(0.95, 10.0)
-    case = ResolvedContact(1.0, TableMotion(1.0, 0.3, 1.0), other, law)
+    case = ResolvedContact(1.0, TableMotion(1.0, 0.3, 1.0), law, other)
     found = ends_of_starts(case)
     assert found.balls == 36 and found.shares == {"permanent contact": 1.0}
-    of_linear = ends_of_starts(replace(case, law=None))
+    of_linear = ends_of_starts(replace(case, law=other, beside=None))
     assert of_linear.balls == 144 and of_linear.shares.get("permanent contact", 0.0) < 0.9

@@ -44,6 +44,23 @@ class Choice:
     needed: Needed
     case: ResolvedContact
 
+    @classmethod
+    def of(cls, case: ResolvedContact, n: int, needed: Needed) -> "Choice":
+        """The choice of a contact for a family, with the numbers of this contact."""
+        return cls(
+            mass=case.mass,
+            stiffness=case.stiffness,
+            damping=case.damping,
+            frequency_ratio=float(case.contact.frequency_ratio),
+            damping_ratio=float(case.contact.damping_ratio),
+            contact_time=case.contact_time,
+            release=str(case.contact.release),
+            measured_restitution=float(case.contact.restitution),
+            n=n,
+            needed=needed,
+            case=case,
+        )
+
     @property
     def verdict(self) -> str:
         """What a simulation needs, in one sentence."""
@@ -127,19 +144,8 @@ def choose(
 
     spring, need = of_loss(plain, table.gravity, stiffness)
     case = ResolvedContact(plain.mass, table, spring, given=contact, written=written)
-    r = float(spring.restitution)
-    return Choice(
-        mass=case.mass,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        frequency_ratio=float(spring.frequency_ratio),
-        damping_ratio=float(spring.damping_ratio),
-        contact_time=case.contact_time,
-        release=str(spring.release),
-        measured_restitution=r,
-        n=meant(question.families, r, table.amplitude),
-        needed=need,
-        case=case,
+    return Choice.of(
+        case, meant(question.families, float(spring.restitution), table.amplitude), need
     )
 
 
@@ -195,17 +201,7 @@ def _of_law(
             f"no {contact.law} contact was found whose {QUANTITIES[Quantity(quantity)]} crosses "
             f"{percent(question.tolerance)}: give {{contact_time}}"
         )
-    case = replace(case_of(place), given=contact)
-    return replace(
-        linear,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        frequency_ratio=float(case.contact.frequency_ratio),
-        damping_ratio=float(case.contact.damping_ratio),
-        contact_time=case.contact_time,
-        measured_restitution=float(case.contact.restitution),
-        case=case,
-    )
+    return Choice.of(replace(case_of(place), given=contact), n, linear.needed)
 
 
 def _needed(unit: SpringDamper, amplitude: float, question: Question) -> Needed:

@@ -111,13 +111,13 @@ def description_of(case: ResolvedContact) -> Description:
         release=str(release),
         case=case,
     )
-    if case.needs_speed and case.law is None and case.is_of_no_impact:
+    if case.needs_speed and case.is_linear and case.is_of_no_impact:
         if case.written is not None:
             raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
         return replace(found, static_deflection=case.static_deflection)
-    time = case.physical.contact_time(release)
-    restitution = case.physical.restitution(release)
-    if case.law is not None and case.impact_speed is not None:
+    time = case.contact_time
+    restitution = float(case.contact.restitution)
+    if not case.is_linear and case.impact_speed is not None:
         impact = case.law.signature(case.impact_speed * case.table.time / case.table.length)
         time = float(impact.duration) * case.table.time
         restitution = float(impact.restitution)

@@ -138,7 +138,6 @@ def _spring_damper(contact: Contact, table: TableMotion) -> ResolvedContact:
         contact.mass,
         table,
         spring,
-        None if rule.is_linear else spring,
         given_stiffness=contact.stiffness,
         given_damping=contact.damping,
     )
@@ -178,7 +177,7 @@ def _of_law(
         duration = contact.contact_time / table.time
         law = law_of_impact(kind, r, duration, at)
     linear = SpringDamper.of_duration(duration, unit.damping_ratio, rule)
-    return ResolvedContact(contact.mass, table, linear, law)
+    return ResolvedContact(contact.mass, table, law, linear)
 
 
 def needs_table(what: str, why: str) -> ParameterError:
@@ -200,7 +199,7 @@ def _with_law_of_engine(case: ResolvedContact, families: Sequence[int]) -> Resol
     if engine.needs_speed:
         case = with_law(case, law, families)
     # For another engine the spring and damper is written in place of the law.
-    return case if case.written is not None else replace(case, law=law)
+    return case if case.written is not None else replace(case, law=law, beside=case.contact)
 
 
 def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: float) -> int:
@@ -244,4 +243,4 @@ def _with_impact(case: ResolvedContact, impact: Instant) -> ResolvedContact:
     """The case with the linear contact that has the r and the duration of an impact."""
     r = float(impact.restitution)
     linear = SpringDamper.of_impact(r, float(impact.duration), case.contact.release)
-    return replace(case, contact=linear, given_stiffness=None, given_damping=None)
+    return replace(case, law=linear, given_stiffness=None, given_damping=None)

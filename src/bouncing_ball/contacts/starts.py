@@ -129,7 +129,7 @@ def ends_of_starts(case: ResolvedContact) -> SharesOfStarts:
     """
     lam = case.table.amplitude
     exact, *_ = case.models.values()
-    starts = _STARTS if case.law is None else _STARTS_OF_LAW
+    starts = _STARTS if case.is_linear else _STARTS_OF_LAW
     found = basins(exact, lam, starts, impacts=_IMPACTS)
     order = np.argsort(-found.share, kind="stable")
     row, column = np.argwhere(found.which == order[0])[0]

@@ -115,7 +115,7 @@ def _reason(judged: OrbitJudgement, linear: SpringDamper, tolerance: str, law: s
 def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Sentences:
     """The most compliant contact within the tolerance, in words."""
     tolerance = percent(needed.tolerance)
-    if case.law is not None:
+    if not case.is_linear:
         sentence = (
             f"A simulation needs a {case.law.name} contact whose free impact, at the speed of the "
             f"{n}-T orbit, takes {shown(case.contact_time, 's')} or less: the restitution model "

@@ -25,7 +25,6 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
-from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -199,22 +198,15 @@ def softer(
     if written.softer is None or written.softer.at_step is None:
         return None
     at = written.softer.at_step
-    if case.law is not None and not case.is_spring_damper:
-        own = _longer(case, case.law, at.steps * at.time_step)
+    if not case.is_spring_damper:
+        own = _longer(case, at.steps * at.time_step)
     else:
         ball = at.softer(case.mass)
         if ball is None:
             return None
         ratio = ball.angular_frequency * case.table.time
         spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
-        law = None if spring.release.is_linear else spring
-        own = replace(
-            case,
-            contact=spring,
-            law=law,
-            given_stiffness=ball.stiffness,
-            given_damping=ball.damping,
-        )
+        own = replace(case, law=spring, given_stiffness=ball.stiffness, given_damping=ball.damping)
     return Softer(
         contact=description_of(own),
         dropped=None if speed is None else drop_at_rest(own, speed),
@@ -223,15 +215,16 @@ def softer(
     )
 
 
-def _longer(case: ResolvedContact, law: ContactLaw, contact_time: float) -> ResolvedContact:
+def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
     """The contact whose impacts take so many seconds, of a law of which steps are known: that of a
     linear spring, so that r is the same at each speed whatever its stiffness is.
     """
+    law = case.law
     factor = contact_time / (
         float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
     )
     slower = replace(case.contact, frequency_ratio=case.contact.frequency_ratio / factor)
-    return replace(case, contact=slower, law=law.stiffened(1 / factor**2))
+    return replace(case, law=law.stiffened(1 / factor**2), beside=slower)
 
 
 def _verdict(case: ResolvedContact, question: Question) -> str:

@@ -36,7 +36,6 @@ from bouncing_ball.long_run.sampled_means import (
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_with_impact
-from bouncing_ball.models.laws.motion import Sampled
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -310,7 +309,7 @@ def _sums(
     impacts = end.impacts
     if end.is_sampled:
         starts = impacts.beside(samples[-1].balls, lam, BESIDE)
-        return sums_at(samples, starts, Sampled(model), lam, _before(case, _sampling(case).before))
+        return sums_at(samples, starts, model, lam, _before(case, _sampling(case).before))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
     _, once = advance(*start(model, lam, impacts.last()), end.motion.impacts)

@@ -178,7 +178,7 @@ class Assessment:
     @property
     def starts(self) -> dict[str, float]:
         """The shares of an even grid of starts that end on each motion, the greatest first."""
-        return self.ends.shares
+        return self.ends.by_text
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from bouncing_ball.contacts.needed import Needed, needed
 from bouncing_ball.contacts.notes import remarks
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
-from bouncing_ball.contacts.resolve import law_type, meant, resolve
+from bouncing_ball.contacts.resolve import first_stable_family, law_type, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
@@ -144,9 +144,8 @@ def choose(
 
     spring, need = of_loss(plain, table.gravity, stiffness)
     case = ResolvedContact(plain.mass, table, spring, given=contact, written=written)
-    return Choice.of(
-        case, meant(question.families, float(spring.restitution), table.amplitude), need
-    )
+    n = first_stable_family(question.families, float(spring.restitution), table.amplitude)
+    return Choice.of(case, n, need)
 
 
 # Steps of the search for the duration of a law, and how closely it is found.
@@ -214,7 +213,7 @@ def _needed(unit: SpringDamper, amplitude: float, question: Question) -> Needed:
     """
     quantity = question.quantity
     r = float(unit.restitution)
-    n = meant(question.families, r, amplitude)
+    n = first_stable_family(question.families, r, amplitude)
     if quantity in OF_ORBITS:
         n_t.require_orbit(RestitutionModel(r), n, amplitude)
     found = needed(quantity, question.tolerance, unit, n, amplitude)

@@ -162,7 +162,7 @@ def _of_law(
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
     r = float(unit.restitution)
     if not table.is_at_rest:
-        at = float(rigid_speed(meant(families, r, table.amplitude), r))
+        at = float(rigid_speed(first_stable_family(families, r, table.amplitude), r))
     elif speed is None:
         what = "{radius}" if kind is None else "{law}"
         why = "the contact time" if kind is None else "r"
@@ -202,7 +202,9 @@ def _with_law_of_engine(case: ResolvedContact, families: Sequence[int]) -> Resol
     return case if case.written is not None else replace(case, law=law, beside=case.contact)
 
 
-def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: float) -> int:
+def first_stable_family(
+    asked: Sequence[int], restitution: float | np.ndarray, amplitude: float
+) -> int:
     """The first of the families whose orbit is stable in the restitution model.
 
     If none of these orbits is stable, it is the first family.
@@ -211,7 +213,7 @@ def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: floa
     --------
     With r = 0.85 and Λ = 1.1 the 1-T orbit is beyond its period doubling:
 
-    >>> meant([1, 2, 3], 0.85, 1.1)
+    >>> first_stable_family([1, 2, 3], 0.85, 1.1)
     2
     """
     orbits = n_t.orbit(RestitutionModel(restitution), np.array(asked), amplitude)
@@ -235,7 +237,7 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
         at = case.impact_speed * case.table.time / case.table.length
         return _with_impact(case, law.signature(at))
     speed, impact = restitution_speed(asked, LawModel(law), _LAST_STEP)
-    n = meant(asked, impact.restitution, case.table.amplitude)
+    n = first_stable_family(asked, impact.restitution, case.table.amplitude)
     return _with_impact(case, law.signature(float(speed[asked.index(n)])))
 
 

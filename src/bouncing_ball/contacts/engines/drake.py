@@ -14,10 +14,10 @@ from bouncing_ball.contacts.engines.engine import (
     EngineParameters,
     Physical,
     at_speeds,
-    written,
+    twelve_digits,
 )
 from bouncing_ball.contacts.engines.given_step import AtStep
-from bouncing_ball.contacts.engines.hunt_crossley_steps import at_step_of_law, needs_speed
+from bouncing_ball.contacts.engines.hunt_crossley_steps import at_step_of_law, missing_speed
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.engines.steps import HuntCrossleyStep
 from bouncing_ball.errors import require
@@ -127,7 +127,7 @@ class HuntCrossleyDrake(Drake):
         self.release(release)
         m, _, _ = self._two(parameters, mass)
         if speed is None:
-            raise needs_speed()
+            raise missing_speed()
         return at_step_of_law(self.law(parameters, m), m, speed, time_step, error)
 
     def step(self, contact: Physical, release: Release, time_step: float) -> HuntCrossleyStep:
@@ -153,21 +153,24 @@ class HuntCrossleyDrake(Drake):
     def _retuned(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
         if at.retuned is None:
             return None
-        law = {**self._law_in_si, "damping": written(at.retuned)}
+        law = {**self._law_in_si, "damping": twelve_digits(at.retuned)}
         return HuntCrossleyDrake(law, at.restitution), contact
 
     def _softer(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
         if at.stiffest is None or at.stiffest_contact_time is None:
             return None
-        law = {**self._law_in_si, "stiffness": written(at.stiffest)}
+        law = {**self._law_in_si, "stiffness": twelve_digits(at.stiffest)}
         # The linear contact with the same r lasts longer by the same factor.
         longer = at.stiffest_contact_time / (at.steps * at.time_step)
         m, k, c = contact
-        soft = Physical(m, written(k / longer**2), written(c / longer))
+        soft = Physical(m, twelve_digits(k / longer**2), twelve_digits(c / longer))
         return HuntCrossleyDrake(law), soft
 
     def parameters(self, contact: Physical) -> EngineParameters:
-        values = (written(2 * self._law_in_si["stiffness"]), written(self._law_in_si["damping"]))
+        values = (
+            twelve_digits(2 * self._law_in_si["stiffness"]),
+            twelve_digits(self._law_in_si["damping"]),
+        )
         return dict(zip(self.names, values, strict=True))
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:

@@ -29,7 +29,7 @@ _ALMOST = 1 + 1e-9
 _PLACE = re.compile(r"@([\w.]+)@")
 
 
-def written(value: float) -> float:
+def twelve_digits(value: float) -> float:
     """A number with twelve digits, so that the rounding errors of products are not written."""
     return float(f"{value:.12g}")
 
@@ -80,7 +80,7 @@ class Engine(ABC):
         if self.scheme is not Scheme.COMPENSATED:
             return contact
         m, k, c = contact
-        return Physical(m, *(written(x * m) for x in compensated(k / m, c / m, time_step)))
+        return Physical(m, *(twelve_digits(x * m) for x in compensated(k / m, c / m, time_step)))
 
     def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         """The contact that the engine computes with these parameters, and a ``time_step`` in s.
@@ -250,10 +250,10 @@ class Engine(ABC):
         (-1000000.0, True)
         """
         rule = self.release(release)
-        contact = Physical(*map(written, contact))
+        contact = Physical(*map(twelve_digits, contact))
         if time_step is None:
             steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
-            step = written(contact.contact_time(rule) / steps)
+            step = twelve_digits(contact.contact_time(rule) / steps)
             return self._settings(contact, rule, error, step, steps)
         at = self.at_step(contact, rule, time_step, error)
         found = self._at(contact, rule, at)
@@ -272,12 +272,12 @@ class Engine(ABC):
         """
         if at.retuned is None:
             return None
-        return self, Physical(contact.mass, contact.stiffness, written(at.retuned))
+        return self, Physical(contact.mass, contact.stiffness, twelve_digits(at.retuned))
 
     def _softer(self, contact: Physical, at: AtStep) -> tuple["Engine", Physical] | None:
         """The engine and the stiffest contact that the step resolves; None if none was found."""
-        exact = at.softer(contact.mass)
-        return None if exact is None else (self, Physical(*map(written, exact)))
+        exact = at.stiffest_spring(contact.mass)
+        return None if exact is None else (self, Physical(*map(twelve_digits, exact)))
 
     @staticmethod
     def _at_same_step(

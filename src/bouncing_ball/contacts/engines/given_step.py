@@ -138,7 +138,7 @@ class AtStep:
         most = f"{self.most:.4g}"
         return least if least == most else f"{least} to {most}"
 
-    def softer(self, mass: float) -> Physical | None:
+    def stiffest_spring(self, mass: float) -> Physical | None:
         """The stiffest spring and damper with the same r for a mass in kg; None if none was sought,
         or if it has the damping of Hunt and Crossley.
         """

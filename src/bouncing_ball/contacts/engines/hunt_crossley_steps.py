@@ -153,7 +153,7 @@ def at_step_of_law(
     )
 
 
-def needs_speed() -> ParameterError:
+def missing_speed() -> ParameterError:
     """The error that a time step is given, and no impact speed on which r depends."""
     return ParameterError(
         "{time_step} with hunt_crossley_dissipation needs {speed} of an impact, or a table, "

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import (
     ThresholdStatus,
     last_crossing,
-    restitution_thresholds,
     thresholds,
 )
 from bouncing_ball.models.damping import LINEAR
@@ -72,24 +72,24 @@ def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
 @pytest.mark.parametrize("release", LINEAR)
 def test_the_thresholds_of_the_restitution_model_are_those_of_a_fine_scan(release):
     zeta = np.array([0.136, 0.05])
-    restitution = np.array([0.65, 0.85])
     n = np.array([1, 2])
     amplitude = np.array([1.0, 0.9])
     tolerance = 0.01
-    found = restitution_thresholds(
+    # The r of the restitution model is that of the first contact alone.
+    found = search(
         zeta,
         release,
-        restitution,
         n,
         amplitude,
         ratios=RATIOS,
-        tolerances=[tolerance],
+        tolerance=[tolerance],
         quantities=tuple(Quantity),
+        simple=lambda contact: [RestitutionModel(0.65)],
     )
 
     def errors(ratio):
         exact = SpringDamperModel(SpringDamper(ratio, zeta, release))
-        simple = RestitutionModel(restitution)
+        simple = RestitutionModel(0.65)
         return relative_errors(exact, [simple], n, amplitude, tuple(Quantity))[0]
 
     fine = np.geomspace(RATIOS[0], RATIOS[-1], 401)
@@ -97,10 +97,10 @@ def test_the_thresholds_of_the_restitution_model_are_those_of_a_fine_scan(releas
     never = outside[..., -1]
     there = outside.any(axis=-1) & ~never
     expected = np.where(never, NEVER, np.where(there, FOUND, ALWAYS))
-    assert np.array_equal(found.status[..., 0], expected)
-    assert there.any() and np.array_equal(np.isnan(found.ratio[..., 0]), ~there)
+    assert np.array_equal(found.status[0, ..., 0], expected)
+    assert there.any() and np.array_equal(np.isnan(found.threshold[0, ..., 0]), ~there)
     for quantity, orbit in zip(*np.nonzero(there), strict=True):
-        ratio = found.ratio[quantity, orbit, 0]
+        ratio = found.threshold[0, quantity, orbit, 0]
         # A difference of numbers of order 1.
         assert abs(errors(ratio)[quantity, orbit]) == pytest.approx(tolerance, abs=1e-12)
         last = np.flatnonzero(outside[quantity, orbit])[-1]

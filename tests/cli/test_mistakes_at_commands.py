@@ -125,11 +125,11 @@ design --mass "20 g" --diameter "5 mm" --restitution 0.8
 design --mass "20 g" --stiffness "1e6 Nm" --restitution 0.8
     --stiffness = 1e6 Nm is in newton times meter: did you mean '1e6 N/m'?
 design --mass "20 g" --stiffness "1.000.000 N/m" --restitution 0.8
-    --stiffness = 1.000.000 N/m has separated thousands: write '1000000 N/m'
+    --stiffness = 1.000.000 N/m is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
 design --mass "20 ± 1 g" --stiffness 1e6 --restitution 0.8
-    --mass = 20 ± 1 g is two numbers: give one
+    --mass = 20 ± 1 g is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
 design --mass "20 g" --stiffness "1e5-1e6 N/m" --restitution 0.8
-    --stiffness = 1e5-1e6 N/m is two numbers: give one
+    --stiffness = 1e5-1e6 N/m is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
 design --mass "20 g" --stiffness 1e6 --damping "10 Ns/m"
     --damping = 10 Ns/m has an unknown unit: did you mean '10 N s/m'?
 design --mass 1e6 --stiffness "20 g" --restitution 0.8

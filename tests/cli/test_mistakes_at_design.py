@@ -47,7 +47,7 @@ MISTAKES = """
 --mass "20 g" --frequency "50 Hz" --amplitude "1 mm" --stiffness 1e6 --restitution 0.8
     unrecognized arguments: --amplitude 1 mm; did you mean --table-amplitude?
 --mass "20 g" --stiffness "2*10^6 N/m" --restitution 0.8
-    --stiffness = 2*10^6 N/m is a power of ten: write '2e6 N/m'
+    --stiffness = 2*10^6 N/m is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
 --mass "20 g" --stiffness 1e6 --damping -5
     --damping = -5 N s/m is negative
 --mass "20 g" --kn 1e5 --restitution 0.8
@@ -115,15 +115,15 @@ BALL --json --plot
 -m 20
     unrecognized arguments: -m 20; did you mean --mass?
 --mass "1/2 kg" --stiffness 1e6 --restitution 0.8
-    --mass = 1/2 kg is a fraction: write '0.5 kg'
+    --mass = 1/2 kg is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
 --mass "20 µg" --frequency "50 Hz" --acceleration "1000000000 g" --stiffness 1e6 --restitution 0.8
     Λ = 1000000000.0 is not below 1e+08
 --mass "20 g" --stiffness "1,500 N/m" --restitution 0.8
-    --stiffness = 1,500 N/m has a comma: write '1.500 N/m' or '1500 N/m'
+    --stiffness = 1,500 N/m has a comma: write '1.500 N/m' with a decimal point, or without
 mass="20 g" --frequency "50 Hz"
     unrecognized arguments: mass=20 g; did you mean --mass?
 --mass "20 g" --stiffness "1 000 000 N/m" --restitution 0.8
-    --stiffness = 1 000 000 N/m has separated thousands: write '1000000 N/m'
+    --stiffness = 1 000 000 N/m is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
 BALL TABLE --tolerance "1 %%"
     --tolerance = 1 %% has an unknown unit: write it as '1 %'
 --mass -1 --stiffness 1e6 --restitution 0.8
@@ -164,8 +164,8 @@ BALL TABLE --balls 1e3
     argument --balls: '1e3' is not a whole number from 1 to 100000: did you mean 1000?
 --mass "20 g" --from lammps --set kn=1e5 --set gamma_n=80 --stiffness 5
     --stiffness is not allowed with --from
---mass "20 g" --law kuwabara-kono --contact-time "1 ms" --restitution 0.001 --speed 1
-    restitution coefficient r = 0.001 is too small: no kuwabara-kono contact with it was found
+--mass "20 g" --law hunt-crossley --contact-time "1 ms" --restitution 0.001 --speed 1
+    restitution coefficient r = 0.001 is too small: no hunt-crossley contact with it was found
 --mass "20 g" --from mujoco --solref "[-10000, -20]"
     solref = '[-10000, -20]' is not 2 numbers: write it plainly, '-10000 -20'
 """.strip().splitlines()

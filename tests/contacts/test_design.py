@@ -259,13 +259,16 @@ def test_each_disagreement_alone_is_not_good_enough(steel, name):
     simple = dataclasses.replace(one.standing["restitution"], **{name: False})
     other = dataclasses.replace(one, standing=one.standing | {"restitution": simple})
     judged = OrbitJudgement(other, need)
-    said = said_of_orbit(judged, 71.0).verdict
+    said = said_of_orbit(judged, SpringDamper(71.0, 0.05)).verdict
     assert not judged.is_good_enough and "2-T orbit" in said
     # The corrected model agrees with the contact, and its error is within the tolerance.
     assert judged.is_corrected_model_good_enough and "the corrected restitution model is" in said
     wrong = dataclasses.replace(one.standing["corrected"], is_stable=False)
     other = dataclasses.replace(other, standing=other.standing | {"corrected": wrong})
-    assert "nor is the corrected one" in said_of_orbit(OrbitJudgement(other, need), 71.0).verdict
+    assert (
+        "nor is the corrected one"
+        in said_of_orbit(OrbitJudgement(other, need), SpringDamper(71.0, 0.05)).verdict
+    )
 
 
 def test_the_tolerance_itself_is_within_the_tolerance(steel):
@@ -277,8 +280,10 @@ def test_the_tolerance_itself_is_within_the_tolerance(steel):
     # Within it below the last crossing: the error passes through zero.
     need = dataclasses.replace(steel.needed, tolerance=error, frequency_ratio=80.0)
     judged = OrbitJudgement(one, need)
-    assert "passes through zero near this ϖ" in said_of_orbit(judged, 71.0).reason
-    assert "zero" not in said_of_orbit(judged, 80.0).reason
+    assert (
+        "passes through zero near this ϖ" in said_of_orbit(judged, SpringDamper(71.0, 0.05)).reason
+    )
+    assert "zero" not in said_of_orbit(judged, SpringDamper(80.0, 0.05)).reason
 
 
 def test_the_verdict_is_about_the_first_stable_family():

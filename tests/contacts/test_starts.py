@@ -9,9 +9,12 @@ import pytest
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.starts import SharesOfStarts, ends_of_starts, interval
 from bouncing_ball.contacts.table import TableMotion
+from bouncing_ball.long_run.basins import MotionName
+from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.spring_damper import SpringDamper
 
+ORBIT, CHAOTIC = MotionName(Kind.ORBIT, 1, 1), MotionName(Kind.CHAOTIC, 0, 0)
 Z = NormalDist().inv_cdf(0.975)
 
 
@@ -27,14 +30,12 @@ def test_an_interval_ends_where_the_share_seen_is_two_deviations_away(count, num
 
 
 def test_few_starts_have_intervals_and_many_have_none():
-    of_few = SharesOfStarts({"orbit 1/1": 0.5, "chaotic": 0.5}, (0.0, -1.0), 36).sentence
+    of_few = SharesOfStarts({ORBIT: 0.5, CHAOTIC: 0.5}, (0.0, -1.0), 36).sentence
     assert of_few == (
         "Of 36 balls with other starts, 50 % (34 to 66 %) end on the 1-T orbit, "
         "50 % (34 to 66 %) in chaotic motion; the ranges are intervals of 95 % for so few balls."
     )
-    of_many = SharesOfStarts(
-        {"orbit 1/1": 9 / 144, "chaotic": 135 / 144}, (0.0, -1.0), 144
-    ).sentence
+    of_many = SharesOfStarts({ORBIT: 9 / 144, CHAOTIC: 135 / 144}, (0.0, -1.0), 144).sentence
     assert (
         "94 % end in chaotic motion, 6.2 % on the 1-T orbit." in of_many
         and "interval" not in of_many
@@ -45,8 +46,8 @@ def test_a_law_is_followed_itself():
     """Balls rest on the law, and bounce on the linear contact beside it, which loses less."""
     law = Tsuji(500.0, tsuji_damping(0.3))
     other = SpringDamper.from_restitution(0.95, 10.0)
-    case = ResolvedContact(1.0, TableMotion(1.0, 0.3, 1.0), other, law)
+    case = ResolvedContact(1.0, TableMotion(1.0, 0.3, 1.0), law, other)
     found = ends_of_starts(case)
-    assert found.balls == 36 and found.shares == {"permanent contact": 1.0}
-    of_linear = ends_of_starts(replace(case, law=None))
-    assert of_linear.balls == 144 and of_linear.shares.get("permanent contact", 0.0) < 0.9
+    assert found.balls == 36 and found.by_text == {"permanent contact": 1.0}
+    of_linear = ends_of_starts(replace(case, law=other, beside=None))
+    assert of_linear.balls == 144 and of_linear.by_text.get("permanent contact", 0.0) < 0.9

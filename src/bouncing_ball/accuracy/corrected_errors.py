@@ -3,7 +3,8 @@ thresholds above which each of them is accurate.
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,13 +16,10 @@ from bouncing_ball.accuracy.errors import (
     relative_errors,
     values,
 )
-from bouncing_ball.accuracy.thresholds import (
-    by_quantity,
-    last_crossing,
-    thresholds,
-)
+from bouncing_ball.accuracy.thresholds import Numbered, by_quantity, last_zero, thresholds
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -94,16 +92,43 @@ def orbit_errors(orbit: Orbit) -> np.ndarray:
     return np.stack([[*map(relative, exact, each)] for each in simple])
 
 
-class Search(NamedTuple):
-    """The ϖ above which each simple model is accurate, for several orbits."""
+def simple_models(contact: SpringDamper) -> tuple[RestitutionModel, CorrectedModel]:
+    """Both simple models with the r of a free impact on a contact, in the order of SIMPLE."""
+    return exact_and_simple_models(contact)[1:]
 
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Errors of simple models along ϖ, for several orbits, and the ϖ above which they are accurate.
+
+    Parameters
+    ----------
+    ratios : ndarray, shape (N,)
+        The grid of ϖ.
+    error : ndarray, shape (model, quantity, orbit, N)
+        Signed errors on the grid.
+    function : callable
+        The same errors at any ϖ, numbered by quantity, model and orbit.
+    threshold : ndarray, shape (model, quantity, orbit), and an axis of several tolerances
+        ϖ; NaN where the status is not ``FOUND``.
+    status : ndarray
+        :class:`ThresholdStatus`, of the shape of the thresholds.
+    """
+
+    ratios: np.ndarray
+    error: np.ndarray
+    function: Numbered
     threshold: np.ndarray
-    """ϖ, shape (model, quantity, orbit); NaN where the status is not ``FOUND``."""
     status: np.ndarray
-    """:class:`ThresholdStatus`, shape (model, quantity, orbit)."""
-    zero: np.ndarray
-    """The largest ϖ at which the error of the restitution model changes its sign, shape
-    (quantity, orbit); NaN where it does not change its sign."""
+
+    @cached_property
+    def zero(self) -> np.ndarray:
+        """The largest ϖ at which each error passes through zero, shape (model, quantity, orbit);
+        NaN where it does not.
+        """
+        scanned = self.error.swapaxes(0, 1)
+        found = last_zero(self.function, self.ratios, scanned.reshape(-1, self.ratios.size))
+        return found.reshape(scanned.shape[:-1]).swapaxes(0, 1)
 
 
 def search(
@@ -112,11 +137,12 @@ def search(
     n: ArrayLike,
     amplitude: ArrayLike,
     ratios: np.ndarray,
-    tolerance: float,
+    tolerance: ArrayLike,
     quantities: Sequence[str] = OF_IMPACTS,
     measure: Callable[[np.ndarray], np.ndarray] = np.asarray,
+    simple: Callable[[SpringDamper], Sequence[Model]] = simple_models,
 ) -> Search:
-    """Thresholds and zeros of the errors of both simple models, for linear contacts.
+    """Thresholds and zeros of the errors of simple models, for linear contacts.
 
     Parameters
     ----------
@@ -125,21 +151,18 @@ def search(
     rule : Release
     ratios : ndarray, shape (N,)
         Increasing grid of ϖ.
-    tolerance : float
-        The tolerated relative error.
+    tolerance : float or array_like, shape (tolerance,)
+        The tolerated relative errors.
     quantities : sequence of str
     measure : callable
         The error that is tolerated, as a function of the paper's error (Eqs. 37-38); by default
         the paper's.
-
-    Returns
-    -------
-    Search
-        The restitution model has the r of a free impact on the contact.
+    simple : callable
+        The simple models of contacts; by default those of :func:`simple_models`.
 
     Examples
     --------
-    Without damping, Λ_SD = 1 - 1/ϖ²:
+    Without damping, Λ_SD = 1 - 1/ϖ² (Eq. 38):
 
     >>> grid, rule = np.geomspace(1.0, 1e3, 31), Release.DISPLACEMENT
     >>> found = search(0.0, rule, 1, 1.0, grid, 0.01, ["permanent_contact"])
@@ -147,24 +170,25 @@ def search(
     [[10.0]]
     """
     damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
-    size = len(quantities), len(SIMPLE), lam.size
 
     def at(ratio: np.ndarray, orbit: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
         """The errors of the orbits with these indices, shape (model, quantity, m)."""
         contact = SpringDamper(ratio, damping[orbit], rule)
-        return measure(errors(contact, index[orbit], lam[orbit], wanted))
+        exact = SpringDamperModel(contact)
+        return measure(relative_errors(exact, simple(contact), index[orbit], lam[orbit], wanted))
 
     def along(ratio: np.ndarray, row: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
         """The errors of rows of (model, orbit), shape (quantity, m)."""
         model, orbit = np.divmod(row, lam.size)
         return at(ratio, orbit, wanted)[model, :, np.arange(row.size)].T
 
-    orbit, ratio = np.divmod(np.arange(lam.size * ratios.size), ratios.size)
-    scanned = at(ratios[ratio], orbit, quantities).swapaxes(0, 1)
-    every = scanned.reshape(-1, ratios.size)
-    found = thresholds(by_quantity(along, quantities, size[1] * size[2]), ratios, every, tolerance)
-    # The restitution model is the first model.
-    of_restitution = scanned[:, 0].reshape(-1, ratios.size)
-    zero = last_crossing(by_quantity(along, quantities, lam.size), ratios, of_restitution)
-    threshold, status = (part.reshape(size).swapaxes(0, 1) for part in found)
-    return Search(threshold=threshold, status=status, zero=zero.reshape(-1, lam.size))
+    # All orbits at all ϖ, one orbit after another.
+    orbit, place = np.divmod(np.arange(lam.size * ratios.size), ratios.size)
+    scanned = at(ratios[place], orbit, quantities)
+    error = scanned.reshape(*scanned.shape[:2], lam.size, ratios.size)
+    function = by_quantity(along, quantities, len(error) * lam.size)
+    every = error.swapaxes(0, 1).reshape(-1, ratios.size)
+    found = thresholds(function, ratios, every, tolerance)
+    shape = len(quantities), len(error), lam.size, *np.shape(tolerance)
+    threshold, status = (part.reshape(shape).swapaxes(0, 1) for part in found)
+    return Search(ratios, error, function, threshold, status)

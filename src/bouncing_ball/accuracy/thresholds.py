@@ -6,8 +6,8 @@ The paper calls the errors of the greatest height h and of the threshold of perm
 
 and ϖ_h,1% and ϖ_PC,1% the values of ϖ at which they are 1 %. Here the threshold of any quantity is
 the largest ϖ in a scanned range at which the modulus of its error crosses the tolerance. Where a
-model lacks the quantity, the error is infinite. :func:`restitution_thresholds` gives the thresholds
-of the restitution model; the other functions find the thresholds of any errors.
+model lacks the quantity, the error is infinite. The functions here find the thresholds and zeros of
+any errors; :func:`~bouncing_ball.accuracy.corrected_errors.search` finds those of simple models.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,16 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.errors import (
-    OF_IMPACTS,
-    OF_ORBITS,
-    modulus,
-    relative_errors,
-)
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.accuracy.errors import OF_ORBITS, modulus
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
@@ -203,74 +194,3 @@ def by_quantity(errors: ErrorsAtRatios, quantities: Sequence[str], rows: int) ->
         return found
 
     return numbered
-
-
-class RestitutionThresholds(NamedTuple):
-    """Errors of the restitution model along ϖ, and the ϖ above which they are tolerable."""
-
-    error: np.ndarray
-    """Signed relative errors on the grid, shape (quantity, orbit, ϖ)."""
-    ratio: np.ndarray
-    """ϖ, shape (quantity, orbit, tolerance); NaN where the status is not ``FOUND``."""
-    status: np.ndarray
-    """:class:`ThresholdStatus`, shape (quantity, orbit, tolerance)."""
-
-
-def restitution_thresholds(
-    damping_ratio: ArrayLike,
-    release: Release,
-    restitution: ArrayLike,
-    n: ArrayLike,
-    amplitude: ArrayLike,
-    *,
-    ratios: np.ndarray,
-    tolerances: ArrayLike,
-    quantities: Sequence[str] = OF_IMPACTS,
-) -> RestitutionThresholds:
-    """The ϖ above which the restitution model is accurate, for several orbits.
-
-    Parameters
-    ----------
-    damping_ratio : array_like
-        ζ of the contact of each orbit. This and the following arrays broadcast to shape (orbit,).
-    release : Release
-    restitution : array_like
-        r of the restitution model with which the contact is compared; Eq. 16 gives the r of ζ.
-    n, amplitude : array_like
-        Index of the family and Λ of each orbit.
-    ratios : ndarray, shape (N,)
-        Increasing grid of ϖ.
-    tolerances : array_like
-        Tolerated relative errors.
-    quantities : sequence of str
-
-    Examples
-    --------
-    Without damping, Λ_SD = 1 - 1/ϖ² (Eq. 38):
-
-    >>> found = restitution_thresholds(
-    ...     0.0, Release.DISPLACEMENT, 1.0, 1, 1.0,
-    ...     ratios=np.geomspace(1.0, 1e3, 31), tolerances=[0.01], quantities=["permanent_contact"]
-    ... )
-    >>> found.ratio.round(9).tolist()
-    [[[10.0]]]
-    """
-    of_orbits = np.broadcast_arrays(damping_ratio, restitution, n, amplitude)
-    zeta, r, family, lam = (np.atleast_1d(values) for values in of_orbits)
-
-    def errors(ratio: np.ndarray, orbit: np.ndarray, asked: Sequence[str]) -> np.ndarray:
-        exact = SpringDamperModel(SpringDamper(ratio, zeta[orbit], release))
-        simple = RestitutionModel(r[orbit])
-        return relative_errors(exact, [simple], family[orbit], lam[orbit], asked)[0]
-
-    # All orbits at all ϖ, one orbit after another.
-    orbit, place = np.divmod(np.arange(lam.size * ratios.size), ratios.size)
-    scanned = errors(ratios[place], orbit, quantities).reshape(-1, ratios.size)
-    numbered = by_quantity(errors, quantities, lam.size)
-    found = thresholds(numbered, ratios, scanned, tolerances)
-    shape = (len(quantities), lam.size, -1)
-    return RestitutionThresholds(
-        error=scanned.reshape(shape),
-        ratio=found.ratio.reshape(shape),
-        status=found.status.reshape(shape),
-    )

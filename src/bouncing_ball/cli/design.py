@@ -32,7 +32,7 @@ from bouncing_ball.contacts.write import (
     resolve_for,
     settings_for,
     settings_on_table,
-    softer,
+    softer_contact,
 )
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
@@ -116,7 +116,9 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         )
     dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
     at_step = None if engine is None else engine.at_step
-    other = None if engine is None else softer(found.case, engine, question, si.get("speed"))
+    other = None
+    if engine is not None:
+        other = softer_contact(found.case, engine, question, si.get("speed"))
     error = si.get("restitution_error", ERROR)
     speed = _impact_speed(found, si.get("speed"))
     if error != ERROR and setup is None and contact.from_engine is None:

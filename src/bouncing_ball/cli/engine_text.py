@@ -21,10 +21,9 @@ def line(name: str, *columns: str) -> str:
 
 def law_lines(found: Assessment | Description) -> list[str]:
     """The parameters of a contact law, with their units."""
-    law = found.case.law
     values = dict(found.law or {})
     name = values.pop("name", "")
-    units = {} if law is None else law.units
+    units = found.case.law.units
     # With units, ϖ is the natural frequency ϖΩ.
     words = {"frequency_ratio": "natural frequency"}
     return [
@@ -121,7 +120,7 @@ def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
     damping = shown(at.stiffest_damping, at.unit_of_damping)
     case = given.found.case
     deep = ""
-    if case.law is None or at.speed is not None:
+    if case.is_linear or at.speed is not None:
         # A linear spring carries the whole weight.
         rest = shown(case.mass * case.table.gravity / at.stiffest, "m")
         deep = f", in which the ball rests {rest} deep"

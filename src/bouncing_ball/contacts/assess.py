@@ -145,8 +145,8 @@ class Assessment:
     def _said(self) -> Sentences:
         """The judgement in words, or the contact that was chosen."""
         if self.chosen is None:
-            law = None if self.case.law is None else self.case.law.name
-            found = said_of_orbit(self.on_orbit, self.frequency_ratio, law)
+            law = None if self.case.is_linear else self.case.law.name
+            found = said_of_orbit(self.on_orbit, self.case.linear, law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         if self.on_motion is not None:
@@ -178,7 +178,7 @@ class Assessment:
     @property
     def starts(self) -> dict[str, float]:
         """The shares of an even grid of starts that end on each motion, the greatest first."""
-        return self.ends.shares
+        return self.ends.by_text
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -241,7 +241,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
     require_short(case.contact_time)
-    if case.law is not None and amplitude > _LARGEST_OF_LAW:
+    if not case.is_linear and amplitude > _LARGEST_OF_LAW:
         raise ModelError(
             f"Λ = {amplitude:g} is above {_LARGEST_OF_LAW:g}, up to which a contact law "
             "is followed: give a lower acceleration, or a spring and a damper, which are faster"
@@ -303,9 +303,9 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
 def _by_release(case: ResolvedContact) -> dict[str, float | None]:
     """r of a free impact for each release rule; None for the rule that a law does not have."""
     contact = case.contact
-    if case.law is None:
+    if case.is_linear:
         return {str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR}
-    at_surface = case.law.release.at_surface
+    at_surface = contact.release.at_surface
     r = float(contact.restitution)
     return {str(rule): r if rule.at_surface == at_surface else None for rule in LINEAR}
 

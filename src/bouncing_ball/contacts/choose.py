@@ -14,7 +14,7 @@ from bouncing_ball.contacts.needed import Needed, needed
 from bouncing_ball.contacts.notes import remarks
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
-from bouncing_ball.contacts.resolve import law_type, meant, resolve
+from bouncing_ball.contacts.resolve import first_stable_family, law_type, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
@@ -43,6 +43,23 @@ class Choice:
     n: int
     needed: Needed
     case: ResolvedContact
+
+    @classmethod
+    def of(cls, case: ResolvedContact, n: int, needed: Needed) -> "Choice":
+        """The choice of a contact for a family, with the numbers of this contact."""
+        return cls(
+            mass=case.mass,
+            stiffness=case.stiffness,
+            damping=case.damping,
+            frequency_ratio=float(case.contact.frequency_ratio),
+            damping_ratio=float(case.contact.damping_ratio),
+            contact_time=case.contact_time,
+            release=str(case.contact.release),
+            measured_restitution=float(case.contact.restitution),
+            n=n,
+            needed=needed,
+            case=case,
+        )
 
     @property
     def verdict(self) -> str:
@@ -127,20 +144,8 @@ def choose(
 
     spring, need = of_loss(plain, table.gravity, stiffness)
     case = ResolvedContact(plain.mass, table, spring, given=contact, written=written)
-    r = float(spring.restitution)
-    return Choice(
-        mass=case.mass,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        frequency_ratio=float(spring.frequency_ratio),
-        damping_ratio=float(spring.damping_ratio),
-        contact_time=case.contact_time,
-        release=str(spring.release),
-        measured_restitution=r,
-        n=meant(question.families, r, table.amplitude),
-        needed=need,
-        case=case,
-    )
+    n = first_stable_family(question.families, float(spring.restitution), table.amplitude)
+    return Choice.of(case, n, need)
 
 
 # Steps of the search for the duration of a law, and how closely it is found.
@@ -156,8 +161,9 @@ def _of_law(
 
     The error grows about as the duration: the secant method in logarithms needs a few steps.
     """
-    measured = contact.with_measured_restitution()
-    linear = choose(replace(measured, law=None, radius=None), table, question)
+    release = str(contact.by_stiffness_and_loss(written).rule)
+    measured = replace(contact.with_measured_restitution(), law=None, release=release)
+    linear = choose(replace(measured, radius=None), table, question)
     n = linear.n
     quantity = question.quantity
 
@@ -194,17 +200,7 @@ def _of_law(
             f"no {contact.law} contact was found whose {QUANTITIES[Quantity(quantity)]} crosses "
             f"{percent(question.tolerance)}: give {{contact_time}}"
         )
-    case = replace(case_of(place), given=contact)
-    return replace(
-        linear,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        frequency_ratio=float(case.contact.frequency_ratio),
-        damping_ratio=float(case.contact.damping_ratio),
-        contact_time=case.contact_time,
-        measured_restitution=float(case.contact.restitution),
-        case=case,
-    )
+    return Choice.of(replace(case_of(place), given=contact), n, linear.needed)
 
 
 def _needed(unit: SpringDamper, amplitude: float, question: Question) -> Needed:
@@ -217,7 +213,7 @@ def _needed(unit: SpringDamper, amplitude: float, question: Question) -> Needed:
     """
     quantity = question.quantity
     r = float(unit.restitution)
-    n = meant(question.families, r, amplitude)
+    n = first_stable_family(question.families, r, amplitude)
     if quantity in OF_ORBITS:
         n_t.require_orbit(RestitutionModel(r), n, amplitude)
     found = needed(quantity, question.tolerance, unit, n, amplitude)

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.engine import Engine
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.contacts.quantities import (
     ContactTime,
     Damping,
@@ -188,14 +189,15 @@ class Contact:
 
     @property
     def rule(self) -> Release:
-        """The release rule, by default that of the displacement.
+        """The release rule, by default that of the law.
 
         Raises
         ------
         ModelError
-            If there is no such rule.
+            If there is no such rule, or no such law.
         """
-        return Release.of(self.release or Release.DISPLACEMENT)
+        law = SpringDamper if self.law is None else law_named(self.law)
+        return Release.of(self.release or law.release)
 
     @property
     def is_stiff(self) -> bool:

@@ -29,7 +29,8 @@ class Description:
     impacts by more. It is None without damping. At rest the ball lies ``static_deflection`` below
     the level at which it meets the table. ``law`` has the ``name`` of a contact law and its
     parameters, whose units are powers of kg, m and s; its r and contact time are those of one
-    impact speed, and stiffness, damping and ζ those of the linear contact with the same two.
+    impact speed, and stiffness, damping and ζ those of the linear contact with the same two and
+    the same ``release``.
     """
 
     KEYS: ClassVar[tuple[str, ...]] = (
@@ -103,21 +104,20 @@ def description_of(case: ResolvedContact) -> Description:
         whereas its r depends on the speed.
     """
     release = case.contact.release
-    own = release if case.law is None else case.law.release
     found = Description(
         mass=case.mass,
         stiffness=case.stiffness,
         natural_frequency=case.omega,
-        release=str(own),
+        release=str(release),
         case=case,
     )
-    if case.needs_speed and case.law is None and case.is_of_no_impact:
+    if case.needs_speed and case.is_linear and case.is_of_no_impact:
         if case.written is not None:
             raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
         return replace(found, static_deflection=case.static_deflection)
-    time = case.physical.contact_time(release)
-    restitution = case.physical.restitution(release)
-    if case.law is not None and case.impact_speed is not None:
+    time = case.contact_time
+    restitution = float(case.contact.restitution)
+    if not case.is_linear and case.impact_speed is not None:
         impact = case.law.signature(case.impact_speed * case.table.time / case.table.length)
         time = float(impact.duration) * case.table.time
         restitution = float(impact.restitution)

@@ -62,7 +62,7 @@ def drop_at_rest(case: ResolvedContact, speed: Speed) -> Dropped:
     >>> round(found.drop_height, 4), round(found.restitution, 4), round(found.at_tenth, 4)
     (0.2039, 0.6615, 0.6297)
     """
-    law = case.exact_law
+    law = case.law
     unit = case.table.length / case.table.time
     length = case.table.length
     first, half, tenth = rises(law, np.array([1.0, 0.5, 0.1]) * speed / unit)
@@ -102,9 +102,7 @@ def deep(depth: float, radius: float | None, when: str) -> tuple[str, ...]:
 def _remarks(case: ResolvedContact, found: Dropped) -> tuple[str, ...]:
     """What a user should know of a drop: gravity rules it, or the ball sinks in deeply."""
     said = deep(found.greatest_compression, case.given.radius, "in this drop")
-    free = float(
-        case.exact_law.signature(found.speed / case.table.length * case.table.time).restitution
-    )
+    free = float(case.law.signature(found.speed / case.table.length * case.table.time).restitution)
     resting = shown(case.static_deflection, "m")
     if found.restitution == 0:
         return (

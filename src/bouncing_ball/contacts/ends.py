@@ -41,7 +41,7 @@ class Ending(NamedTuple):
 
 def followed_impacts(case: ResolvedContact) -> int:
     """Number of impacts of a ball in the search for its final motion."""
-    return _IMPACTS if case.law is None else _IMPACTS_OF_LAW
+    return _IMPACTS if case.is_linear else _IMPACTS_OF_LAW
 
 
 def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> Ending:

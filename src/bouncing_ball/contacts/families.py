@@ -142,7 +142,7 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     # If the r of a contact law depends on the speed, it equals the r of the restitution model at
     # one speed only.
     holds[there] = is_small & case.has_its_restitution(n[there])
-    if case.law is None:
+    if case.is_linear:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         predicted[-1] = second / contact.frequency_ratio**2
     return -predicted, holds
@@ -187,11 +187,11 @@ def families(
     exact, *simple = case.models.values()
     of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD) for model in simple]
     near = np.ones(n.shape, dtype=bool)
-    if case.law is not None:
+    if not case.is_linear:
         near = can_carry(case.law, n, lam)
-    if case.law is not None and case.contact.frequency_ratio > _STIFF:
-        nodes = [found[len(OF_ORBITS)] for _, found in of_simple]
-        near &= ~(np.nanmin(nodes, axis=0) > _FAR * lam)
+        if case.contact.frequency_ratio > _STIFF:
+            nodes = [found[len(OF_ORBITS)] for _, found in of_simple]
+            near &= ~(np.nanmin(nodes, axis=0) > _FAR * lam)
     in_models = [_in_model(exact, n, lam, case.permanent_contact, near), *of_simple]
     orbits = [orbit for orbit, _ in in_models]
     values = np.array([found for _, found in in_models])
@@ -290,7 +290,7 @@ def _family(
     unit = case.table
     orbit = orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
-    depth, force = _loads(case.exact_law, orbit)
+    depth, force = _loads(case.law, orbit)
     restitution, corrected = map(_by_quantity, relative(values[1:], values[0]))
     in_si = values * _units(case.table)
     return ComparedOrbit(

@@ -229,7 +229,9 @@ def _by_change(
 
 
 def _with_changes(error: Mean, changes: Mapping[str, Mean]) -> list[Mean]:
-    """The errors with small changes: for a law its own, changed as that of the linear contact."""
+    """The errors with small changes; for a law whose changes are those of the linear contact in its
+    place, the error of the law plus each change of the linear contact's error.
+    """
     base = changes.get(NO_CHANGE)
     if base is None:
         return list(changes.values())

@@ -36,7 +36,6 @@ from bouncing_ball.long_run.sampled_means import (
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_with_impact
-from bouncing_ball.models.laws.motion import Sampled
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -81,6 +80,10 @@ _BALLS_OF_CHANGE_OF_LAW = 128
 _SAME = 1e-6
 
 
+def _sampling(case: ResolvedContact) -> Sampling:
+    return _SAMPLES if case.is_linear else _SAMPLES_OF_LAW
+
+
 def compared_means(
     case: ResolvedContact,
     ends: Mapping[str, Ending],
@@ -89,7 +92,7 @@ def compared_means(
     first: FirstImpact,
 ) -> dict[str, Any]:
     """Means of both models, in m and W, and the relative errors of the second model."""
-    sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+    sampling = _sampling(case)
     balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
     without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
     if not all(end.impacts.phase.size for end in ends.values()):
@@ -143,13 +146,13 @@ def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     that is not determined by an impact stands the linear contact, also without a change.
     """
     speed = _impact_speed(case, end)
-    if case.law is not None and not _is_of_impact(case.law, speed):
-        linear = replace(case, law=None, contact=case.linear)
+    if not case.is_linear and not _is_of_impact(case.law, speed):
+        linear = replace(case, law=case.linear, beside=None)
         return {NO_CHANGE: linear} | _changed(linear, end)
     found = {"r -0.1 %": _with(case, speed, restitution=1 - _CHANGE)}
     if float(case.contact.restitution) * (1 + _CHANGE) <= 1:
         found["r +0.1 %"] = _with(case, speed, restitution=1 + _CHANGE)
-    found["k +0.1 %"] = _with(case, speed, duration=_shorter(case.law, speed))
+    found["k +0.1 %"] = _with(case, speed, duration=_shorter(case, speed))
     # In units of g/Ω the same impact is then slower.
     found["g +0.1 %"] = replace(
         _with(case, speed, unit=1 + _CHANGE),
@@ -164,12 +167,12 @@ def _impact_speed(case: ResolvedContact, end: Ending) -> float:
     return float(np.mean(speed - end.impacts.velocity))
 
 
-def _shorter(law: ContactLaw | None, speed: float) -> float:
+def _shorter(case: ResolvedContact, speed: float) -> float:
     """The factor of the duration of an impact on a stiffer contact."""
-    if law is None:
+    if case.is_linear:
         return 1 / math.sqrt(1 + _CHANGE)
-    stiffer = law.stiffened(1 + _CHANGE)
-    return float(stiffer.signature(speed).duration / law.signature(speed).duration)
+    stiffer = case.law.stiffened(1 + _CHANGE)
+    return float(stiffer.signature(speed).duration / case.law.signature(speed).duration)
 
 
 def _with(
@@ -184,10 +187,10 @@ def _with(
     r = float(contact.restitution) * restitution
     ratio = float(contact.frequency_ratio) / duration
     other = SpringDamper.from_restitution(r, ratio, contact.release, measured=True)
-    law = None
-    if case.law is not None:
-        law = _law(case.law, speed, restitution, duration, unit)
-    return replace(case, contact=other, law=law)
+    if case.is_linear:
+        return replace(case, law=other)
+    law = _law(case.law, speed, restitution, duration, unit)
+    return replace(case, law=law, beside=None if case.is_spring_damper else other)
 
 
 def _law(
@@ -218,7 +221,7 @@ def _is_of_impact(law: ContactLaw, speed: float) -> bool:
     """
     try:
         again = _law(law, speed).parameters()
-        _shorter(law, speed)
+        law.stiffened(1 + _CHANGE).signature(speed)
     except ModelError:
         return False
     return all(
@@ -236,8 +239,8 @@ def _changes(
     """
     exact_end, *_ = ends.values()
     all_changed = _changed(case, exact_end)
-    # A law that stands for itself has no sample of the linear contact.
-    own = case.law is not None and NO_CHANGE not in all_changed
+    # A law that an impact determines has no sample of the linear contact.
+    own = not case.is_linear and NO_CHANGE not in all_changed
     balls = _BALLS_OF_CHANGE_OF_LAW if own else _BALLS_OF_CHANGE
     usual = _SAMPLES_OF_LAW if own else _SAMPLES
     small = usual._replace(unit=balls, usual=balls, impacts=usual.impacts[-2:][:1])
@@ -275,7 +278,7 @@ def _beside(changed: ResolvedContact, end: Ending, start: FirstImpact) -> Ending
     """The motion of a changed contact: for a law, whose balls take long to follow, that of balls
     which start beside the impacts of a motion without a change, if this does not repeat.
     """
-    if changed.law is None or not end.is_sampled:
+    if changed.is_linear or not end.is_sampled:
         return end_of(changed, next(iter(changed.models)), start)
     impacts = Starts.of_path(np.array(end.impacts), changed.table.amplitude)
     return end._replace(impacts=impacts)
@@ -305,9 +308,8 @@ def _sums(
     model = case.models[name]
     impacts = end.impacts
     if end.is_sampled:
-        sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
         starts = impacts.beside(samples[-1].balls, lam, BESIDE)
-        return sums_at(samples, starts, Sampled(model), lam, _before(case, sampling.before))
+        return sums_at(samples, starts, model, lam, _before(case, _sampling(case).before))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
     _, once = advance(*start(model, lam, impacts.last()), end.motion.impacts)

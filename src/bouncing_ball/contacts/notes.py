@@ -12,7 +12,6 @@ from bouncing_ball.contacts.named_laws import contact_in_words
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -57,8 +56,8 @@ _FORCES = {
 
 def force_formula(case: ResolvedContact) -> tuple[str, ...]:
     """The force of a law, in which its stiffness and its damping stand."""
-    force = None if case.law is None else _FORCES.get(case.law.name)
-    if case.law is None or force is None:
+    force = _FORCES.get(case.law.name)
+    if force is None:
         return ()
     return (f"the force of {case.law.name} with stiffness k and damping C is {force}, of depth x",)
 
@@ -70,7 +69,7 @@ def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
     if drop is None or height is None:
         return ()
     r = math.sqrt(height / drop)
-    if case.law is not None:
+    if not case.is_linear:
         return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)
     arrives = shown(math.sqrt(2 * case.table.gravity * drop), "m/s")
     free = float(case.contact.restitution)
@@ -97,7 +96,7 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     )
 
 
-def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit) -> list[str]:
+def _notes_on_law(case: ResolvedContact, family: ComparedOrbit) -> list[str]:
     """Sentences on how the numbers of a linear contact are those of a case with another law."""
     if case.is_spring_damper:
         return [
@@ -109,7 +108,7 @@ def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit)
         return [_cost_of_law(engine, case, family)]
     found = [
         "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-        f"it has the r of the {contact_in_words(law)}, and its duration at the impact"
+        f"it has the r of the {contact_in_words(case.law)}, and its duration at the impact"
     ]
     if not np.all(case.has_its_restitution([family.n, family.n + 1])):
         found.append(
@@ -123,7 +122,7 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
     """Sentences that a user should read in addition to the verdict."""
     contact = case.contact
     orbit = f"{family.n}-T orbit"
-    found = [] if case.law is None else _notes_on_law(case.law, case, family)
+    found = [] if case.is_linear else _notes_on_law(case, family)
     if case.table.amplitude > _MOST:
         found.append(
             f"the table accelerates with Λ = {case.table.amplitude:.4g} times gravity, which no "
@@ -140,7 +139,7 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
         found.append(f"the {orbit} is {what}, so that no ball stays on it")
     if contact.frequency_ratio < 1:
         found.append("the contact is slower than the table: the ball oscillates on a spring")
-    if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
+    if case.is_linear and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
         found.append(
             "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
             "has the r of a release without force"

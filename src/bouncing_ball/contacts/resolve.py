@@ -138,7 +138,6 @@ def _spring_damper(contact: Contact, table: TableMotion) -> ResolvedContact:
         contact.mass,
         table,
         spring,
-        None if rule.is_linear else spring,
         given_stiffness=contact.stiffness,
         given_damping=contact.damping,
     )
@@ -163,7 +162,7 @@ def _of_law(
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
     r = float(unit.restitution)
     if not table.is_at_rest:
-        at = float(rigid_speed(meant(families, r, table.amplitude), r))
+        at = float(rigid_speed(first_stable_family(families, r, table.amplitude), r))
     elif speed is None:
         what = "{radius}" if kind is None else "{law}"
         why = "the contact time" if kind is None else "r"
@@ -178,7 +177,7 @@ def _of_law(
         duration = contact.contact_time / table.time
         law = law_of_impact(kind, r, duration, at)
     linear = SpringDamper.of_duration(duration, unit.damping_ratio, rule)
-    return ResolvedContact(contact.mass, table, linear, law)
+    return ResolvedContact(contact.mass, table, law, linear)
 
 
 def needs_table(what: str, why: str) -> ParameterError:
@@ -200,10 +199,12 @@ def _with_law_of_engine(case: ResolvedContact, families: Sequence[int]) -> Resol
     if engine.needs_speed:
         case = with_law(case, law, families)
     # For another engine the spring and damper is written in place of the law.
-    return case if case.written is not None else replace(case, law=law)
+    return case if case.written is not None else replace(case, law=law, beside=case.contact)
 
 
-def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: float) -> int:
+def first_stable_family(
+    asked: Sequence[int], restitution: float | np.ndarray, amplitude: float
+) -> int:
     """The first of the families whose orbit is stable in the restitution model.
 
     If none of these orbits is stable, it is the first family.
@@ -212,7 +213,7 @@ def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: floa
     --------
     With r = 0.85 and Λ = 1.1 the 1-T orbit is beyond its period doubling:
 
-    >>> meant([1, 2, 3], 0.85, 1.1)
+    >>> first_stable_family([1, 2, 3], 0.85, 1.1)
     2
     """
     orbits = n_t.orbit(RestitutionModel(restitution), np.array(asked), amplitude)
@@ -236,7 +237,7 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
         at = case.impact_speed * case.table.time / case.table.length
         return _with_impact(case, law.signature(at))
     speed, impact = restitution_speed(asked, LawModel(law), _LAST_STEP)
-    n = meant(asked, impact.restitution, case.table.amplitude)
+    n = first_stable_family(asked, impact.restitution, case.table.amplitude)
     return _with_impact(case, law.signature(float(speed[asked.index(n)])))
 
 
@@ -244,4 +245,4 @@ def _with_impact(case: ResolvedContact, impact: Instant) -> ResolvedContact:
     """The case with the linear contact that has the r and the duration of an impact."""
     r = float(impact.restitution)
     linear = SpringDamper.of_impact(r, float(impact.duration), case.contact.release)
-    return replace(case, contact=linear, given_stiffness=None, given_damping=None)
+    return replace(case, law=linear, given_stiffness=None, given_damping=None)

@@ -50,12 +50,11 @@ class ResolvedContact:
         m in kg.
     table : TableMotion
         The table, which may be at rest.
-    contact : SpringDamper
-        ϖ, ζ and the release rule.
-    law : ContactLaw, optional
-        A nonlinear contact law. ``contact`` is then the linear contact with the same restitution
-        coefficient and duration as this law has at the impact speed of the orbit. A contact whose
-        damper acts on approach only is its own law.
+    law : ContactLaw
+        The law of the contact, such as a spring and a damper.
+    beside : SpringDamper, optional
+        For another law the linear contact with the same restitution coefficient and duration as
+        this law has at the impact speed of the orbit, or with the parameters of an engine.
     given_stiffness, given_damping : float, optional
         k and c if they were given, because mω² and 2ζmω differ from them by rounding.
     given : Contact
@@ -63,7 +62,7 @@ class ResolvedContact:
     written : str, optional
         Name of the engine for which it is written.
     impact_speed : float, optional
-        On a table at rest, the speed in m/s of the impact at which a law has the r of ``contact``.
+        On a table at rest, the speed in m/s of the impact at which a law has the r of ``beside``.
 
     Examples
     --------
@@ -72,12 +71,17 @@ class ResolvedContact:
     (100.0, 2.0)
     """
 
-    KEYS: ClassVar[tuple[str, ...]] = ("mass", "table", "contact", "law")
+    KEYS: ClassVar[dict[str, str]] = {
+        "mass": "mass",
+        "table": "table",
+        "contact": "contact",
+        "law": "law_unless_linear",
+    }
 
     mass: float
     table: TableMotion
-    contact: SpringDamper
-    law: ContactLaw | None = None
+    law: ContactLaw
+    beside: SpringDamper | None = None
     given_stiffness: float | None = None
     given_damping: float | None = None
     given: Contact = _NOTHING
@@ -94,7 +98,27 @@ class ResolvedContact:
         """Whether the contact is a spring and a damper, though this may act on approach only, so
         that k and c are those of the contact itself.
         """
-        return self.law is None or not self.law.release.is_linear
+        return self.beside is None
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the contact is a spring and a damper that acts from the impact to the release."""
+        return self.is_spring_damper and self.law.release.is_linear
+
+    @property
+    def contact(self) -> SpringDamper:
+        """ϖ, ζ and the release rule: the law itself if it is a spring and a damper, otherwise the
+        linear contact beside it.
+        """
+        if self.beside is not None:
+            return self.beside
+        assert isinstance(self.law, SpringDamper)
+        return self.law
+
+    @property
+    def law_unless_linear(self) -> ContactLaw | None:
+        """The law that is integrated in time; None for a linear contact."""
+        return None if self.is_linear else self.law
 
     @property
     def omega(self) -> float:
@@ -134,28 +158,25 @@ class ResolvedContact:
     @property
     def static_deflection(self) -> float:
         """mg/k in m; for a contact law the deflection at which its force at rest is the weight."""
-        if self.law is not None:
-            return rest(self.law) * self.table.length
-        return self.table.gravity / self.omega**2
+        if self.is_linear:
+            return self.table.gravity / self.omega**2
+        return rest(self.law) * self.table.length
 
     @property
     def slowed_speed(self) -> float | None:
         """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact; None
         without damping, for ζ ≥ 1, and for a contact law in which it does at no speed.
         """
-        zeta = float(self.contact.damping_ratio)
-        if self.law is None:
+        if self.is_linear:
+            zeta = float(self.contact.damping_ratio)
             if not 0 < zeta < 1:
                 return None
             # In units of 1/ω and g/ω² the contact has ϖ = 1.
-            law: ContactLaw = SpringDamper(1.0, zeta, self.contact.release)
-            fast = _FAST
+            found = slowed(SpringDamper(1.0, zeta, self.contact.release), _FAST)
             unit = self.table.gravity / self.omega
         else:
-            law = self.law
-            fast = _FAST * rest(law) * self.omega * self.table.time
-            unit = self.table.length / self.table.time
-        found = slowed(law, fast)
+            found = slowed(self.law, _FAST * rest(self.law) * self.omega * self.table.time)
+            unit = self.unit_speed
         return None if found is None else found * unit
 
     @property
@@ -187,22 +208,17 @@ class ResolvedContact:
         """The name of a contact law and its parameters in SI units; None for a spring and damper,
         whose k and c are known.
         """
-        if self.law is None or self.is_spring_damper:
+        if self.is_spring_damper:
             return None
         numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
         return {"name": self.law.name, **numbers}
-
-    @property
-    def exact_law(self) -> ContactLaw:
-        """The contact law of the exact model."""
-        return self.contact if self.law is None else self.law
 
     @cached_property
     def models(self) -> dict[str, Model]:
         """The models by name: first the exact model, then the two simple models, in which r is
         that of a free impact.
         """
-        if self.law is None:
+        if self.is_linear:
             return {model.name: model for model in exact_and_simple_models(self.contact)}
         return {
             model_name(self.law): LawModel(self.law),
@@ -231,6 +247,6 @@ class ResolvedContact:
         It is not searched for under a law that is hardly damped, because its oscillation on the
         table would have to be integrated over millions of periods.
         """
-        if self.law is not None and 1 - float(self.contact.restitution) < _HARDLY:
+        if not self.is_linear and 1 - float(self.contact.restitution) < _HARDLY:
             return math.nan
-        return known_threshold(self.exact_law)
+        return known_threshold(self.law)

@@ -1,7 +1,8 @@
 """One table of rows for each result: its text, the page and JSON are made from them.
 
 A result is a frozen dataclass. A field that a reader is shown is annotated with a :class:`Listed`;
-JSON has all fields under their names, or what the class lists in ``KEYS``, properties included.
+JSON has all fields under their names, or what the class lists in ``KEYS``, properties included;
+``KEYS`` may also map names in JSON to those of attributes.
 """
 
 from collections.abc import Mapping
@@ -53,8 +54,9 @@ def rows(result: Any) -> list[Entry]:
     """
     found: list[Entry] = []
     hints = get_type_hints(type(result), include_extras=True)
-    for name in getattr(result, "KEYS", None) or [field.name for field in fields(result)]:
-        value = getattr(result, name)
+    keys = getattr(result, "KEYS", None) or [field.name for field in fields(result)]
+    for name in keys:
+        value = getattr(result, keys[name] if isinstance(keys, Mapping) else name)
         listed = getattr(hints.get(name), "__metadata__", ())
         if isinstance(value, Mapping) and listed:
             of_values = zip(value.items(), listed, strict=True)

@@ -43,18 +43,22 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class SharesOfStarts:
-    """The ``shares`` of starts that end on each motion, the greatest first, by its name: kind, and
-    periods/impacts after which it repeats. ``first`` is the phase and the velocity of a start that
-    ends on the first one. ``balls`` is the number of starts.
+    """The ``shares`` of starts that end on each motion, the greatest first. ``first`` is the phase
+    and the velocity of a start that ends on the first one. ``balls`` is the number of starts.
     """
 
-    shares: dict[str, float]
+    shares: dict[MotionName, float]
     first: tuple[float, float]
     balls: int
 
     def of_orbit(self, n: int) -> float:
         """The share of starts that end on the n-T orbit."""
-        return self.shares.get(_name(MotionName(Kind.ORBIT, n, 1)), 0.0)
+        return self.shares.get(MotionName(Kind.ORBIT, n, 1), 0.0)
+
+    @property
+    def by_text(self) -> dict[str, float]:
+        """The shares by the kind of motion, and periods/impacts after which it repeats, as text."""
+        return {_text(motion): share for motion, share in self.shares.items()}
 
     @property
     def is_small(self) -> bool:
@@ -65,8 +69,8 @@ class SharesOfStarts:
     def sentence(self) -> str:
         """The shares in one sentence, those of few starts with their intervals."""
         by_words: dict[str, float] = {}
-        for name, share in self.shares.items():
-            words = _in_words(name)
+        for motion, share in self.shares.items():
+            words = _in_words(motion)
             by_words[words] = by_words.get(words, 0.0) + share
         order = sorted(by_words.items(), key=lambda item: -item[1])
         (most, share), *less = order[:_NAMED]
@@ -99,19 +103,18 @@ def interval(count: int, number: int) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _name(motion: MotionName) -> str:
+def _text(motion: MotionName) -> str:
     kind = str(motion.kind)
     return f"{kind} {motion.periods}/{motion.impacts}" if motion.impacts else kind
 
 
-def _in_words(name: str) -> str:
-    kind, _, repeats = name.partition(" ") if name.startswith(Kind.ORBIT) else (name, "", "")
+def _in_words(motion: MotionName) -> str:
+    kind, periods, impacts = motion
     if kind != Kind.ORBIT:
-        return next(words for known, words in _WORDS.items() if name.startswith(known))
-    periods, impacts = repeats.split("/")
-    if impacts == "1":
+        return _WORDS[kind]
+    if impacts == 1:
         return f"on the {periods}-T orbit"
-    of = f"{periods} period" if periods == "1" else f"{periods} periods"
+    of = f"{periods} period" if periods == 1 else f"{periods} periods"
     return f"on an orbit of {of} and {impacts} impacts"
 
 
@@ -124,19 +127,19 @@ def ends_of_starts(case: ResolvedContact) -> SharesOfStarts:
     >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> found = ends_of_starts(
     ...     ResolvedContact(1.0, TableMotion(1.0, 0.2, 1.0), SpringDamper(10.0, 0.2)))
-    >>> found.shares, found.sentence
+    >>> found.by_text, found.sentence
     ({'permanent contact': 1.0}, 'Of 144 balls with other starts, 100 % end at rest on the table.')
     """
     lam = case.table.amplitude
     exact, *_ = case.models.values()
-    starts = _STARTS if case.law is None else _STARTS_OF_LAW
+    starts = _STARTS if case.is_linear else _STARTS_OF_LAW
     found = basins(exact, lam, starts, impacts=_IMPACTS)
     order = np.argsort(-found.share, kind="stable")
     row, column = np.argwhere(found.which == order[0])[0]
     phase = float(found.phase[column])
     velocity = lam * np.cos(phase) - float(found.speed[row])
     return SharesOfStarts(
-        shares={_name(found.motions[k]): float(found.share[k]) for k in order},
+        shares={found.motions[k]: float(found.share[k]) for k in order},
         first=(phase, float(velocity)),
         balls=int(found.which.size),
     )

@@ -8,6 +8,7 @@ from bouncing_ball.contacts.needed import NO_ORBIT, Needed
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import in_place_of, percent, shown, signed
 from bouncing_ball.contacts.verdict_on_motion import Sentences
+from bouncing_ball.models.spring_damper import SpringDamper
 
 _UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
 _NO_CROSSING = {
@@ -44,10 +45,10 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
 
 
 def said_of_orbit(
-    judged: OrbitJudgement, frequency_ratio: float, law: str | None = None
+    judged: OrbitJudgement, linear: SpringDamper, law: str | None = None
 ) -> Sentences:
-    """The judgement on a contact by an orbit, in words; the contact has this ϖ, and may be of
-    another ``law`` than the linear one.
+    """The judgement on a contact by an orbit, in words; the contact is ``linear``, or of another
+    ``law`` with the same r and duration.
     """
     needed = judged.needed
     tolerance = percent(needed.tolerance)
@@ -55,7 +56,7 @@ def said_of_orbit(
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
         return Sentences(sentence, "the contact or the model has no value to compare")
-    reason = _reason(judged, frequency_ratio, tolerance, law)
+    reason = _reason(judged, linear, tolerance, law)
     if judged.is_good_enough:
         found = _prediction(judged.family, needed)
         return Sentences(
@@ -83,18 +84,19 @@ def _instead(judged: OrbitJudgement) -> str:
     return "; nor is the corrected one: simulate the contact"
 
 
-def _reason(judged: OrbitJudgement, frequency_ratio: float, tolerance: str, law: str | None) -> str:
+def _reason(judged: OrbitJudgement, linear: SpringDamper, tolerance: str, law: str | None) -> str:
     """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs.
 
     That ϖ is one of linear contacts, so that it is no reason for a verdict on another law.
     """
     needed = judged.needed
+    frequency_ratio = float(linear.frequency_ratio)
     if law is not None:
         text = f"both values are computed, that of the contact with the {law} law itself"
         if needed.frequency_ratio is None:
             return text
         return (
-            f"{text}; of linear contacts with the displacement release, those from "
+            f"{text}; of linear contacts with the {linear.release} release, those from "
             f"ϖ = {needed.frequency_ratio:.4g} on are within "
             f"{tolerance}, and that with its r and duration has ϖ = {frequency_ratio:.4g}"
         )
@@ -113,7 +115,7 @@ def _reason(judged: OrbitJudgement, frequency_ratio: float, tolerance: str, law:
 def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Sentences:
     """The most compliant contact within the tolerance, in words."""
     tolerance = percent(needed.tolerance)
-    if case.law is not None:
+    if not case.is_linear:
         sentence = (
             f"A simulation needs a {case.law.name} contact whose free impact, at the speed of the "
             f"{n}-T orbit, takes {shown(case.contact_time, 's')} or less: the restitution model "

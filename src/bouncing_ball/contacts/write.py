@@ -25,7 +25,6 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
-from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -163,12 +162,12 @@ def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
     ModelError
         See :func:`settings_for`.
     """
-    written = settings_for(found.case, setup, found.judged.impact_speed)
-    if written.at_step is not None and not written.at_step.is_within:
+    settings = settings_for(found.case, setup, found.judged.impact_speed)
+    if settings.at_step is not None and not settings.at_step.is_within:
         # At this step the contact has another r, and so another orbit.
-        return written
+        return settings
     return replace(
-        written,
+        settings,
         max_height=found.judged.max_height,
         contact_duration=found.judged.contact_duration,
         penetration=found.judged.greatest_compression,
@@ -189,49 +188,43 @@ class Softer:
     verdict: str = ""
 
 
-def softer(
-    case: ResolvedContact, written: EngineSettings, question: Question, speed: float | None
+def softer_contact(
+    case: ResolvedContact, settings: EngineSettings, question: Question, speed: float | None
 ) -> Softer | None:
     """The softer contact of settings for a given time step; None if the step resolves the contact.
 
     ``speed`` is the impact speed of a drop in m/s.
     """
-    if written.softer is None or written.softer.at_step is None:
+    if settings.softer is None or settings.softer.at_step is None:
         return None
-    at = written.softer.at_step
-    if case.law is not None and not case.is_spring_damper:
-        own = _longer(case, case.law, at.steps * at.time_step)
+    at = settings.softer.at_step
+    if not case.is_spring_damper:
+        own = _longer(case, at.steps * at.time_step)
     else:
-        ball = at.softer(case.mass)
+        ball = at.stiffest_spring(case.mass)
         if ball is None:
             return None
         ratio = ball.angular_frequency * case.table.time
         spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
-        law = None if spring.release.is_linear else spring
-        own = replace(
-            case,
-            contact=spring,
-            law=law,
-            given_stiffness=ball.stiffness,
-            given_damping=ball.damping,
-        )
+        own = replace(case, law=spring, given_stiffness=ball.stiffness, given_damping=ball.damping)
     return Softer(
         contact=description_of(own),
         dropped=None if speed is None else drop_at_rest(own, speed),
-        dropped_at_step=dropped_at_step(own, written.softer, speed),
+        dropped_at_step=dropped_at_step(own, settings.softer, speed),
         verdict="" if case.table.is_at_rest else _verdict(own, question),
     )
 
 
-def _longer(case: ResolvedContact, law: ContactLaw, contact_time: float) -> ResolvedContact:
+def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
     """The contact whose impacts take so many seconds, of a law of which steps are known: that of a
     linear spring, so that r is the same at each speed whatever its stiffness is.
     """
+    law = case.law
     factor = contact_time / (
         float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
     )
     slower = replace(case.contact, frequency_ratio=case.contact.frequency_ratio / factor)
-    return replace(case, contact=slower, law=law.stiffened(1 / factor**2))
+    return replace(case, law=law.stiffened(1 / factor**2), beside=slower)
 
 
 def _verdict(case: ResolvedContact, question: Question) -> str:
@@ -248,15 +241,15 @@ def _verdict(case: ResolvedContact, question: Question) -> str:
 
 
 def dropped_at_step(
-    case: ResolvedContact, written: EngineSettings | None, speed: float | None
+    case: ResolvedContact, settings: EngineSettings | None, speed: float | None
 ) -> ReboundHeights | None:
     """The rises of balls that are dropped, in an engine with a time step that is given."""
-    if speed is None or written is None or written.at_step is None:
+    if speed is None or settings is None or settings.at_step is None:
         return None
-    if written.at_step.steps > MOST_STEPS:
+    if settings.at_step.steps > MOST_STEPS:
         return None
     release = case.contact.release
-    step = _engine_of(case, written.name).step(case.physical, release, written.time_step)
+    step = _engine_of(case, settings.name).step(case.physical, release, settings.time_step)
     return drop_in_steps(step, speed, case.table.gravity, case.physical.contact_time(release))
 
 
@@ -334,7 +327,7 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
         return None
     if at.speed is not None:
         return _looser_of_law(at, at.speed)
-    exact = at.softer(case.mass)
+    exact = at.stiffest_spring(case.mass)
     if exact is None:
         return None
     scheme = engine_named(at.engine).scheme

@@ -156,7 +156,8 @@ def advance(
 ) -> tuple[Impact, np.ndarray]:
     """Follow balls through a number of further impacts.
 
-    The velocity of the impact after sticking is increased by the fraction ``apart``.
+    In a model whose balls forget their past by sticking the velocity of the impact after it is
+    increased by the fraction ``apart``.
 
     Returns
     -------
@@ -176,15 +177,17 @@ def advance(
     ([1.333333333333], [0.0])
     """
     sums = np.zeros((3, impact.phase.size))
-    for leg in islice(dynamics.legs(impact, differentiate=True), impacts):
+    # No derivative is needed, but these models tell only then which balls stick.
+    for leg in islice(dynamics.legs(impact, differentiate=dynamics.forgets), impacts):
         departure = leg.departure
         if np.any(departure.status):
             return leg.impact, np.full_like(sums, np.nan)
-        after, passed = leg.fly()
+        impact, passed = leg.fly()
         height, work = over_leg(leg)
         sums += np.array([passed, height, work])
-        impact = after._replace(velocity=after.velocity * (1 + apart * departure.sticks))
-        leg.after = impact
+        if dynamics.forgets:
+            faster = impact.velocity * (1 + apart * departure.sticks)
+            leg.after = impact = impact._replace(velocity=faster)
     return impact, sums
 
 

@@ -37,7 +37,7 @@ Eqs.    what                      where
 36      the smallest Λ_SD         ``models.permanent_contact.permanent_contact_minimum``
 37, 38  errors                    ``accuracy.errors.relative_errors``
 ..      of the greatest height    ``periodic.orbits.orbit.Orbit.max_height``
-..      thresholds ϖ_h, ϖ_PC      ``accuracy.thresholds.restitution_thresholds``
+..      thresholds ϖ_h, ϖ_PC      ``accuracy.corrected_errors.search``
 ======= ========================= ==================================================================
 
 The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only

@@ -55,7 +55,7 @@ def found():
         for k, quantity in enumerate(MEASURED)
         for corrected in MODELS
     }
-    return ratios, dict(zip(MEASURED, result.zero[:, 0], strict=True))
+    return ratios, dict(zip(MEASURED, result.zero[0, :, 0], strict=True))
 
 
 def signed(quantity, corrected, ratio):

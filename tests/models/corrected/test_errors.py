@@ -53,9 +53,9 @@ def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
         last = np.flatnonzero(outside[index])[-1]
         low, high = fine[last : last + 2]
         assert low * (1 - 1e-12) <= found.threshold[index] <= high * (1 + 1e-12)
-    for index in np.ndindex(found.zero.shape):
+    for index in np.ndindex(found.zero.shape[1:]):
         signed = scanned[0][index]
-        zero = found.zero[index]
+        zero = found.zero[0][index]
         turns = np.flatnonzero(signed[1:] * signed[:-1] < 0)
         low, high = (fine[turns[-1] + k] if turns.size else np.nan for k in (0, 1))
         assert (low <= zero <= high) if turns.size else np.isnan(zero)

@@ -17,7 +17,6 @@ from pydantic import Field
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
-from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
@@ -198,14 +197,6 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     # ζ by Eq. 16; the restitution model has the r that a contact with this ζ really has.
     zeta = float(damping_ratio(parameters.restitution))
     ratios = parameters.frequency_ratio.grid()
-
-    def along(ratio: np.ndarray) -> np.ndarray:
-        return errors(SpringDamper(ratio, zeta, release), n, lam)
-
-    def of_corrected(ratio: np.ndarray, quantity: np.ndarray) -> np.ndarray:
-        return along(ratio)[1, quantity, np.arange(ratio.size)]
-
-    curves = along(ratios)
     found = search(
         zeta,
         release,
@@ -219,14 +210,17 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     *law, still = error_law.law_thresholds(n, zeta, lam, release, tolerance).values()
     return described(
         {
-            "relative_error": (("model", "quantity", "frequency_ratio"), np.abs(curves)),
+            "relative_error": (
+                ("model", "quantity", "frequency_ratio"),
+                np.abs(found.error[:, :-1, 0]),
+            ),
             "coefficient": ("quantity", list(k.values())),
             "second_order": ("quantity", _second_order(zeta, release, n, lam)),
             "law_threshold": ("quantity", law),
             "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
             "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
-            "error_zero": ("quantity", found.zero[:-1, 0]),
-            "corrected_error_zero": ("quantity", last_zero(of_corrected, ratios, curves[1])),
+            "error_zero": ("quantity", found.zero[0, :-1, 0]),
+            "corrected_error_zero": ("quantity", found.zero[1, :-1, 0]),
             "permanent_coefficient": error_law.permanent_contact_coefficient(zeta, release),
             "permanent_law": still,
             "permanent_threshold": found.threshold[0, -1, 0],

@@ -184,7 +184,7 @@ def comparisons(parameters: ToleratedError) -> Iterator[tuple[str, Comparison, f
             sign = int(np.sign(np.nan_to_num(there[model, 0])))
         tolerated = sign * exactly(parameters.tolerance)
         yield f"ϖ for {parameters.tolerance:.0%} of {words}{ending}", comparison, start, tolerated
-        zero = float(found.zero[k, 0])
+        zero = float(found.zero[model, k, 0])
         if not comparison.corrected and np.isfinite(zero):
             yield f"ϖ where the error of {words} is 0", comparison, zero, Fraction(0)
 

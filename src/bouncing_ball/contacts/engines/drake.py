@@ -12,13 +12,12 @@ from bouncing_ball.contacts.engines.engine import (
     ERROR,
     Engine,
     EngineParameters,
-    EngineSettings,
     Physical,
     at_speeds,
-    written,
+    twelve_digits,
 )
 from bouncing_ball.contacts.engines.given_step import AtStep
-from bouncing_ball.contacts.engines.hunt_crossley_steps import at_step_of_law, needs_speed
+from bouncing_ball.contacts.engines.hunt_crossley_steps import at_step_of_law, missing_speed
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.engines.steps import HuntCrossleyStep
 from bouncing_ball.errors import require
@@ -75,6 +74,8 @@ class HuntCrossleyDrake(Drake):
     law_in_si : mapping, optional
         The stiffness k in N/m and the damping d that :meth:`parameters` gives, and the ``speed`` in
         m/s of the impact whose r is asked for at a time step.
+    asked : float, optional
+        This r, if it is another one than that of the law.
 
     Examples
     --------
@@ -89,8 +90,9 @@ class HuntCrossleyDrake(Drake):
     needs_speed = True
     text = "drake-hunt-crossley"
 
-    def __init__(self, law_in_si: Mapping[str, Any] | None = None):
+    def __init__(self, law_in_si: Mapping[str, Any] | None = None, asked: float | None = None):
         self._law_in_si = law_in_si or {}
+        self._asked = asked
 
     def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         """The contact of small time steps: a ``time_step`` changes its r, and no other number."""
@@ -125,7 +127,7 @@ class HuntCrossleyDrake(Drake):
         self.release(release)
         m, _, _ = self._two(parameters, mass)
         if speed is None:
-            raise needs_speed()
+            raise missing_speed()
         return at_step_of_law(self.law(parameters, m), m, speed, time_step, error)
 
     def step(self, contact: Physical, release: Release, time_step: float) -> HuntCrossleyStep:
@@ -133,41 +135,42 @@ class HuntCrossleyDrake(Drake):
         return HuntCrossleyStep(float(law.stiffness), float(law.damping), time_step)
 
     def at_step(
-        self, contact: Physical, release: Release, time_step: float, error: float
+        self,
+        contact: Physical,
+        release: Release,
+        time_step: float,
+        error: float,
+        asked: Physical | None = None,
     ) -> AtStep:
         law = self._of_mass(contact.mass)
-        return at_step_of_law(law, contact.mass, self._law_in_si["speed"], time_step, error)
+        speed = self._law_in_si["speed"]
+        return at_step_of_law(law, contact.mass, speed, time_step, error, self._asked)
 
     def _of_mass(self, mass: float) -> LinearHuntCrossley:
         """The law that is written, with the stiffness per unit of mass."""
         return LinearHuntCrossley(self._law_in_si["stiffness"] / mass, self._law_in_si["damping"])
 
-    def _with(self, **changed: float) -> "HuntCrossleyDrake":
-        return HuntCrossleyDrake({**self._law_in_si, **changed})
-
-    def _retuned(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
+    def _retuned(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
         if at.retuned is None:
             return None
-        other = self._with(damping=written(at.retuned))
-        law = other._of_mass(contact.mass)
-        speed = self._law_in_si["speed"]
-        again = at_step_of_law(
-            law, contact.mass, speed, at.time_step, at.allowed, asked=at.restitution
-        )
-        return other._at(contact, release, again)
+        law = {**self._law_in_si, "damping": twelve_digits(at.retuned)}
+        return HuntCrossleyDrake(law, at.restitution), contact
 
-    def _softer(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
+    def _softer(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
         if at.stiffest is None or at.stiffest_contact_time is None:
             return None
-        other = self._with(stiffness=written(at.stiffest))
+        law = {**self._law_in_si, "stiffness": twelve_digits(at.stiffest)}
         # The linear contact with the same r lasts longer by the same factor.
         longer = at.stiffest_contact_time / (at.steps * at.time_step)
         m, k, c = contact
-        soft = Physical(m, written(k / longer**2), written(c / longer))
-        return other._at(soft, release, other.at_step(soft, release, at.time_step, at.allowed))
+        soft = Physical(m, twelve_digits(k / longer**2), twelve_digits(c / longer))
+        return HuntCrossleyDrake(law), soft
 
     def parameters(self, contact: Physical) -> EngineParameters:
-        values = (written(2 * self._law_in_si["stiffness"]), written(self._law_in_si["damping"]))
+        values = (
+            twelve_digits(2 * self._law_in_si["stiffness"]),
+            twelve_digits(self._law_in_si["damping"]),
+        )
         return dict(zip(self.names, values, strict=True))
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:

@@ -29,7 +29,7 @@ _ALMOST = 1 + 1e-9
 _PLACE = re.compile(r"@([\w.]+)@")
 
 
-def written(value: float) -> float:
+def twelve_digits(value: float) -> float:
     """A number with twelve digits, so that the rounding errors of products are not written."""
     return float(f"{value:.12g}")
 
@@ -80,7 +80,7 @@ class Engine(ABC):
         if self.scheme is not Scheme.COMPENSATED:
             return contact
         m, k, c = contact
-        return Physical(m, *(written(x * m) for x in compensated(k / m, c / m, time_step)))
+        return Physical(m, *(twelve_digits(x * m) for x in compensated(k / m, c / m, time_step)))
 
     def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         """The contact that the engine computes with these parameters, and a ``time_step`` in s.
@@ -250,10 +250,10 @@ class Engine(ABC):
         (-1000000.0, True)
         """
         rule = self.release(release)
-        contact = Physical(*map(written, contact))
+        contact = Physical(*map(twelve_digits, contact))
         if time_step is None:
             steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
-            step = written(contact.contact_time(rule) / steps)
+            step = twelve_digits(contact.contact_time(rule) / steps)
             return self._settings(contact, rule, error, step, steps)
         at = self.at_step(contact, rule, time_step, error)
         found = self._at(contact, rule, at)
@@ -262,27 +262,36 @@ class Engine(ABC):
         return replace(
             found,
             instant=self.instant(at.restitution),
-            retuned=self._retuned(contact, rule, at),
-            softer=self._softer(contact, rule, at),
+            retuned=self._at_same_step(self._retuned(contact, at), rule, at, contact),
+            softer=self._at_same_step(self._softer(contact, at), rule, at),
         )
 
-    def _retuned(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
-        """The settings with the damping that restores the mean r; None if there is none."""
+    def _retuned(self, contact: Physical, at: AtStep) -> tuple["Engine", Physical] | None:
+        """The engine and the contact with the damping that restores the mean r; None if there is
+        none.
+        """
         if at.retuned is None:
             return None
-        other = Physical(contact.mass, contact.stiffness, written(at.retuned))
-        again = at_step(
-            self.name, self.scheme, other, release, at.time_step, at.allowed, asked=contact
-        )
-        return self._at(other, release, again)
+        return self, Physical(contact.mass, contact.stiffness, twelve_digits(at.retuned))
 
-    def _softer(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
-        """The settings of the stiffest contact that the step resolves; None if none was found."""
-        exact = at.softer(contact.mass)
-        if exact is None:
+    def _softer(self, contact: Physical, at: AtStep) -> tuple["Engine", Physical] | None:
+        """The engine and the stiffest contact that the step resolves; None if none was found."""
+        exact = at.stiffest_spring(contact.mass)
+        return None if exact is None else (self, Physical(*map(twelve_digits, exact)))
+
+    @staticmethod
+    def _at_same_step(
+        other: tuple["Engine", Physical] | None,
+        release: Release,
+        at: AtStep,
+        asked: Physical | None = None,
+    ) -> EngineSettings | None:
+        """The settings of another contact at the step of ``at``; None without such a contact."""
+        if other is None:
             return None
-        soft = Physical(*map(written, exact))
-        return self._at(soft, release, self.at_step(soft, release, at.time_step, at.allowed))
+        engine, contact = other
+        again = engine.at_step(contact, release, at.time_step, at.allowed, asked)
+        return engine._at(contact, release, again)
 
     def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
         """The settings of a contact at a time step that is given."""
@@ -319,10 +328,17 @@ class Engine(ABC):
         return LinearStep.of(self.scheme, k / m, c / m, release, time_step)
 
     def at_step(
-        self, contact: Physical, release: Release, time_step: float, error: float
+        self,
+        contact: Physical,
+        release: Release,
+        time_step: float,
+        error: float,
+        asked: Physical | None = None,
     ) -> AtStep:
-        """What a contact that is written for the engine does with a time step in s."""
-        return at_step(self.name, self.scheme, contact, release, time_step, error)
+        """What a contact that is written for the engine does with a time step in s, in place of the
+        one that was asked for.
+        """
+        return at_step(self.name, self.scheme, contact, release, time_step, error, asked)
 
     def at_step_of(
         self,

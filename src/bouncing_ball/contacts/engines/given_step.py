@@ -18,7 +18,7 @@ the bounds of r are the limits at the jumps.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import NamedTuple
 
@@ -96,6 +96,36 @@ class AtStep:
     is_of_parameters: bool = False
     speed: float | None = None
 
+    @classmethod
+    def of(
+        cls,
+        engine: str,
+        time_step: float,
+        steps: float,
+        restitution: float,
+        found: "Spread",
+        allowed: float,
+        *,
+        is_stable: bool = True,
+    ) -> "AtStep":
+        """What impacts in these steps do to a contact with an r, without a contact that is better
+        suited to them.
+        """
+        error = found.error(restitution)
+        return cls(
+            engine=engine,
+            time_step=time_step,
+            steps=steps,
+            is_stable=is_stable,
+            restitution=restitution,
+            least=found.least,
+            most=found.most,
+            mean=found.mean,
+            error=error,
+            allowed=allowed,
+            is_within=is_stable and error <= allowed,
+        )
+
     @property
     def unit_of_damping(self) -> str:
         """The unit of the dampings ``retuned`` and ``stiffest_damping``."""
@@ -108,7 +138,7 @@ class AtStep:
         most = f"{self.most:.4g}"
         return least if least == most else f"{least} to {most}"
 
-    def softer(self, mass: float) -> Physical | None:
+    def stiffest_spring(self, mass: float) -> Physical | None:
         """The stiffest spring and damper with the same r for a mass in kg; None if none was sought,
         or if it has the damping of Hunt and Crossley.
         """
@@ -319,33 +349,28 @@ def at_step(
             )
     step = contact.angular_frequency * time_step
     zeta = contact.damping_ratio
-    found = spread_in_steps(scheme, zeta, release, step)
-    off = found.error(r)
-    stable = has_stable_steps(scheme, zeta, step)
-    within = stable and off <= error
+    found = AtStep.of(
+        engine,
+        time_step,
+        wanted.contact_time(release) / time_step,
+        r,
+        spread_in_steps(scheme, zeta, release, step),
+        error,
+        is_stable=has_stable_steps(scheme, zeta, step),
+    )
     # A compensated scheme is told the contact that was asked for, with another damping.
     tuned = wanted if scheme is Scheme.COMPENSATED else contact
     omega = tuned.angular_frequency
     ratio = None
-    if not within:
+    if not found.is_within:
         ratio = retuned(scheme, tuned.damping_ratio, release, omega * time_step, r)
     same = wanted.damping_ratio
     most, fewest = stiffest_contact(scheme, contact.mass, same, release, time_step, error)
-    return AtStep(
-        engine=engine,
-        time_step=time_step,
-        steps=wanted.contact_time(release) / time_step,
-        is_stable=stable,
-        restitution=r,
-        least=found.least,
-        most=found.most,
-        error=off,
-        allowed=error,
-        is_within=within,
+    return replace(
+        found,
         stiffest=most.stiffness,
         stiffest_damping=most.damping,
         stiffest_contact_time=fewest * time_step,
         stiffest_steps=fewest,
-        mean=found.mean,
         retuned=None if ratio is None else 2 * ratio * contact.mass * omega,
     )

@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, written
+from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, twelve_digits
 from bouncing_ball.contacts.engines.proportional import Proportional
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ParameterError
@@ -47,7 +47,7 @@ class _HertzWall(Proportional):
         return self._stiffness / math.sqrt(self._radius) * 3 / 4
 
     def numbers(self, contact: Physical) -> dict[str, float]:
-        return {**super().numbers(contact), "radius": written(self._radius)}
+        return {**super().numbers(contact), "radius": twelve_digits(self._radius)}
 
 
 class HertzLammps(_HertzWall):
@@ -67,7 +67,7 @@ class HertzLammps(_HertzWall):
 
     def parameters(self, contact: Physical) -> EngineParameters:
         values = 4 / 3 * self._modulus, contact.restitution(Release.DISPLACEMENT)
-        return dict(zip(self.names, map(written, values), strict=True))
+        return dict(zip(self.names, map(twelve_digits, values), strict=True))
 
 
 class HertzLiggghts(_HertzWall):
@@ -87,4 +87,4 @@ class HertzLiggghts(_HertzWall):
     def parameters(self, contact: Physical) -> EngineParameters:
         young = 2 * (1 - _POISSON**2) * self._modulus
         values = young, _POISSON, contact.restitution(Release.DISPLACEMENT)
-        return dict(zip(self.names, map(written, values), strict=True))
+        return dict(zip(self.names, map(twelve_digits, values), strict=True))

@@ -7,6 +7,7 @@ this r. The steps are implicit ones, whose error falls about as 1/N.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -133,37 +134,26 @@ def at_step_of_law(
             return Spread(exact, exact, exact)
         return spread_of_damping(ratio, h, patience(steps))
 
-    of_law = found(damping)
-    off = of_law.error(wanted)
+    of_law = AtStep.of("drake", time_step, steps, wanted, found(damping), error)
     tuned = None
     fewest = math.inf
-    if off > error and asked is None:
+    if not of_law.is_within and asked is None:
         fewest = fewest_steps_of_law(law, speed, error)
         if found(0.0).mean >= exact:
             tuned = float(brentq(lambda ratio: found(ratio).mean - exact, 0.0, damping, xtol=_FINE))
     is_known = math.isfinite(fewest)
-    return AtStep(
-        engine="drake",
-        time_step=time_step,
-        steps=steps,
-        is_stable=True,
-        restitution=wanted,
-        least=of_law.least,
-        most=of_law.most,
-        error=off,
-        allowed=error,
-        is_within=off <= error,
+    return replace(
+        of_law,
         stiffest=mass * float(law.stiffness) * (steps / fewest) ** 2 if is_known else None,
         stiffest_damping=float(law.damping) if is_known else None,
         stiffest_contact_time=fewest * time_step if is_known else None,
         stiffest_steps=fewest if is_known else None,
-        mean=of_law.mean,
         retuned=None if tuned is None else tuned / speed,
         speed=speed,
     )
 
 
-def needs_speed() -> ParameterError:
+def missing_speed() -> ParameterError:
     """The error that a time step is given, and no impact speed on which r depends."""
     return ParameterError(
         "{time_step} with hunt_crossley_dissipation needs {speed} of an impact, or a table, "

@@ -21,11 +21,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Dynamics, HasDynamics
 from bouncing_ball.models.flight import Rise
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
@@ -197,39 +195,6 @@ class ContactDynamics(ResumingDynamics):
         by_phase, by_speed = (departure.by.jacobian[:, :, k] for k in range(2))
         determinant = (1 + by_phase[:, 0]) * by_speed[:, 2] - by_speed[:, 0] * by_phase[:, 2]
         return np.abs(determinant * departure.by.rate / impact.velocity)
-
-
-class SampledContacts(ContactDynamics):
-    """Contacts whose legs tell which balls stick, and are not differentiated.
-
-    The means of a sample of balls need no derivatives, which take two thirds of the time.
-    """
-
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The ends of the contacts; with ``differentiate`` also which balls stick."""
-        departure = self._departed(impact, differentiate=False)
-        return self._with_sticking(impact, departure) if differentiate else departure
-
-
-@dataclass(frozen=True)
-class Sampled:
-    """A model whose balls are sampled, and whose motions are not differentiated.
-
-    Examples
-    --------
-    >>> from bouncing_ball.models.laws.hertzian import Tsuji
-    >>> type(Sampled(Tsuji(500.0, 0.1)).dynamics(1.0)).__name__
-    'SampledContacts'
-    """
-
-    model: HasDynamics
-
-    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
-        """The contacts and flights of the model at Λ."""
-        found = self.model.dynamics(amplitude)
-        if type(found) is not ContactDynamics:
-            return found
-        return SampledContacts(found.law, found.amplitude, found.setting)
 
 
 def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:

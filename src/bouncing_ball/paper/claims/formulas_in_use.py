@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.errors import Quantity, relative_errors
-from bouncing_ball.accuracy.thresholds import restitution_thresholds
 from bouncing_ball.models import permanent_contact as threshold
 from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
@@ -314,26 +314,25 @@ def _errors(rng, samples) -> Rows:
         for orbit in (contact, impact)
     ]
     # Without damping Λ_SD = 1 - 1/ϖ², which differs from Λ_CR = 1 by 1 % at ϖ = 10.
-    found = restitution_thresholds(
+    found = search(
         0.0,
         Release.DISPLACEMENT,
-        1.0,
         1,
         1.0,
         ratios=_RATIOS,
-        tolerances=[_TOLERANCE],
+        tolerance=_TOLERANCE,
         quantities=[Quantity.PERMANENT_CONTACT],
     )
     return {
         "Eqs. 37-38": _used(
             "periodic.orbits.orbit.Orbit.max_height",
             "accuracy.errors.relative_errors",
-            "accuracy.thresholds.restitution_thresholds",
+            "accuracy.corrected_errors.search",
             defects=(
                 *thrown,
                 errors[0] - printed.relative_error(contact.max_height, impact.max_height),
                 errors[1] - printed.relative_error(*limits),
-                found.ratio * np.sqrt(_TOLERANCE) - 1,
+                found.threshold[0] * np.sqrt(_TOLERANCE) - 1,
             ),
         ),
     }

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.errors import Quantity, modulus
-from bouncing_ball.accuracy.thresholds import restitution_thresholds
 from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.rigid import RestitutionModel
 
 
 def errors_along_ratio(
@@ -43,23 +44,24 @@ def errors_along_ratio(
         ``relative_error`` (quantity, ϖ), moduli, infinite where a model lacks the quantity;
         ``error_threshold`` in ϖ and ``threshold_status``, both (quantity, tolerance).
     """
-    found = restitution_thresholds(
+    r = restitution if compared_restitution is None else compared_restitution
+    found = search(
         damping_ratio(restitution),
         release,
-        restitution if compared_restitution is None else compared_restitution,
         n,
         amplitude,
         ratios=ratios,
-        tolerances=tolerances,
+        tolerance=tolerances,
         quantities=quantities,
+        simple=lambda contact: [RestitutionModel(r)],
     )
-    # There is one orbit.
+    # There is one simple model, and one orbit.
     dims = ("quantity", "tolerance")
     return xr.Dataset(
         {
-            "relative_error": (("quantity", "frequency_ratio"), modulus(found.error[:, 0])),
-            "error_threshold": (dims, found.ratio[:, 0]),
-            "threshold_status": (dims, found.status[:, 0]),
+            "relative_error": (("quantity", "frequency_ratio"), modulus(found.error[0, :, 0])),
+            "error_threshold": (dims, found.threshold[0, :, 0]),
+            "threshold_status": (dims, found.status[0, :, 0]),
         },
         coords={
             "quantity": [str(quantity) for quantity in quantities],

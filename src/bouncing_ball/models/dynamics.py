@@ -5,7 +5,7 @@ follows from them.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
@@ -240,7 +240,7 @@ class Dynamics(Batch, ABC):
 
     def landed(
         self,
-        released: Iterable[Deviation],
+        released: tuple[Deviation, Deviation],
         departure: Departure,
         after: Impact,
         passed: np.ndarray,
@@ -252,9 +252,8 @@ class Dynamics(Batch, ABC):
         """
         end = self.table_at(after)
         time = passed - departure.duration
-        carried = departure.flight.carried
-        columns = (carried(each, end, time, after.velocity, lag) for each in released)
-        return Jacobian.of_columns(*columns)
+        both = Deviation.pair(*released)
+        return Jacobian.of_columns(departure.flight.carried(both, end, time, after.velocity, lag))
 
     def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
         """The dynamics and states of balls, flattened, and the shape to which they broadcast."""
@@ -295,7 +294,7 @@ class Dynamics(Batch, ABC):
             impact, _ = leg.fly()
             dynamics = leg.dynamics
 
-    def kept(self, which: np.ndarray, *rows: Any) -> tuple:
+    def kept(self, which: np.ndarray | slice, *rows: Any) -> tuple:
         """The dynamics and the rows of the balls with these indices."""
         return self.take(which), *(pick(x, which) for x in rows)
 

@@ -129,9 +129,9 @@ def solve(
     for _ in range(settings.max_iterations):
         if not going.any():
             break
-        iterations = iterations + going
+        iterations += going
         values, matrix = equations(y)
-        residual = np.where(going, np.abs(values).max(axis=-1), residual)
+        np.copyto(residual, np.abs(values).max(axis=-1), where=going)
         going &= np.isfinite(residual) & np.isfinite(matrix).all(axis=(-2, -1))
         if not going.all():
             # A matrix of NaN would cause a warning beside one that is singular.
@@ -139,9 +139,11 @@ def solve(
         change = _solve_linear(matrix, values)
         length = _norm(change)
         going &= np.isfinite(length)
-        known = np.where(going, length, 0.0)
-        share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
-        y = np.where(going[..., np.newaxis], y - share[..., np.newaxis] * change, y)
+        if np.isfinite(settings.longest):
+            known = np.where(going, length, 0.0)
+            share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
+            change = share[..., np.newaxis] * change
+        y = np.where(going[..., np.newaxis], y - change, y)
         before = size
         size = np.where(going, length / (1 + _norm(y)), size)
         last = (size <= settings.tolerance) | _next_is_rounding(before, size)
@@ -197,7 +199,8 @@ def failure(problem: Problem, found: Correction) -> str:
 
 
 def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
-    """The condition that y lies in the plane ``normal · (y - through) = 0``.
+    """The condition that y lies in the plane ``normal · (y - through) = 0``; y has the shape of the
+    points ``through`` which the planes lead.
 
     Examples
     --------
@@ -206,8 +209,10 @@ def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
     (6.0, [0.0, 2.0])
     """
 
+    gradient = np.broadcast_to(normal, through.shape)
+
     def condition(y):
-        return np.sum(normal * (y - through), axis=-1), np.broadcast_to(normal, y.shape)
+        return (normal * (y - through)).sum(axis=-1), gradient
 
     return condition
 
@@ -242,10 +247,12 @@ def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     """
     along = np.broadcast_to(along, (*jacobian.shape[:-2], jacobian.shape[-1]))
     defined = np.isfinite(jacobian).all(axis=(-2, -1))[..., np.newaxis]
-    one = np.eye(along.shape[-1])
     border = np.concatenate([jacobian, along[..., np.newaxis, :]], axis=-2)
-    border = np.where(defined[..., np.newaxis], border, one)
-    vector = _solve_linear(border, np.broadcast_to(one[-1], along.shape))
+    if not defined.all():
+        border = np.where(defined[..., np.newaxis], border, np.eye(along.shape[-1]))
+    across = np.zeros(along.shape)
+    across[..., -1] = 1
+    vector = _solve_linear(border, across)
     length = _norm(vector)[..., np.newaxis]
     vector = np.where(defined, vector / length, np.nan)
     turned = ~(length * _norm(along)[..., np.newaxis] < _OBLIQUE)

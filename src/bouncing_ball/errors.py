@@ -101,7 +101,7 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
     # Imported here, because the command line imports this module, and --help needs no numpy.
     import numpy as np
 
-    if not np.all(valid):
+    if not np.asarray(valid).all():
         valid, value = np.broadcast_arrays(valid, value)
         first = value[~valid][0]
         raise ModelError(f"{name} = {first} is not {allowed}")

@@ -6,7 +6,7 @@ such as the simulation, is in :mod:`bouncing_ball.models.dynamics`.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -153,7 +153,7 @@ class ContactsAndFlights(Batch, ABC):
 
     def over_flight(
         self,
-        released: Iterable[Deviation],
+        released: tuple[Deviation, Deviation],
         departure: Departure,
         after: Impact,
         passed: np.ndarray,
@@ -165,9 +165,8 @@ class ContactsAndFlights(Batch, ABC):
         """
         end = self.table_at(after)
         time = passed - departure.duration
-        carried = departure.flight.carried
-        columns = (carried(each, end, time, after.velocity, lag) for each in released)
-        return Jacobian.of_columns(*columns)
+        both = Deviation.pair(*released)
+        return Jacobian.of_columns(departure.flight.carried(both, end, time, after.velocity, lag))
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The state of an impact on the Poincaré section: a phase and a relative velocity."""

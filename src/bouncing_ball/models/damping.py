@@ -201,6 +201,9 @@ def check_damping(value: ArrayLike, name: str) -> np.ndarray:
     return x
 
 
+_IN_RANGE = f"in {RESTITUTION.interval}"
+
+
 def check_restitution(value: ArrayLike) -> np.ndarray:
     """The restitution coefficient r as an array.
 
@@ -217,9 +220,8 @@ def check_restitution(value: ArrayLike) -> np.ndarray:
     bouncing_ball.errors.ModelError: restitution coefficient r = 'x' is not in (0, 1]
     """
     name = "restitution coefficient r"
-    allowed = f"in {RESTITUTION.interval}"
-    r = as_numbers(value, name, allowed)
-    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, allowed)
+    r = as_numbers(value, name, _IN_RANGE)
+    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, _IN_RANGE)
     return r
 
 

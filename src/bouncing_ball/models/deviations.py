@@ -25,6 +25,11 @@ class Deviation(NamedTuple):
     displacement: np.ndarray
     velocity: np.ndarray
 
+    @classmethod
+    def pair(cls, first: Self, second: Self) -> Self:
+        """Two deviations of each ball along a first axis, which are mapped together."""
+        return cls(*(np.array(both) for both in zip(first, second, strict=True)))
+
     def to_event(self, velocity, acceleration, lag) -> Self:
         """The deviation at the event δ + κ δ′ = 0, at which the motion has δ′ and δ″."""
         missing = self.displacement + lag * self.velocity
@@ -69,9 +74,9 @@ class Jacobian(NamedTuple):
     d: np.ndarray
 
     @classmethod
-    def of_columns(cls, first: Deviation, second: Deviation) -> Self:
-        """The matrix whose columns are the images of (1, 0) and of (0, 1)."""
-        return cls(first.phase, second.phase, first.velocity, second.velocity)
+    def of_columns(cls, images: Deviation) -> Self:
+        """The matrix whose columns are the images of (1, 0) and of (0, 1), a pair of deviations."""
+        return cls(*images.phase, *images.velocity)
 
     @classmethod
     def identity(cls, balls: int) -> Self:

@@ -87,7 +87,7 @@ class Dynamics(ContactsAndFlights):
             impact, _ = leg.fly()
             dynamics = leg.dynamics
 
-    def kept(self, which: np.ndarray, *rows: Any) -> tuple:
+    def kept(self, which: np.ndarray | slice, *rows: Any) -> tuple:
         """The dynamics and the rows of the balls with these indices."""
         return self.take(which), *(pick(x, which) for x in rows)
 

@@ -10,6 +10,7 @@ This form loses no digits in a short flight. The ball cannot land while it is
 above the table's highest point, z > Λ, and the search skips this part.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,9 +24,12 @@ _ZERO = np.array(0.0)
 _HALF = np.array(0.5)
 _ONE = np.array(1.0)
 _TWO = np.array(2.0)
-# A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
-# has an error of the order of the square.
-_BISECTIONS = 26
+# A minimum is known when the next step to it is this short; its height then has an error of the
+# order of the square. Bisections of an interval of at most π take at most so many steps.
+_SHORT = 2.0**-26
+_STEPS = 28
+# Intervals of all flights that are searched for minima at the same time.
+_TOGETHER = 8192
 # The height where there is no minimum.
 _FAR = 1.0
 
@@ -192,27 +196,38 @@ class Flight(Motion):
         low = opening - start
         width = np.pi - 2 * opening
         low = low - 2 * np.pi * np.floor((low + width) / (2 * np.pi))
+        # This interval and the next ones along a first axis.
+        count = math.ceil(min((longest - low).max() / (2 * np.pi), _TOGETHER / may.size))
+        low = low + 2 * np.pi * np.arange(max(count, 1))[:, np.newaxis]
         while np.any(low < longest):
-            left = np.clip(low, 0.0, longest)
-            right = np.clip(low + width, 0.0, longest)
-            falls = part.gap(left)[1] < 0
-            rises = part.gap(right)[1] > 0
-            turns = np.flatnonzero(falls & rises)
-            if turns.size:
-                bottom = part.take(turns)._bottom(left[turns], right[turns])
-                lowest[may[turns]] = np.minimum(lowest[may[turns]], bottom)
-            low = low + 2 * np.pi
+            left, right = ends = np.clip([low, low + width], 0.0, longest)
+            before, after = part.gap(ends)[1]
+            turning = (before < 0) & (after > 0)
+            if turning.any():
+                _, turns = turning.nonzero()
+                bottom = part.take(turns)._bottom(left[turning], right[turning])
+                np.minimum.at(lowest, may[turns], bottom)
+            low = low + 2 * np.pi * len(low)
         return lowest
 
     def _bottom(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """The minimum of δ between times at which δ falls and rises."""
-        for _ in range(_BISECTIONS):
-            middle = (left + right) / 2
-            falls = self.gap(middle)[1] < 0
-            left = np.where(falls, middle, left)
-            right = np.where(falls, right, middle)
-        gap, rate, second, _ = self.gap(left)
-        return gap - rate * rate / (2 * second)
+        """The minimum of δ between times at which δ falls and rises, with δ″ > 0 between them.
+
+        Newton's method for δ′ = 0 takes the steps, and a bisection where it would leave the rest
+        of the interval.
+        """
+        time = (left + right) / 2
+        for _ in range(_STEPS):
+            gap, rate, second, _ = self.gap(time)
+            left = np.where(rate < 0, time, left)
+            right = np.where(rate < 0, right, time)
+            step = -rate / second
+            if np.abs(step).max() <= _SHORT:
+                break
+            ahead = time + step
+            inside = (ahead >= left) & (ahead <= right)
+            time = np.where(inside, ahead, (left + right) / 2)
+        return gap + rate * step / 2
 
 
 class Rise(Motion):

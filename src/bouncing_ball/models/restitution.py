@@ -173,7 +173,8 @@ class RestitutionDynamics(Dynamics):
         balls = np.flatnonzero(duration > 0)
         if balls.size < duration.size:
             settled = np.ones(duration.shape, dtype=bool)
-            settled[balls] = self.take(balls).settles(pick(impact, balls), duration[balls])
+            if balls.size:
+                settled[balls] = self.take(balls).settles(pick(impact, balls), duration[balls])
             return settled
         settled = np.zeros(duration.shape, dtype=bool)
         lift = self.setting.lift_off(impact.phase, self.amplitude)

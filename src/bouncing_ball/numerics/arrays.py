@@ -139,9 +139,10 @@ broadcast to one shape
         return part
 
     def __getitem__(self, index: Any) -> Self:
-        if not self.shape and index != ():
+        shape = self.shape
+        if not shape and index != ():
             raise IndexError(f"a single {type(self).__name__} cannot be indexed")
-        return self._entries(self.shape, index)
+        return self._entries(shape, index)
 
     def flat(self, shape: tuple[int, ...]) -> Self:
         """The elements broadcast to a shape and flattened to a row.
@@ -157,7 +158,8 @@ broadcast to one shape
 
         A single element is unchanged, because it applies to the whole row.
         """
-        return self[which] if self.shape else self
+        shape = self.shape
+        return self._entries(shape, which) if shape else self
 
 
 BLOCK = 8192

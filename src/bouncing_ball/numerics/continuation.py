@@ -114,8 +114,9 @@ def _attempts(
     ahead = tangent(problem.jacobian(reached), along)
     # The point before each one is the row before, except for a first row and for shorter steps.
     first = (steps == distance[:, 0])[:, np.newaxis]
-    chord = reached - np.where(first, point, np.roll(reached, 1, axis=0))
-    behind = np.where(first, along, np.roll(ahead, 1, axis=0))
+    before = np.arange(len(reached)) - 1
+    chord = reached - np.where(first, point, reached[before])
+    behind = np.where(first, along, ahead[before])
     angle = np.maximum(_angle(ahead, behind), _angle(chord, behind))
     stretched = np.linalg.norm(chord, axis=-1) > _STRETCHED * steps
     angle[stretched] = np.inf

@@ -20,6 +20,8 @@ _SMALL = 1e-8
 # A tangent is found by a linear system unless it is nearly at a right angle to the direction along
 # which it is oriented; the reciprocal of this is the cosine.
 _OBLIQUE = 1e3
+# A step of so many roundings of y is one of the equations' own rounding errors.
+_IDLE = 4 * _ROUNDING
 # The accuracy in the parameter with which folds are located.
 _LOCATED = 1e-12
 
@@ -129,9 +131,9 @@ def solve(
     for _ in range(settings.max_iterations):
         if not going.any():
             break
-        iterations = iterations + going
+        iterations += going
         values, matrix = equations(y)
-        residual = np.where(going, np.abs(values).max(axis=-1), residual)
+        np.copyto(residual, np.abs(values).max(axis=-1), where=going)
         going &= np.isfinite(residual) & np.isfinite(matrix).all(axis=(-2, -1))
         if not going.all():
             # A matrix of NaN would cause a warning beside one that is singular.
@@ -139,9 +141,11 @@ def solve(
         change = _solve_linear(matrix, values)
         length = _norm(change)
         going &= np.isfinite(length)
-        known = np.where(going, length, 0.0)
-        share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
-        y = np.where(going[..., np.newaxis], y - share[..., np.newaxis] * change, y)
+        if np.isfinite(settings.longest):
+            known = np.where(going, length, 0.0)
+            share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
+            change = share[..., np.newaxis] * change
+        y = np.where(going[..., np.newaxis], y - change, y)
         before = size
         size = np.where(going, length / (1 + _norm(y)), size)
         last = (size <= settings.tolerance) | _next_is_rounding(before, size)
@@ -197,7 +201,8 @@ def failure(problem: Problem, found: Correction) -> str:
 
 
 def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
-    """The condition that y lies in the plane ``normal · (y - through) = 0``.
+    """The condition that y lies in the plane ``normal · (y - through) = 0``; y has the shape of the
+    points ``through`` which the planes lead.
 
     Examples
     --------
@@ -206,8 +211,10 @@ def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
     (6.0, [0.0, 2.0])
     """
 
+    gradient = np.broadcast_to(normal, through.shape)
+
     def condition(y):
-        return np.sum(normal * (y - through), axis=-1), np.broadcast_to(normal, y.shape)
+        return (normal * (y - through)).sum(axis=-1), gradient
 
     return condition
 
@@ -242,10 +249,12 @@ def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     """
     along = np.broadcast_to(along, (*jacobian.shape[:-2], jacobian.shape[-1]))
     defined = np.isfinite(jacobian).all(axis=(-2, -1))[..., np.newaxis]
-    one = np.eye(along.shape[-1])
     border = np.concatenate([jacobian, along[..., np.newaxis, :]], axis=-2)
-    border = np.where(defined[..., np.newaxis], border, one)
-    vector = _solve_linear(border, np.broadcast_to(one[-1], along.shape))
+    if not defined.all():
+        border = np.where(defined[..., np.newaxis], border, np.eye(along.shape[-1]))
+    across = np.zeros(along.shape)
+    across[..., -1] = 1
+    vector = _solve_linear(border, across)
     length = _norm(vector)[..., np.newaxis]
     vector = np.where(defined, vector / length, np.nan)
     turned = ~(length * _norm(along)[..., np.newaxis] < _OBLIQUE)
@@ -261,11 +270,15 @@ def solution_at(
 ) -> tuple[np.ndarray, str]:
     """The solution with the parameter of a guess, shape (N + 1,), and why there is none, or "".
 
-    At a fold the equations with a fixed parameter are singular. There the solution in the plane
-    across the curve is the same, because the parameter only moves by rounding errors.
+    A guess that Newton's method moves by rounding errors only is a solution and is returned itself,
+    so that what the problem knows of this point is known of the solution. At a fold the equations
+    with a fixed parameter are singular. There the solution in the plane across the curve is the
+    same, because the parameter only moves by rounding errors.
     """
     axis = np.eye(guess.size)[-1]
     found = newton(problem, guess, plane(axis, guess), settings)
+    if found.converged and found.iterations == 1 and found.step <= _IDLE:
+        return guess, ""
     why = failure(problem, found)
     if why:
         across = null_vector(problem.jacobian(guess))

@@ -218,12 +218,12 @@ class CorrectedDynamics(Dynamics):
         there, _ = then.instant.tangent(then.speed, 0)
         between = passed + then.instant.delay - hit.instant.delay
         end = table(then.phase, self.amplitude)
-        released = (
+        released = Deviation.pair(
             Deviation(free, none, -here.load * x * free),
             Deviation(none, here.delay * free, -here.restitution * free),
         )
-        columns = (each.flown((x, y), end, between, -then.speed, -there.delay) for each in released)
-        return Jacobian.of_columns(*columns)
+        images = released.flown((x, y), end, between, -then.speed, -there.delay)
+        return Jacobian.of_columns(images)
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The phase of the instant and the relative velocity before it."""

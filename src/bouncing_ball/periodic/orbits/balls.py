@@ -131,8 +131,10 @@ def dynamics_inside(
         inside &= (varied[name] >= low) & (varied[name] <= high)
     if not inside.any():
         return None, inside
-    safe = {name: np.where(inside, varied[name], varied[name][inside.argmax()]) for name in along}
+    if not inside.all():
+        first = inside.argmax()
+        varied = {name: np.where(inside, varied[name], varied[name][first]) for name in along}
     try:
-        return balls.at(safe).dynamics(), inside
+        return balls.at(varied).dynamics(), inside
     except ModelError:
         return None, inside

@@ -94,7 +94,7 @@ def reason_at(kind: Special) -> str:
 
 def flight_time(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The shortest flight of each orbit, of the leading shape of y."""
-    return (equations.intervals(y) - equations.beside(y).duration[0]).min(axis=-1)
+    return (equations.intervals(y) - equations.legs(y).duration).min(axis=-1)
 
 
 def release_lost(equations: OrbitEquations) -> Event:
@@ -157,7 +157,7 @@ def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     All flights vanish together there, and the bounces before the rest are so much slower than the
     first one that rounding errors decide on them, before the steps become short.
     """
-    legs = equations.beside(start).first()
+    legs = equations.compared(start).here
     if equations.impacts == 1 or legs.departure is None or not legs.dynamics.forgets:
         return []
     if not np.any(legs.departure.sticks):

@@ -15,7 +15,7 @@ from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.dynamics import Dynamics, Leg
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.orbits.products import matrices_of
+from bouncing_ball.periodic.orbits.products import matrices_of, product_of
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Legs:
             self.duration[0],
             self.velocity[0],
             self.acceleration[0],
-            *self.dynamics.kept(np.arange(math.prod(shape)), *flat),
+            *self.dynamics.kept(slice(math.prod(shape)), *flat),
         )
 
     @cached_property
@@ -104,6 +104,11 @@ class Legs:
     def matrices(self) -> np.ndarray:
         """DP of each leg as a matrix, shape (..., k, 2, 2)."""
         return matrices_of(self.tangent)
+
+    @cached_property
+    def monodromy(self) -> np.ndarray:
+        """The derivative of the map Pᵏ of each orbit, shape (..., 2, 2)."""
+        return product_of(self.matrices)
 
     @cached_property
     def contraction(self) -> np.ndarray:

@@ -431,22 +431,21 @@ class Orbit(Impacts):
 
 def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Orbit:
     """The orbits at points y of a problem, with phases in [-π, π]."""
-    dynamics, _ = problem.dynamics(y)
+    legs = problem.legs(y)
     theta, v = problem.states(y)
     lam = problem.amplitude(y)
     along = problem.along or (LAMBDA,)
     turns = np.broadcast_to(problem.turns, theta.shape)
-    if dynamics is None:
+    if legs.dynamics is None:
         none = np.full(theta.shape, np.nan)
         return Orbit(problem.balls.model, lam, turns, none, none, none, along=along)
-    impact = problem.impact(dynamics, y)
     with np.errstate(invalid="ignore"):
-        started = theta - time_to_section(dynamics, impact).reshape(theta.shape)
+        started = theta - time_to_section(legs.dynamics, legs.impact).reshape(theta.shape)
         phase = reduce_angle(started)
         whole = np.round((started - phase) / (2 * np.pi))
         waveform = problem.balls.model.place.waveform
         of_table = lam[..., np.newaxis] * waveform.velocity(phase)
-        velocity = impact.velocity.reshape(v.shape) + of_table
+        velocity = legs.impact.velocity.reshape(v.shape) + of_table
     shift = np.nan_to_num(np.roll(whole, -1, axis=-1) - whole).astype(int)
     balls = problem.at(y)
     return Orbit(
@@ -455,7 +454,7 @@ def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Or
         turns=turns + shift,
         phases=phase,
         velocities=velocity,
-        durations=problem.beside(y).duration[0],
+        durations=legs.duration,
         resumes=problem.resuming,
         kind=kind,
         along=along,

@@ -52,11 +52,10 @@ from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, landed, without_force
-from bouncing_ball.periodic.orbits.products import product_of, shifted_determinant
+from bouncing_ball.periodic.orbits.products import shifted_determinant
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
@@ -143,10 +142,20 @@ class OrbitEquations:
         """Which contacts resume, shape (k,)."""
         return np.broadcast_to(self.resumes, (self.impacts,))
 
-    @property
+    @cached_property
+    def _some_resume(self) -> bool:
+        """Whether any contact resumes."""
+        return bool(self.resuming.any())
+
+    @cached_property
     def periods(self) -> Any:
         """m, of the leading shape of y."""
         return np.sum(self.turns, axis=-1)
+
+    @cached_property
+    def _turned(self) -> np.ndarray:
+        """The whole turns between the impacts, as angles."""
+        return 2 * np.pi * np.asarray(self.turns)
 
     @property
     def size(self) -> int:
@@ -182,25 +191,26 @@ class OrbitEquations:
         return np.concatenate([np.broadcast_to(x, (*leading, x.shape[-1])) for x in parts], axis=-1)
 
     @cached_property
-    def _cached(self) -> Any:
-        # A step along a branch evaluates the residual, the Jacobian and the events at the same
-        # points.
+    def _alone(self) -> Callable[[tuple[int, ...], bytes], Legs]:
+        # Several events need the legs at the same points.
         def legs(shape: tuple[int, ...], entries: bytes) -> Legs:
-            if known := self._kept.get((shape, entries)):
-                return known.legs.first()
-            with np.errstate(all="ignore"):
-                return self._legs(np.frombuffer(entries).reshape(shape))
+            return self._legs(np.frombuffer(entries).reshape(shape))
 
         return lru_cache(maxsize=_KEPT)(legs)
 
     @cached_property
     def _kept(self) -> dict[tuple[tuple[int, ...], bytes], "LegsBeside"]:
-        # The last points at which legs were compared, in order.
+        # The last points at which legs were compared, in order. A step along a branch evaluates the
+        # residual, the Jacobian and the events at the same points.
         return {}
 
     def legs(self, y: np.ndarray) -> Legs:
         """The legs of the orbits at points y of shape (..., N + parameters)."""
-        return self._cached(y.shape, y.tobytes())
+        place = y.shape, y.tobytes()
+        # If no parameter varies there are no points beside y.
+        if self.along and place not in self._kept:
+            return self._alone(*place)
+        return self.compared(y).here
 
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
@@ -246,34 +256,24 @@ class OrbitEquations:
             turns=turns[which] if turns.ndim > 1 else turns,
         )
 
-    @cached_property
-    def _next(self) -> np.ndarray:
-        """The index of the impact after each impact of an orbit."""
-        return np.roll(np.arange(self.impacts), -1)
-
-    @cached_property
-    def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """The indices of θ and of v of the impacts among the unknowns."""
-        theta = 2 * np.arange(self.impacts)
-        return theta, theta + 1
-
     def _lag(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Any:
         """κ of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
-        if not resumes.any():
+        if not self._some_resume:
             return _NONE
         return lag_of(dynamics, np.broadcast_to(resumes, shape).ravel())
 
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
         phase, velocity = self.states(y)
-        start = dynamics.at_section(reduce_angle(phase.ravel()), velocity.ravel().copy())
+        start = dynamics.at_section(phase.ravel(), velocity.ravel())
         return without_force(start, self._lag(dynamics, self.resuming, phase.shape))
 
     def intervals(self, y: np.ndarray) -> np.ndarray:
         """θ_{i+1} - θ_i, shape (..., k)."""
         phase, _ = self.states(y)
-        return (phase[..., self._next] - phase) + 2 * np.pi * np.asarray(self.turns)
+        return (_of_next(phase) - phase) + self._turned
 
+    @np.errstate(all="ignore")
     def _legs(self, y: np.ndarray) -> Legs:
         dynamics, inside = self.dynamics(y)
         shape = (*y.shape[:-1], self.impacts)
@@ -284,12 +284,14 @@ class OrbitEquations:
         departure = dynamics.depart_after(impact, self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        lag = self._lag(dynamics, self.resuming[self._next], shape)
+        lag = self._lag(dynamics, _of_next(self.resuming), shape)
         landing = landed(dynamics, impact, departure, duration, interval, lag)
         _, velocity = self.states(y)
-        faster = landing.velocity - velocity[..., self._next].ravel()
+        residual = np.empty((*shape, 2))
+        residual[..., 0] = -landing.height.reshape(shape)
+        residual[..., 1] = landing.velocity.reshape(shape) - _of_next(velocity)
         return Legs(
-            residual=np.stack([-landing.height, faster], axis=-1).reshape(*shape, 2),
+            residual=residual,
             duration=duration.reshape(shape),
             velocity=landing.rate.reshape(shape),
             acceleration=landing.acceleration.reshape(shape),
@@ -305,32 +307,24 @@ class OrbitEquations:
         For one impact they are Eqs. 24-26, of which the height at the landing is one and the
         velocity there another, and Eq. 23 at a given duration.
         """
-        legs = self.beside(y)
+        legs = self.compared(y).legs
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:
             return here
         return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
 
-    def beside(self, y: np.ndarray, everywhere: bool = False) -> Legs:
-        """The legs at the points :meth:`around` y, along a first axis; the first of them is y."""
-        return self.compared(y, everywhere).legs
-
-    def around(self, y: np.ndarray, everywhere: bool = False) -> np.ndarray:
-        """The points at which legs are compared: y and the points beside it, along a first axis.
+    def compared(self, y: np.ndarray, everywhere: bool = False) -> "LegsBeside":
+        """The legs at y and at points beside it.
 
         They are y itself, y moved by ± the step of the differences in each parameter, and, if
         ``everywhere`` is set, y with all θ or all v moved: a leg depends on the state at its start
-        alone.
+        alone. The latter may be there also if it is not set.
         """
-        return self.compared(y, everywhere).points
-
-    def compared(self, y: np.ndarray, everywhere: bool = False) -> "LegsBeside":
-        """The points :meth:`around` y and the legs there; they may be those ``everywhere``."""
         place = y.shape, y.tobytes()
         known = self._kept.get(place)
         if known is None or (everywhere and not known.everywhere):
             points, lengths = self._points_around(y, everywhere)
-            known = LegsBeside(points, lengths, self.legs(points), everywhere)
+            known = LegsBeside(points, lengths, self._legs(points), self.selects, everywhere)
             self._kept[place] = known
             if len(self._kept) > _KEPT:
                 del self._kept[next(iter(self._kept))]
@@ -339,7 +333,7 @@ class OrbitEquations:
     def _points_around(
         self, y: np.ndarray, everywhere: bool
     ) -> tuple[np.ndarray, list[np.ndarray]]:
-        """The points of :meth:`around`, and the distances of each pair of them.
+        """The points of :meth:`compared`, and the distances of each pair of them.
 
         Points beside y do not leave the ranges of the parameters. Where y itself is outside of
         them, they are equal to y.
@@ -377,63 +371,26 @@ class OrbitEquations:
         unit = np.asarray(self.unit)
         step = np.full(y.shape, _DIFFERENCE * unit)
         _, speed = self.states(np.abs(y / unit))
-        share = np.minimum(np.maximum(speed.min(axis=-1) / _SLOW, _LEAST), 1.0)
-        step[..., self.size :] *= np.where(np.isnan(share), 1.0, share)[..., np.newaxis]
+        # The whole step where the speed is not known.
+        share = np.maximum(np.fmin(speed.min(axis=-1) / _SLOW, 1.0), _LEAST)
+        step[..., self.size :] *= share[..., np.newaxis]
         return step
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""
-        compared = self.compared(y)
-        legs = compared.legs
-        k = self.impacts
-        matrix = np.zeros((*y.shape[:-1], self.size, y.shape[-1]))
-        speed = legs.velocity[0]
-        pull = legs.acceleration[0]
-        a, b, c, d = (entry[0] for entry in legs.tangent_near)
-        # The rows of an orbit's two equations of each leg are also the columns of its θ and v.
-        height, rate = self._places
-        after = height[self._next]
-        matrix[..., height, height] = speed * a
-        matrix[..., height, rate] = speed * b
-        matrix[..., rate, height] = c - pull * a
-        matrix[..., rate, rate] = d - pull * b
-        matrix[..., height, after] -= speed
-        matrix[..., rate, after] += pull
-        matrix[..., rate, after + 1] -= 1
-        for j in range(len(self.along)):
-            slope = compared.slope(j, legs.residual)
-            right, left = compared.sides(j, legs.residual)
-            if (np.abs(right + left - 2 * legs.residual[0]) > _JUMP).any():
-                bend = compared.bend(j, self.size + j, legs.residual)
-                jumps = bend > np.maximum(np.abs(right - left) / 2, _JUMP)
-                slope = np.where(jumps, np.nan, slope)
-            matrix[..., : 2 * k, self.size + j] = slope.reshape(*y.shape[:-1], -1)
-        if self.selects:
-            self._fill_durations(matrix, compared)
-        return matrix
+        return self.compared(y).jacobian
 
     def equations_at(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The residual and its Jacobian, which is square if no parameter varies."""
         return self.residual(y), self.jacobian(y)
 
-    def _fill_durations(self, matrix: np.ndarray, compared: "LegsBeside") -> None:
-        """The rows of the Jacobian that belong to the durations."""
-        legs = compared.legs
-        contact = np.arange(self.impacts)
-        row = 2 * self.impacts + contact
-        matrix[..., row, row] = 1
-        for j in range(len(self.along)):
-            matrix[..., row, self.size + j] = -compared.slope(j, legs.duration)
-        for j, slopes in enumerate(legs.duration_slopes):
-            matrix[..., row, 2 * contact + j] = -slopes[0]
-
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return self.beside(y).matrices[0]
+        return self.compared(y).here.matrices
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
-        product = self.compared(y).monodromy
+        product = self.compared(y).here.monodromy
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -442,7 +399,7 @@ class OrbitEquations:
         The determinant is the product of the contractions.
         """
         m = self.monodromy(y)
-        return m.a + m.d, self.beside(y).contraction[0].prod(axis=-1)
+        return m.a + m.d, self.compared(y).here.contraction.prod(axis=-1)
 
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
@@ -463,8 +420,8 @@ class OrbitEquations:
     def gradient(self, y: np.ndarray, change: np.ndarray) -> np.ndarray:
         """The gradient of a sum of a function over the legs, shape (..., N + parameters).
 
-        ``change`` are the differences of the function between the two points :meth:`around` y on
-        both sides, everywhere, shape (pairs of points, ..., k).
+        ``change`` are the differences of the function between the two points beside y of each pair,
+        everywhere (:meth:`compared`), shape (pairs of points, ..., k).
         """
         lengths = self.compared(y, everywhere=True).lengths
         parameters = len(self.along)
@@ -477,6 +434,11 @@ class OrbitEquations:
         return gradient
 
 
+def _of_next(values: np.ndarray) -> np.ndarray:
+    """Values of the impacts of orbits, shape (..., k), for the impact after each of them."""
+    return np.concatenate([values[..., 1:], values[..., :1]], axis=-1)
+
+
 @dataclass(frozen=True)
 class LegsBeside:
     """Points beside some points y, and the legs there.
@@ -484,18 +446,74 @@ class LegsBeside:
     The first axis of ``points`` and of the legs has y, and then a pair of points for each direction
     in which y is moved: along the parameters, and, if ``everywhere`` is set, along all θ and all v.
     ``lengths`` are the distances of the two points of each pair, shape (..., 1), or (..., k) for θ
-    and v.
+    and v. ``selects`` is that of the equations.
     """
 
     points: np.ndarray
     lengths: list[np.ndarray]
     legs: Legs
+    selects: bool
     everywhere: bool
 
     @cached_property
-    def monodromy(self) -> np.ndarray:
-        """The derivative of the map Pᵏ at the points y, shape (..., 2, 2)."""
-        return product_of(self.legs.matrices[0])
+    def here(self) -> Legs:
+        """The legs at the points y."""
+        return self.legs.first()
+
+    @cached_property
+    def jacobian(self) -> np.ndarray:
+        """The Jacobian of the equations at y, shape (..., N, N + parameters)."""
+        legs = self.legs
+        *leading, k = legs.duration.shape[1:]
+        size = k * (3 if self.selects else 2)
+        matrix = np.zeros((*leading, size, self.points.shape[-1]))
+        self._fill_states(matrix)
+        for j, column in enumerate(range(size, matrix.shape[-1])):
+            slope = self.slope(j, legs.residual)
+            right, left = self.sides(j, legs.residual)
+            if (np.abs(right + left - 2 * legs.residual[0]) > _JUMP).any():
+                bend = self.bend(j, column, legs.residual)
+                jumps = bend > np.maximum(np.abs(right - left) / 2, _JUMP)
+                slope = np.where(jumps, np.nan, slope)
+            matrix[..., : 2 * k, column] = slope.reshape(*leading, 2 * k)
+            if self.selects:
+                matrix[..., 2 * k :, column] = -self.slope(j, legs.duration)
+        if self.selects:
+            self._fill_durations(matrix)
+        return matrix
+
+    def _fill_states(self, matrix: np.ndarray) -> None:
+        """The derivatives by the states: L (DP ds_i - ds_{i+1}), where L has the rows (δ′, 0) and
+        (-δ″, 1).
+        """
+        speed = self.legs.velocity[0]
+        pull = self.legs.acceleration[0]
+        a, b, c, d = (entry[0] for entry in self.legs.tangent_near)
+        start = np.empty((*speed.shape, 2, 2))
+        start[..., 0, 0] = speed * a
+        start[..., 0, 1] = speed * b
+        start[..., 1, 0] = c - pull * a
+        start[..., 1, 1] = d - pull * b
+        end = np.zeros(start.shape)
+        end[..., 0, 0] = speed
+        end[..., 1, 0] = -pull
+        end[..., 1, 1] = 1
+        k = speed.shape[-1]
+        for leg in range(k):
+            after = (leg + 1) % k
+            rows = matrix[..., 2 * leg : 2 * leg + 2, :]
+            rows[..., 2 * leg : 2 * leg + 2] = start[..., leg, :, :]
+            rows[..., 2 * after : 2 * after + 2] -= end[..., leg, :, :]
+
+    def _fill_durations(self, matrix: np.ndarray) -> None:
+        """The derivatives of the equations of the durations by the states and the durations."""
+        by_phase, by_velocity = (slopes[0] for slopes in self.legs.duration_slopes)
+        k = by_phase.shape[-1]
+        for contact in range(k):
+            row = matrix[..., 2 * k + contact, :]
+            row[..., 2 * contact] = -by_phase[..., contact]
+            row[..., 2 * contact + 1] = -by_velocity[..., contact]
+            row[..., 2 * k + contact] = 1
 
     def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The values at the two points of a pair, of values of the legs."""

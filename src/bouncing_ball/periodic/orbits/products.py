@@ -12,7 +12,7 @@ from bouncing_ball.models.deviations import Jacobian
 
 def matrices_of(tangent: Jacobian) -> np.ndarray:
     """The matrices of the legs, shape (..., k, 2, 2)."""
-    rows = np.stack(np.broadcast_arrays(*tangent), axis=-1)
+    rows = np.stack(tangent, axis=-1)
     return rows.reshape(*rows.shape[:-1], 2, 2)
 
 

@@ -43,9 +43,8 @@ def release_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
 
 def release_condition(equations: OrbitEquations, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The margin and its gradient, of the leading shape and of the shape of y."""
-    points = equations.around(y, everywhere=True)
-    shape = (*points.shape[:-1], equations.impacts)
-    legs = equations.legs(points)
+    legs = equations.compared(y, everywhere=True).legs
+    shape = legs.duration.shape
     # The first of the points is y.
     tops = _tops(legs, shape[1:])
     # Only the contact with the largest maximum counts.

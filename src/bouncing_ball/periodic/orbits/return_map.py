@@ -52,7 +52,7 @@ def returned(
     one = equations.at(y)
     dynamics = one.dynamics() if balls is None else balls.dynamics()
     phases, velocities = equations.states(y)
-    lasts = equations.beside(y).duration[0]
+    lasts = equations.legs(y).duration
     interval = equations.intervals(y)
     turned = aside[:, 0]
     velocity = velocities[0] + aside[:, 1]

@@ -12,7 +12,6 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.legs import lag_of, time_to_section, without_force
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.special import sticking
 
 # Relative to its length, and to the speeds of its impacts, a leg of the simulation differs from
 # that of the orbit by less than this if both are the same; another landing or release differs by
@@ -117,4 +116,5 @@ def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     alike = (after.displacement < 0) == resumes
     same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
     same[possible] &= np.abs(faster) < _SAME * np.maximum(np.abs(before), np.abs(next_velocity))
-    return np.all(same.reshape(shape), axis=-1) & (sticking(equations, y) > 0)
+    same[possible] &= part.settles(leg.impact, expected)
+    return np.all(same.reshape(shape), axis=-1)

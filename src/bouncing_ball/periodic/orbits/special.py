@@ -29,7 +29,6 @@ from bouncing_ball import datasets
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.lost_release import rise_of_release
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition, release_margin
@@ -135,24 +134,19 @@ def opening_rate(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     Where it vanishes, a flight disappears. An impact that grazes also has a slow release, but their
     ratio tends to 1.
     """
-    legs = equations.beside(y)
+    legs = equations.legs(y)
     if legs.departure is None:
         return np.full(y.shape[:-1], np.nan)
     _, closing = equations.states(y)
-    velocity = _at_point(legs, rise_of_release(legs))
+    velocity = rise_of_release(legs).reshape(closing.shape)
     approach = np.where(equations.resuming, closing, -closing)
     with np.errstate(divide="ignore", invalid="ignore"):
         lowest = (velocity / approach).min(axis=-1)
     if not legs.dynamics.forgets:
         return lowest
     # The bounces before a rest on the table become arbitrarily slow.
-    rests = _at_point(legs, legs.departure.sticks).any(axis=-1)
+    rests = legs.departure.sticks.reshape(closing.shape).any(axis=-1)
     return np.where(rests, _FAR, lowest)
-
-
-def _at_point(legs: Legs, values: np.ndarray) -> np.ndarray:
-    """Flat values of the legs at y and beside it, for those at y, shape (..., k)."""
-    return np.reshape(values, legs.duration.shape)[0]
 
 
 def halves(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:

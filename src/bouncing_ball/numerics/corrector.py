@@ -20,8 +20,6 @@ _SMALL = 1e-8
 # A tangent is found by a linear system unless it is nearly at a right angle to the direction along
 # which it is oriented; the reciprocal of this is the cosine.
 _OBLIQUE = 1e3
-# A step of so many roundings of y is one of the equations' own rounding errors.
-_IDLE = 4 * _ROUNDING
 # The accuracy in the parameter with which folds are located.
 _LOCATED = 1e-12
 
@@ -270,15 +268,11 @@ def solution_at(
 ) -> tuple[np.ndarray, str]:
     """The solution with the parameter of a guess, shape (N + 1,), and why there is none, or "".
 
-    A guess that Newton's method moves by rounding errors only is a solution and is returned itself,
-    so that what the problem knows of this point is known of the solution. At a fold the equations
-    with a fixed parameter are singular. There the solution in the plane across the curve is the
-    same, because the parameter only moves by rounding errors.
+    At a fold the equations with a fixed parameter are singular. There the solution in the plane
+    across the curve is the same, because the parameter only moves by rounding errors.
     """
     axis = np.eye(guess.size)[-1]
     found = newton(problem, guess, plane(axis, guess), settings)
-    if found.converged and found.iterations == 1 and found.step <= _IDLE:
-        return guess, ""
     why = failure(problem, found)
     if why:
         across = null_vector(problem.jacobian(guess))

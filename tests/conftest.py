@@ -5,6 +5,7 @@ solution of the contact, Brent's method, and free flight.
 """
 
 import contextlib
+import gc
 import importlib
 import io
 import json
@@ -50,6 +51,12 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("deterministic")
+
+
+def pytest_collection_finish():
+    """What all tests share remains; the collector of garbage does not go through it again."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_collection_modifyitems(items):

@@ -11,6 +11,7 @@ import pytest
 from adapter import function
 from declared_artifacts import ARTIFACTS
 
+import bouncing_ball
 from bouncing_ball.beyond.exhibits.motion_maps import LOWEST_RATE
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.files import save
@@ -53,7 +54,7 @@ def lines(figure):
 def test_a_figure_follows_its_data_and_names_its_axes(record, name):
     data = record[name]
     moved = data.map(lambda values: values * 1.1 + 0.01 if values.dtype.kind == "f" else values)
-    before = drawn(name, data)
+    before = bouncing_ball.open(ROOT / f"{ARTIFACTS[name].place}.nc").plot()
     after = drawn(name, moved)
     assert any(axes.get_xlabel() for axes in before.axes)
     assert any(axes.get_ylabel() or axes.get_yticklabels() for axes in before.axes)

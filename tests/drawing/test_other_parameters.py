@@ -152,12 +152,13 @@ def test_every_colour_has_its_name_in_the_order_of_the_parameters(name, changes)
 
 
 def test_stable_comes_first_in_a_legend():
-    figure = drawn("fig08", {"frequency_ratio": [1e4, 20.0, 10.0, 2.0], "points": 61})
+    figure = drawn("fig08", dict(OTHERS)["fig08"])
     legend = figure.legends[0]
     # matplotlib fills the columns one after another.
     places = {t.get_text(): t.get_window_extent() for t in legend.get_texts() if t.get_text()}
     read = sorted(places, key=lambda name: (-round(places[name].y0, -1), places[name].x0))
-    ratios = [rf"$\varpi={value}$" for value in ("10^{4}", "20", "10", "2")]
+    values = (r"2.5\times 10^{5}", "100", "20", "10", "5", "3", "2")
+    ratios = [rf"$\varpi={value}$" for value in values]
     kinds = [kind for kind in LINES | MARKS if kind in places]
     assert read == ratios + kinds and kinds[0] == "stable"
 

@@ -108,17 +108,3 @@ def test_a_study_that_fails_is_listed_and_all_else_is_made_and_compared(recorded
     assert lines[-1].endswith("The new artifacts differ from the record.")
     assert "not made" in lines[-1] and "identical" in lines[-1]
     assert reason in page.read_text(encoding="utf-8")
-
-
-def test_one_artifact_is_made_and_compared_alone_and_its_parameter_is_named(recorded):
-    recorded.configure("paper", "fig11", "restitution", value=0.7)
-    done = recorded.run("--cores", "1", "fig11", "diff", check=False)
-    lines = done.stdout.splitlines()
-    made = [line.split()[1] for line in lines if line.startswith("made ")]
-    assert made == ["results/figures/fig11.nc", "results/figures/fig11.png"]
-    assert "fig11: parameter changed, restitution 0.65 → 0.7" in lines
-    assert lines[-1] == "1 with changed parameters. The new artifacts differ from the record."
-    last = "diff: the results differ from the record (exit status 1), see results/diff/fig11.html"
-    assert done.returncode == 1 and done.stderr.splitlines()[-1] == last
-    reports = recorded.path / "results" / "diff"
-    assert {path.name for path in reports.iterdir()} == {"fig11.txt", "fig11.html"}

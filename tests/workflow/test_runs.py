@@ -117,15 +117,24 @@ def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
         beside = ("--directory", str(tmp_path / name), "--configfile", str(given))
         return fresh.run("--cores", "1", "fig11", "diff", *beside, check=False)
 
-    # At the same time, each with its own results and its own comparison.
+    # At the same time, each with its own results and its own comparison, of this artifact alone.
     with ThreadPoolExecutor() as pool:
         done = dict(zip(values, pool.map(run, values), strict=True))
+    last = "diff: the results differ from the record (exit status 1), see results/diff/fig11.html"
     for name, restitution in values.items():
         results = tmp_path / name / "results"
         assert read_dataset(results / "figures" / "fig11.nc").attrs["restitution"] == restitution
+        assert {path.name for path in (results / "diff").iterdir()} == {"fig11.txt", "fig11.html"}
         page = (results / "diff" / "fig11.txt").read_text(encoding="utf-8")
         assert f"parameter changed, restitution 0.65 → {restitution}" in page
-        assert done[name].returncode == 1 and "results differ from the record" in done[name].stderr
+        lines = done[name].stdout.splitlines()
+        made = [line.split()[1] for line in lines if line.startswith("made ")]
+        assert made == ["results/figures/fig11.nc", "results/figures/fig11.png"]
+        # The pictures of the record have more pixels, which the line says after that.
+        (cause,) = [line for line in lines if line.startswith("fig11: ")]
+        assert cause.startswith(f"fig11: parameter changed, restitution 0.65 → {restitution}")
+        assert lines[-1] == "1 with changed parameters. The new artifacts differ from the record."
+        assert done[name].returncode == 1 and done[name].stderr.splitlines()[-1] == last
     assert not (fresh.path / "results").exists()
 
 

@@ -6,6 +6,7 @@ ball takes that never leaves again, is one integration up to its turn.
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -138,6 +139,8 @@ def _ends(law: ContactLaw, speed: float) -> bool:
         return False
 
 
+# An answer asks for it of the same contact several times.
+@lru_cache(maxsize=64)
 def slowed(law: ContactLaw, fast: float) -> float | None:
     """The speed at which gravity lowers r by one part in a hundred; None if it does at no speed.
 

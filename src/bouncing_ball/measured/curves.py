@@ -27,7 +27,8 @@ from bouncing_ball.models.laws.law_of_impact import reference
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 
-# The logarithms of the groups that are searched for a restitution coefficient.
+# The logarithms of the groups that are searched for a restitution coefficient, which falls with
+# the group. Few of them are computed, because each costs as much as a fit.
 _GROUPS = np.linspace(-30.0, 4.0, 341)
 # The least and the greatest constant r, so that a search cannot leave the range of r.
 _LEAST, _MOST = 1e-6, 1.0
@@ -69,7 +70,8 @@ class LawCurve:
         x = np.asarray(ratio, dtype=float)
         if self.kind is None or self.is_constant:
             return np.full(x.shape, min(max(theta, _LEAST), _MOST))
-        return self._free(self.kind, theta, x).restitution
+        # An array of its own, because the impacts are kept.
+        return 1.0 * self._free(self.kind, theta, x).restitution
 
     def duration(self, theta: float, ratio: ArrayLike) -> np.ndarray:
         """T/τ at the speeds v = ``ratio`` v₀.
@@ -128,18 +130,28 @@ class LawCurve:
         """θ of the law that has this r at v₀, close enough for the start of a fit."""
         if self.kind is None or self.is_constant:
             return restitution
-        return float(np.interp(-restitution, -_table(self.kind), _GROUPS))
+        low, high = 0, _GROUPS.size - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            if _free(self.kind, _GROUPS[middle]).restitution >= restitution:
+                low = middle
+            else:
+                high = middle
+        sides = _GROUPS[[low, high]]
+        return float(np.interp(-restitution, -_free(self.kind, sides).restitution, sides))
 
 
 def _free(kind: type[ContactLaw], logarithm: np.ndarray) -> Instant:
     """Impacts with these logarithms of their groups, in units of their scales."""
     log = np.clip(logarithm, _GROUPS[0], _GROUPS[-1])
-    return Signature(kind.of_scales(np.exp(log), 1.0, 1.0))(1.0)
+    return _impacts(kind, log.shape, log.tobytes())
 
 
-@lru_cache(maxsize=16)
-def _table(kind: type[ContactLaw]) -> np.ndarray:
-    return _free(kind, _GROUPS).restitution
+# A fit asks for r and for its derivative at the same groups.
+@lru_cache(maxsize=4)
+def _impacts(kind: type[ContactLaw], shape: tuple[int, ...], logarithms: bytes) -> Instant:
+    group = np.exp(np.frombuffer(logarithms).reshape(shape))
+    return Signature(kind.of_scales(group, 1.0, 1.0))(1.0)
 
 
 def _of(kind: type[ContactLaw]) -> LawCurve:

@@ -15,7 +15,9 @@ import inspect
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import deepcopy
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +87,12 @@ def parse_yaml(text: str) -> Any:
     ...
     bouncing_ball.pipeline.configuration.ConfigurationError: duplicate key 'n' in line 1
     """
+    return deepcopy(_content(text))
+
+
+# A run reads its configuration several times, and each time takes as long as a small figure.
+@cache
+def _content(text: str) -> Any:
     try:
         content = yaml.load(text, Loader=_Loader)
         # An alias may stand inside of what it names; such a content has no end.

@@ -227,6 +227,8 @@ _COMPUTES_NOTHING = re.compile(
 _STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
 
 
+# The samples are made by the same modules.
+@cache
 def without_remarks(code: str) -> str:
     """The lines of Python code without comments, docstrings and empty lines.
 

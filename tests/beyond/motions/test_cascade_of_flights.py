@@ -30,7 +30,7 @@ def motions(r, ratio, excess, impacts=IMPACTS):
 # ϖ = 27.1 lies between the ratios at which the second opening of r = 0.95 exists.
 WEAK = 200 ** (1 - 13 / 24) * 5 ** (13 / 24)
 RESTITUTIONS = [0.3, 0.65, 0.85, 0.95]
-RATIOS = [2.0, 6.3, 12.0, WEAK, 31.6, 100.0, 200.0]
+RATIOS = [6.3, 12.0, WEAK, 31.6, 100.0, 200.0]
 
 
 @pytest.fixture(scope="module")

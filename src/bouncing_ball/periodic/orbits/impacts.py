@@ -270,7 +270,7 @@ class Impacts(Batch):
 
     @property
     def _bounces(self) -> np.ndarray:
-        if self.model.place.is_paper:
+        if self.model.place.is_free:
             # In flight the velocity falls by the flight time.
             return np.roll(self.velocities, -1, axis=-1) + self._flights
         _, rate = self._flight_motion(np.zeros(self.phases.shape))

@@ -105,7 +105,7 @@ class Orbit(Impacts):
     @property
     def _heights(self) -> np.ndarray:
         """Absolute heights at release, which follow from the flights to the next impacts."""
-        if not self.model.place.is_paper:
+        if not self.model.place.is_free:
             gap, _ = self._flight_motion(np.zeros(self.phases.shape))
             return gap + self._table_height(self.phases + self.durations)
         landing = self._table_height(np.roll(self.phases, -1, axis=-1))
@@ -126,7 +126,7 @@ class Orbit(Impacts):
         below the table and thus below Λ. Otherwise the table may lift the ball higher during a long
         contact.
         """
-        if self.model.place.is_paper:
+        if self.model.place.is_free:
             rising = np.maximum(self._bounces, 0.0)
             apex = np.max(self._heights + rising * rising / 2, axis=-1)
         else:
@@ -221,7 +221,7 @@ class Orbit(Impacts):
         (Eqs. 14-15).
         """
         s = np.asarray(time) - self.durations[..., impact]
-        if self.model.place.is_paper:
+        if self.model.place.is_free:
             bounce = self._bounces[..., impact]
             velocity = bounce - s
             height = self._heights[..., impact] + (bounce + velocity) / 2 * s
@@ -230,7 +230,7 @@ class Orbit(Impacts):
         return self._single(height), self._single(velocity)
 
     def _other_flight_path(self, since: np.ndarray, impact: int) -> tuple[np.ndarray, np.ndarray]:
-        """Height and velocity at times since one release, in another setting than the paper's."""
+        """Height and velocity at times since one release, if more than gravity acts in flight."""
         shape = np.broadcast_shapes(since.shape, self.shape)
         each = np.broadcast_to(since, shape).reshape(-1, self.size)
         legs = self._legs

@@ -4,6 +4,8 @@ Because r depends on the instant within a step at which the ball meets the wall,
 many such instants.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -101,7 +103,7 @@ def impacts_in_steps(
     >>> bool(impacts_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 5.0).max() > 20)
     True
     """
-    duration = float(SpringDamper(1.0, float(damping_ratio), release).free_duration)
+    duration = _duration(float(damping_ratio), release)
     linear = LinearStep.of(scheme, 1.0, 2 * float(damping_ratio), release, step)
     start = np.asarray(fraction, dtype=float).ravel()
     state = np.stack([-step * start, -np.ones_like(start)])
@@ -126,24 +128,40 @@ def _by_powers(step: LinearStep, state: np.ndarray, most: int) -> tuple[np.ndarr
     r take thousands of instants, and contacts up to 10⁸ steps.
     """
     if not step.release.is_linear:
-        state = _ended(step.matrix, _APPROACH, state, most)
+        state = _ended(step, _APPROACH, state, most)
         state = np.where(_APPROACH @ state < -_TIE, _STAYS, state)
         step = step.elastic
-    state = _ended(step.matrix, step.ending, state, most)
+    state = _ended(step, step.ending, state, most)
     # At a jump of the number of steps, rounding decides whether the last one ends the contact.
     stays = step.ending @ state < -_TIE
     return np.where(stays, -1.0, 0.0), state[1]
 
 
-def _ended(matrix: np.ndarray, ending: np.ndarray, state: np.ndarray, most: int) -> np.ndarray:
+def _ended(step: LinearStep, ending: np.ndarray, state: np.ndarray, most: int) -> np.ndarray:
     """States at the end of motions that end once within so many steps, where ``ending`` ≥ 0."""
-    # The number of steps is halved by a power of the matrix.
+    *powers, matrix = _halves(step, most)
+    for power in powers:
+        later = power @ state
+        state = np.where(ending @ later < 0, later, state)
+    return matrix @ state
+
+
+# The range of r asks for the impacts of the same steps again and again.
+@lru_cache(maxsize=4)
+def _halves(step: LinearStep, most: int) -> list[np.ndarray]:
+    """The powers of the matrix of a step that halve a number of steps, and the matrix itself."""
+    powers = []
     while most > 1:
         half = most // 2
-        later = np.linalg.matrix_power(matrix, half) @ state
-        state = np.where(ending @ later < 0, later, state)
+        powers.append(np.linalg.matrix_power(step.matrix, half))
         most -= half
-    return matrix @ state
+    return [*powers, step.matrix]
+
+
+@lru_cache(maxsize=4)
+def _duration(damping_ratio: float, release: Release) -> float:
+    """The duration of a free impact, in units of 1/ω."""
+    return float(SpringDamper(1.0, damping_ratio, release).free_duration)
 
 
 def has_stable_steps(scheme: Scheme, damping_ratio: float, step: float) -> bool:

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.accuracy.error_law import (
     REMAINDER,
     coefficients,
@@ -13,6 +12,7 @@ from bouncing_ball.accuracy.error_law import (
     small_parameter,
 )
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.simple_models import errors
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient

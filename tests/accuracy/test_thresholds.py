@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
+from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.accuracy.thresholds import (
     ThresholdStatus,
     last_crossing,

@@ -8,8 +8,8 @@ import pytest
 from asked_contacts import answered, assessed
 
 from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.simple_models import errors
 from bouncing_ball.cli.design import design_document
 from bouncing_ball.contacts.drop_test import rebound
 from bouncing_ball.contacts.judgement import OrbitJudgement

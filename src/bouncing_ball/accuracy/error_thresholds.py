@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
 from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.simple_models import SIMPLE, search
 from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import (

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.error_law import law_thresholds
 from bouncing_ball.accuracy.errors import OF_ORBITS, Quantity
+from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.spring_damper import SpringDamper

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
+from bouncing_ball.accuracy.simple_models import SIMPLE, search
 from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.needed import against_contact

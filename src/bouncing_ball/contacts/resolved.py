@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
+from bouncing_ball.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.named_laws import model_name

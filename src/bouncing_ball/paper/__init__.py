@@ -22,7 +22,7 @@ Eqs.    what                      where
 ..      its inverse               ``models.damping.restitution_coefficient``
 17      apparent restitution      ``periodic.orbits.impacts.Impacts.apparent_restitution``
 18-20   period of the n-T orbit   ``periodic.orbits.impacts.Impacts.flight_time``
-21, 22  start of contact          ``models.dynamics.Dynamics.start``
+21, 22  start of contact          ``models.contacts_and_flights.ContactsAndFlights.start``
 23      end of the contact        ``models.linear_contact.LinearContactDynamics.depart``
 ..      near a given duration     ``models.linear_contact.LinearContactDynamics.depart_after``
 24-26   return to the start       ``periodic.orbits.problem.OrbitEquations.residual``
@@ -37,7 +37,7 @@ Eqs.    what                      where
 36      the smallest Λ_SD         ``models.permanent_contact.permanent_contact_minimum``
 37, 38  errors                    ``accuracy.errors.relative_errors``
 ..      of the greatest height    ``periodic.orbits.orbit.Orbit.max_height``
-..      thresholds ϖ_h, ϖ_PC      ``accuracy.corrected_errors.search``
+..      thresholds ϖ_h, ϖ_PC      ``accuracy.simple_models.search``
 ======= ========================= ==================================================================
 
 The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import orbit_errors, search
 from bouncing_ball.accuracy.errors import OF_ORBITS
+from bouncing_ball.accuracy.simple_models import orbit_errors, search
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.beyond.atlas.answers import last_crossings
 from bouncing_ball.beyond.atlas.walk import walk

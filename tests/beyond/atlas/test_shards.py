@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.accuracy.errors import OF_LIMITS, OF_ORBITS
+from bouncing_ball.accuracy.simple_models import errors
 from bouncing_ball.beyond.atlas import answers, shards
 from bouncing_ball.beyond.atlas.answers import last_crossings
 from bouncing_ball.beyond.atlas.walk import walk

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, exact_and_simple_models
 from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.simple_models import SIMPLE, errors, exact_and_simple_models
 from bouncing_ball.beyond.atlas.summary import (
     Largest,
     in_common_range,

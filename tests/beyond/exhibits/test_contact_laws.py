@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import search
+from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.beyond.exhibits.contact_laws import (
     LINEAR,
     NAMES,

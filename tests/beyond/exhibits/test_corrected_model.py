@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import errors
+from bouncing_ball.accuracy.simple_models import errors
 from bouncing_ball.beyond.exhibits import corrected_model as study
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import errors
+from bouncing_ball.accuracy.simple_models import errors
 from bouncing_ball.beyond.exhibits.engine_steps import FAMILIES, RESTITUTIONS, conformance
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.scheme import Scheme

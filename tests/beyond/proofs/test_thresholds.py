@@ -9,7 +9,7 @@ from flint import arb
 from mpmath import mp, mpf
 from sixty_digits import Exact
 
-from bouncing_ball.accuracy.corrected_errors import errors, search
+from bouncing_ball.accuracy.simple_models import errors, search
 from bouncing_ball.beyond.proofs import newton
 from bouncing_ball.beyond.proofs import thresholds as proofs
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal_with_bound, precision

@@ -23,8 +23,8 @@ from installed_engines import LAST_SEEN, missing, only_if_installed
 from pandas import DataFrame
 
 from bouncing_ball import corrected, limits, rigid, spring_damper
-from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.simple_models import SIMPLE
 from bouncing_ball.beyond.exhibits.engine_steps import (
     VARIABLES,
     EngineOrbit,

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.corrected_errors import (
+from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
+from bouncing_ball.accuracy.simple_models import (
     SIMPLE,
     errors,
     exact_and_simple_models,
     orbit_errors,
     search,
 )
-from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.spring_damper import SpringDamper

@@ -125,8 +125,8 @@ EDITS = [
     ),
     Edit(
         "periodic/orbits/problem.py",
-        "faster = landing.velocity - velocity",
-        "faster = 0.9 * landing.velocity - velocity",
+        "landing.velocity.reshape(shape) - ",
+        "0.9 * landing.velocity.reshape(shape) - ",
         "Eqs. 21-26",
     ),
     Edit(

@@ -17,9 +17,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import orbit_errors
 from bouncing_ball.accuracy.error_law import remainder
 from bouncing_ball.accuracy.errors import OF_ORBITS
+from bouncing_ball.accuracy.simple_models import orbit_errors
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.walk import walk
 from bouncing_ball.models.laws.signature import Signature

@@ -6,8 +6,8 @@ from itertools import chain
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors
 from bouncing_ball.accuracy.errors import OF_LIMITS, OF_ORBITS
+from bouncing_ball.accuracy.simple_models import SIMPLE, errors
 from bouncing_ball.beyond.atlas.answers import last_crossings, row_answers, threshold_bins
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.datasets.variables import Variable, describe, described

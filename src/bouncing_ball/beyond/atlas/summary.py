@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, exact_and_simple_models
 from bouncing_ball.accuracy.error_law import coefficients
 from bouncing_ball.accuracy.errors import (
     OF_LIMITS,
@@ -29,6 +28,7 @@ from bouncing_ball.accuracy.errors import (
     relative,
     values,
 )
+from bouncing_ball.accuracy.simple_models import SIMPLE, exact_and_simple_models
 from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.beyond.atlas.plan import Nodes, Plan
 from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field, model_validator
 
-from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
+from bouncing_ball.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.beyond.motions.cascade_of_flights import (
     balls_behind_the_top,

@@ -28,8 +28,8 @@ import xarray as xr
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import Quantity, relative, values
+from bouncing_ball.accuracy.simple_models import SIMPLE
 from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance

@@ -15,8 +15,8 @@ import xarray as xr
 from pydantic import Field
 
 from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described

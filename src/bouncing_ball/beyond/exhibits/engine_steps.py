@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 from pydantic import AfterValidator, Field, Strict
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors
 from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.simple_models import SIMPLE, errors
 from bouncing_ball.contacts.engines.impacts import restitution_in_steps
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number

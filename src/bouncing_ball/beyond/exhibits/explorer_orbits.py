@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
+from bouncing_ball.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe

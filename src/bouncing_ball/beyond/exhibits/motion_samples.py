@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 from pydantic import Field
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, exact_and_simple_models
+from bouncing_ball.accuracy.simple_models import SIMPLE, exact_and_simple_models
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     AmplitudeMax,

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from flint import arb
 
-from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
+from bouncing_ball.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal_with_bound, exactly, precision
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,

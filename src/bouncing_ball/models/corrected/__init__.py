@@ -4,6 +4,6 @@ The numbers of such an impact are in :mod:`bouncing_ball.models.instant`. In the
 theory :mod:`.impact` is the restitution map with them, :mod:`.motion` simulates balls by it, and
 :mod:`.model` is the model. Its n-T orbits are in closed form in
 :mod:`bouncing_ball.periodic.one_impact.corrected_branch`, and
-:mod:`bouncing_ball.accuracy.corrected_errors` compares it and the restitution model with the
+:mod:`bouncing_ball.accuracy.simple_models` compares it and the restitution model with the
 spring-damper model.
 """

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.errors import Quantity, relative_errors
+from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.models import permanent_contact as threshold
 from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
@@ -33,7 +33,7 @@ _RATIOS = np.geomspace(1.0, 1e3, 31)
 _TOLERANCE = 0.01
 # The functions that solve Eqs. 21-26, from the contact to the bifurcations of its orbits.
 _OF_ORBITS = (
-    "models.dynamics.Dynamics.start",
+    "models.contacts_and_flights.ContactsAndFlights.start",
     "models.linear_contact.LinearContactDynamics.depart",
     "models.linear_contact.LinearContactDynamics.depart_after",
     "periodic.orbits.problem.OrbitEquations.residual",
@@ -327,7 +327,7 @@ def _errors(rng, samples) -> Rows:
         "Eqs. 37-38": _used(
             "periodic.orbits.orbit.Orbit.max_height",
             "accuracy.errors.relative_errors",
-            "accuracy.corrected_errors.search",
+            "accuracy.simple_models.search",
             defects=(
                 *thrown,
                 errors[0] - printed.relative_error(contact.max_height, impact.max_height),

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.errors import Quantity, modulus
+from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
 

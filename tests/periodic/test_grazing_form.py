@@ -139,6 +139,60 @@ def test_a_contact_that_lasts_has_no_square_root(ball):
     assert max(slopes) < 3 * min(slopes)
 
 
+@pytest.mark.parametrize(
+    ("restitution", "ratio", "n", "start"),
+    [
+        (0.3741033749511521, 26.900080270186287, 2, 3.4),
+        (0.387, 48.6, 3, 5.0),
+        (0.787, 68.4, 3, 5.0),
+    ],
+)
+def test_a_branch_begins_at_its_grazing_and_not_behind_a_fold_beside_it(
+    restitution, ratio, n, start
+):
+    """The parameter of the orbits next to a grazing rises with v², and a saddle-node follows at a
+    speed of some hundredths of 1/ϖ.
+    """
+    ball = bouncing_ball.spring_damper(restitution=restitution, frequency_ratio=ratio)
+    count = 0
+    for one in bouncing_ball.orbits(ball, n=n, amplitude=start):
+        branch = bouncing_ball.follow(one, to=12.0, points=100)
+        for kind, orbit in branch.special_states():
+            if kind != "grazing of a flight":
+                continue
+            count += 1
+            form = bouncing_ball.grazing_form(orbit)
+            first = next(bouncing_ball.follow(orbit, points=10).states())
+            speed = -first.relative_impact_velocity[form.leg + 1]
+            assert 0 < speed < 1e-2 / ratio
+            assert (first.amplitude > orbit.amplitude) is form.opens_upwards
+            # The simulation, which knows nothing of the equations, has both orbits or none.
+            before = branch.admissible.values[branch.amplitude.values < orbit.amplitude][-1]
+            assert first.is_admissible() == before
+            # On the side on which the form says that there are orbits, a branch may end.
+            side = 1.0 if form.opens_upwards else -1.0
+            bouncing_ball.follow(orbit, to=orbit.amplitude + 0.05 * side, points=10)
+    assert count
+
+
+def test_a_saddle_node_beside_a_grazing_is_found():
+    """Shooting by the speed of the added impact had found Λ - Λg = 6e-8 at 1e-3 and 8e-8 at 2e-3,
+    and -2e-7 at 3e-3, where the branch had begun.
+    """
+    ball = bouncing_ball.spring_damper(
+        restitution=0.3741033749511521, frequency_ratio=26.900080270186287
+    )
+    for one in bouncing_ball.orbits(ball, n=2, amplitude=3.4):
+        found = bouncing_ball.follow(one, to=6.2)
+        if "grazing of a flight" in found.special_kind:
+            grazing = found.first("grazing of a flight")
+    more = bouncing_ball.follow(grazing, to=6.2, points=40)
+    kinds = more.special_kind.values.tolist()
+    assert kinds[0] == "saddle-node"
+    beyond = float(more.special_amplitude[0]) - grazing.amplitude
+    assert beyond == pytest.approx(9.2e-8, rel=0.01)
+
+
 def test_what_has_no_branch_with_one_impact_more_says_why(refusal):
     rigid = bouncing_ball.rigid(restitution=R)
     orbit = _grazing(rigid)

@@ -35,9 +35,11 @@ from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
 
-# Speeds of the additional impact of the first orbit, of which the first that Newton's method
-# reaches is taken.
-_SPEEDS = (3e-3, 1e-3, 3e-4)
+# A slow impact lasts about 2v/a. The parameter changes as at the grazing if v/a is this share of
+# the duration of a free impact, which is about π/ϖ for a spring. An impact that is an instant is
+# compared with half a period of the table.
+_SLOW = 3e-4
+_OF_INSTANT = np.pi
 _NEARBY = NewtonSettings(max_iterations=30, longest=0.01)
 # Samples of a flight in which its lowest point is searched, and rounds of Newton's method for it.
 _SAMPLES = 2001
@@ -58,6 +60,23 @@ class Touch(NamedTuple):
     phase: float
     acceleration: float
     height: float
+
+
+class Grazing(NamedTuple):
+    """A grazing flight: the equations of its orbit along a parameter, the point of the orbit, where
+    the flight touches the table, and the speed of a slow impact there.
+    """
+
+    problem: OrbitEquations
+    point: np.ndarray
+    touch: Touch
+    slow: float
+
+    @property
+    def parameter(self) -> float:
+        """The value of the parameter."""
+        (name,) = self.problem.along
+        return float(self.problem.values(self.point)[name])
 
 
 @dataclass(frozen=True)
@@ -108,29 +127,33 @@ def grazing_form(orbit: Orbit) -> GrazingForm:
     """
     _require_grazing(orbit)
     name = orbit.along[0]
-    problem, here = _problem(orbit, name)
-    touch = _touch(problem, here)
-    dynamics: Any = problem.dynamics(here)[0]
-    instant = dynamics.contact is None
-    at = float(problem.values(here)[name])
-    # A slow impact is one that lasts shorter than an oscillation of the contact.
-    slow = _SPEEDS[0] / float(np.max(dynamics.clock))
-    speeds = (slow, slow / 2)
-    moved = [one_more(orbit, name, speed).parameters[name] - at for speed in speeds]
-    rates = [change / speed for change, speed in zip(moved, speeds, strict=True)]
-    sides = [_height(problem, here, sign * _ASIDE) for sign in (1.0, -1.0)]
-    above = moved[1] > 0
-    restitution = _slow_restitution(orbit.model) if instant else -1.0
+    grazing = _grazing(orbit, name)
+    touch = grazing.touch
+    first, nearer = _two_with_one_more(grazing)
+    restitution = -1.0
+    slope = 0.0
+    if _is_instant(orbit.model):
+        restitution = _slow_restitution(orbit.model)
+        at = grazing.parameter
+        # The term with v² cancels.
+        slope = (4 * nearer.parameters[name] - first.parameters[name] - 3 * at) / grazing.slow
+    opens_upwards = bool(first.parameters[name] > nearer.parameters[name])
+    above, below = (_height(grazing, sign * _ASIDE) for sign in (1.0, -1.0))
     return GrazingForm(
         leg=touch.leg,
         phase=touch.phase,
         acceleration=touch.acceleration,
         coefficient=(1 + restitution) * float(np.sqrt(2 * touch.acceleration)),
-        slope=2 * rates[1] - rates[0] if instant else 0.0,
+        slope=slope,
         along=name,
-        opens_upwards=above,
-        persists=bool(above == (sides[0] < sides[1])),
+        opens_upwards=opens_upwards,
+        persists=opens_upwards == (above < below),
     )
+
+
+def _is_instant(model: Model) -> bool:
+    """Whether the impacts are instants."""
+    return bool(np.all(model.signature(_SLOW).duration == 0))
 
 
 def _slow_restitution(model: Model) -> float:
@@ -143,13 +166,13 @@ def _require_grazing(orbit: Orbit) -> None:
         raise NoOrbitError("the orbit is no grazing of a flight of a branch")
 
 
-def _problem(orbit: Orbit, along: str) -> tuple[OrbitEquations, np.ndarray]:
-    """The equations of a grazing orbit, and the orbit.
+def _grazing(orbit: Orbit, along: str) -> Grazing:
+    """The grazing of a flight of an orbit, along a parameter.
 
     Raises
     ------
     NoOrbitError
-        If the orbit is no grazing of a flight, or if its model has no slow impacts.
+        If no flight of the orbit grazes, or if its model has no slow impacts.
     """
     _require_grazing(orbit)
     problem = orbit.problem(along)
@@ -162,7 +185,11 @@ def _problem(orbit: Orbit, along: str) -> tuple[OrbitEquations, np.ndarray]:
             f"in the {orbit.model.name} model an impact takes effect after a delay, so that none "
             "begins at a grazing flight"
         )
-    return problem, here
+    touch = _touch(problem, here)
+    if not abs(touch.height) <= _TOUCHES:
+        raise NoOrbitError(f"no flight of the orbit grazes: the lowest is at {touch.height:.1e}")
+    free = _OF_INSTANT if _is_instant(orbit.model) else orbit.model.signature(_SLOW).duration
+    return Grazing(problem, here, touch, _SLOW * touch.acceleration * float(free))
 
 
 def _touch(problem: OrbitEquations, y: np.ndarray) -> Touch:
@@ -190,33 +217,30 @@ def _touch(problem: OrbitEquations, y: np.ndarray) -> Touch:
     )
 
 
-def _height(problem: OrbitEquations, y: np.ndarray, aside: float) -> float:
+def _height(grazing: Grazing, aside: float) -> float:
     """The least height of the flights beside an orbit, at another value of the parameter."""
+    problem, y, *_ = grazing
     guess = np.array([*y[:-1], y[-1] + aside])
     return float(flight_margin(problem, point_near(problem, guess)))
 
 
-def one_more(orbit: Orbit, along: str, speed: float | None = None) -> Orbit:
-    """The orbit with one impact more beside a grazing flight, whose additional impact is slow.
+def _two_with_one_more(grazing: Grazing) -> tuple[Orbit, Orbit]:
+    """The orbits with one impact more whose additional impact is slow, and half as fast.
 
-    Parameters
-    ----------
-    orbit : Orbit
-        The grazing of a flight.
-    along : str
-        The parameter that varies.
-    speed : float, optional
-        The speed of the additional impact.
+    Whether their parameter rises with the speed does not depend on the digits of the grazing.
+    """
+    return _one_more(grazing, grazing.slow), _one_more(grazing, grazing.slow / 2)
+
+
+def _one_more(grazing: Grazing, slow: float) -> Orbit:
+    """The orbit with one impact more, whose additional impact has this speed.
 
     Raises
     ------
     NoOrbitError
-        If the orbit is no grazing of a flight, or if no such orbit is found.
+        If no such orbit is found.
     """
-    problem, here = _problem(orbit, along)
-    touch = _touch(problem, here)
-    if not abs(touch.height) <= _TOUCHES:
-        raise NoOrbitError(f"no flight of the orbit grazes: the lowest is at {touch.height:.1e}")
+    problem, here, touch, _ = grazing
     after = touch.leg + 1
     phase, velocity = problem.states(here)
     duration = problem.legs(here).duration
@@ -232,47 +256,41 @@ def one_more(orbit: Orbit, along: str, speed: float | None = None) -> Orbit:
         resumes=np.insert(problem.resuming, after, False),
     )
     values = problem.values(here)
-    for slow in _SPEEDS if speed is None else (speed,):
-        guess = more.point(
-            np.insert(phase, after, touch.phase - slow / touch.acceleration),
-            np.insert(velocity, after, -slow),
-            np.insert(duration, after, 2 * slow / touch.acceleration),
-            **values,
-        )
-        axis = np.eye(guess.size)[2 * after + 1]
-        with np.errstate(all="ignore"):
-            found = newton(more, guess, plane(axis, guess), _NEARBY)
-        if found.converged:
-            return orbit_of_point(more, found.point)
-    raise NoOrbitError(
-        f"no orbit with {more.impacts} impacts was found beside the grazing flight: residual "
-        f"{float(found.residual):.1e} after {int(found.iterations)} Newton iterations"
+    guess = more.point(
+        np.insert(phase, after, touch.phase - slow / touch.acceleration),
+        np.insert(velocity, after, -slow),
+        np.insert(duration, after, 2 * slow / touch.acceleration),
+        **values,
     )
-
-
-def faster(orbit: Orbit, along: str, leg: int) -> np.ndarray:
-    """The direction of the unknowns in which the impact after another one, ``leg``, gets faster."""
-    problem = orbit.problem(along)
-    size = problem.size + 1
-    return -np.eye(size)[2 * (leg + 1) + 1]
+    axis = np.eye(guess.size)[2 * after + 1]
+    with np.errstate(all="ignore"):
+        found = newton(more, guess, plane(axis, guess), _NEARBY)
+    if not found.converged:
+        raise NoOrbitError(
+            f"no orbit with {more.impacts} impacts was found beside the grazing flight: residual "
+            f"{float(found.residual):.1e} after {int(found.iterations)} Newton iterations"
+        )
+    return orbit_of_point(more, found.point)
 
 
 def first_with_one_more(orbit: Orbit, along: str, to: float | None) -> tuple[Orbit, np.ndarray]:
-    """The first orbit with one impact more, and the direction that leads away from the grazing.
+    """The first orbit with one impact more, and the direction of the unknowns that leads away from
+    the grazing: the additional impact gets faster.
 
     Raises
     ------
     NoOrbitError
         If there is none, or if the orbits exist on the other side than a value ``to``.
     """
-    found = one_more(orbit, along)
-    problem, here = _problem(orbit, along)
-    at = float(problem.values(here)[along])
-    change = float(np.asarray(found.model.numbers().get(along, found.amplitude))) - at
-    if to is not None and (to - at) * change < 0:
-        where = "above" if change > 0 else "below"
+    grazing = _grazing(orbit, along)
+    first, nearer = _two_with_one_more(grazing)
+    at = grazing.parameter
+    above = first.parameters[along] > nearer.parameters[along]
+    if to is not None and to != at and (to > at) != above:
+        where = "above" if above else "below"
         raise NoOrbitError(
-            f"to = {to:g} is beyond the grazing: the orbits with {found.impacts} impacts exist "
+            f"to = {to:g} is beyond the grazing: the orbits with {first.impacts} impacts exist "
             f"next to it only for {along} {where} {at:g}"
         )
-    return found, faster(found, along, _touch(problem, here).leg)
+    problem = first.problem(along)
+    return first, -np.eye(problem.size + 1)[2 * (grazing.touch.leg + 1) + 1]

@@ -32,8 +32,8 @@ the contact. The equations of such a model are smooth also where a contact graze
 The derivatives of these equations and of the durations with respect to the states follow from the
 tangent maps of the models, exactly at a solution. Those with respect to a parameter are central
 differences, whose error of 1e-9 only affects how fast Newton's method converges and not the
-solution. Their step is small against the slowest impact, because the legs change rapidly next to a
-grazing impact.
+solution. Their step is small against the square of the slowest impact, because the legs change
+rapidly next to a grazing impact.
 
 A parameter p enters as arsinh p, which is p for small p and ln 2p for large p, so that steps along
 ϖ = 2…1000 are as long as those along Λ. If no parameter varies there are as many unknowns as
@@ -60,10 +60,11 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
-# The step in a parameter is shorter by the ratio of the slowest impact to this speed, in its unit,
-# and by this factor at most.
+# An orbit that is moved by h lands earlier or later by about h/v at a slow impact, which must be
+# small against v/a, the time in which its speed changes. The step is therefore shorter by the square
+# of the ratio of the slowest impact to this speed, in its unit, and by this factor at most.
 _SLOW = 0.1
-_LEAST = 1e-3
+_LEAST = 1e-4
 # Where the second difference of the height or the velocity of a leg is larger than this and than
 # half of the first one, it has no derivative but a jump. A jump that is not noticed spoils a
 # solution by 1e-7 of its size.
@@ -372,9 +373,8 @@ class OrbitEquations:
         step = np.full(y.shape, _DIFFERENCE * unit)
         _, speed = self.states(np.abs(y / unit))
         # The whole step where the speed is not known.
-        share = np.maximum(np.fmin(speed.min(axis=-1) / _SLOW, 1.0), _LEAST)
-        step[..., self.size :] *= share[..., np.newaxis]
-        return step
+        share = np.maximum(np.fmin(speed.min(axis=-1) / _SLOW, 1.0) ** 2, _LEAST)
+        return step * share[..., np.newaxis]
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""

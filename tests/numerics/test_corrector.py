@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.corrector import NewtonSettings, failure, newton, plane, solve, tangent
+from bouncing_ball.numerics.corrector import (
+    NewtonSettings,
+    failure,
+    newton,
+    plane,
+    solve,
+    solve_linear,
+    tangent,
+)
 
 EPS = np.finfo(float).eps
 
@@ -141,3 +149,31 @@ def test_a_point_without_derivatives_is_no_solution_although_its_equations_are_s
         found = newton(Broken(), guess, plane(np.array([0.0, 1.0]), guess))
         assert found.residual == 0
         assert failure(Broken(), found) == why
+
+
+def _of_legs(legs, rng):
+    """A matrix like that of an orbit: each leg joins two states, and one row has all unknowns."""
+    matrix = np.zeros((2 * legs + 1, 2 * legs + 1))
+    for j in range(legs):
+        rows = slice(2 * j, 2 * j + 2)
+        after = 2 * ((j + 1) % legs)
+        matrix[rows, rows] = 3 * rng.normal(size=(2, 2))
+        matrix[rows, after : after + 2] = -np.eye(2)
+    matrix[:, -1] = rng.normal(size=2 * legs + 1)
+    matrix[-1] = rng.normal(size=2 * legs + 1)
+    return matrix
+
+
+@pytest.mark.parametrize("legs", [3, 49, 50, 120])
+def test_systems_of_few_and_of_many_unknowns_have_their_solutions(legs):
+    rng = np.random.default_rng(legs)
+    matrices = np.array([_of_legs(legs, rng) for _ in range(4)])
+    expected = rng.normal(size=(4, 2 * legs + 1))
+    right = np.einsum("bij,bj->bi", matrices, expected)
+    # A singular system does not disturb the others.
+    matrices[1, 0] = 0.0
+    found = solve_linear(matrices, right)
+    assert np.isnan(found[1]).all()
+    regular = [0, 2, 3]
+    lost = np.linalg.cond(matrices[regular])[:, np.newaxis] * np.abs(expected[regular]).max()
+    assert np.all(np.abs(found[regular] - expected[regular]) < 1e-15 * lost)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
+import scipy
 
 _TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
@@ -20,6 +21,9 @@ _SMALL = 1e-8
 # A tangent is found by a linear system unless it is nearly at a right angle to the direction along
 # which it is oriented; the reciprocal of this is the cosine.
 _OBLIQUE = 1e3
+# The number of unknowns from which a system is sparse: dense solvers divide a matrix of so many
+# entries among threads.
+_SPARSE = 100
 # The accuracy in the parameter with which folds are located.
 _LOCATED = 1e-12
 
@@ -136,7 +140,7 @@ def solve(
         if not going.all():
             # A matrix of NaN would cause a warning beside one that is singular.
             matrix = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
-        change = _solve_linear(matrix, values)
+        change = solve_linear(matrix, values)
         length = _norm(change)
         going &= np.isfinite(length)
         if np.isfinite(settings.longest):
@@ -174,14 +178,40 @@ def _next_is_rounding(before: np.ndarray, size: np.ndarray) -> np.ndarray:
     return quadratic & (size**3 <= _ROUNDING * np.where(quadratic, before, 0.0) ** 2)
 
 
-def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solutions of linear systems; NaN where the matrix is singular or has NaN entries."""
+def solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solutions (..., N) of linear systems; NaN where a matrix is singular or has NaN entries.
+
+    From 100 unknowns on they are sparse systems, because a leg has few of the unknowns. A dense
+    solver would divide each of them among threads, which takes many times as long as one thread.
+
+    Examples
+    --------
+    >>> solve_linear(np.array([[2.0, 0.0], [1.0, 1.0]]), np.array([4.0, 5.0])).tolist()
+    [2.0, 3.0]
+    """
+    if matrix.shape[-1] >= _SPARSE:
+        systems = zip(
+            matrix.reshape(-1, *matrix.shape[-2:]), right.reshape(-1, right.shape[-1]), strict=True
+        )
+        return np.reshape([_solve_sparse(*system) for system in systems], right.shape)
     try:
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
     except np.linalg.LinAlgError:
         singular = np.linalg.det(matrix) == 0
         matrix = np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix)
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+
+
+def _solve_sparse(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The solution of one sparse system, NaN if its matrix is singular or has NaN entries."""
+    none = np.full(right.shape, np.nan)
+    if not np.isfinite(matrix).all():
+        return none
+    try:
+        return scipy.sparse.linalg.splu(scipy.sparse.csc_array(matrix)).solve(right)
+    except RuntimeError:
+        # The matrix is singular.
+        return none
 
 
 def failure(problem: Problem, found: Correction) -> str:
@@ -252,7 +282,7 @@ def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
         border = np.where(defined[..., np.newaxis], border, np.eye(along.shape[-1]))
     across = np.zeros(along.shape)
     across[..., -1] = 1
-    vector = _solve_linear(border, across)
+    vector = solve_linear(border, across)
     length = _norm(vector)[..., np.newaxis]
     vector = np.where(defined, vector / length, np.nan)
     turned = ~(length * _norm(along)[..., np.newaxis] < _OBLIQUE)

@@ -30,6 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.numerics.corrector import solve_linear
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.return_map import returned
@@ -186,7 +187,7 @@ def _rate(problem: OrbitEquations, y: np.ndarray, kind: Bifurcation) -> float:
         _, gradient = problem.bifurcation(kind, y)
         matrix = problem.jacobian(y)
         n = problem.size
-        states = np.linalg.solve(matrix[:, :n], -matrix[:, n])
+        states = solve_linear(matrix[:, :n], -matrix[:, n])
         slope = gradient[:n] @ states + gradient[n]
         other = -float(problem.trace_and_determinant(y)[1])
         value = float(problem.values(y)[name])

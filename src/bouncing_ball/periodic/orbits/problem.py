@@ -61,8 +61,8 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
 # An orbit that is moved by h lands earlier or later by about h/v at a slow impact, which must be
-# small against v/a, the time in which its speed changes. The step is therefore shorter by the square
-# of the ratio of the slowest impact to this speed, in its unit, and by this factor at most.
+# small against v/a, the time in which its speed changes. The step is therefore shorter by the
+# square of the ratio of the slowest impact to this speed, in its unit, and by this factor at most.
 _SLOW = 0.1
 _LEAST = 1e-4
 # Where the second difference of the height or the velocity of a leg is larger than this and than

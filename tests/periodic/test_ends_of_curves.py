@@ -300,3 +300,35 @@ def test_branch_and_follow_name_a_lost_release_of_a_law_in_the_same_words():
     for found in (whole, followed):
         assert "release lost" not in found.special_kind.values
     assert float(followed.amplitude[-1]) == pytest.approx(first.amplitude, abs=1e-6)
+
+
+def test_a_curve_of_grazings_ends_with_its_reason():
+    """It ended with the words of the corrector, or at a corner of a map that has none."""
+    ball = bouncing_ball.spring_damper(restitution=0.2519, frequency_ratio=24.19, release="force")
+    grazing = next(
+        orbit
+        for one in bouncing_ball.orbits(ball, n=1, amplitude=2.4413)
+        for kind, orbit in bouncing_ball.follow(one, to=2.6).special_states()
+        if kind == "grazing of a flight"
+    )
+    found = bouncing_ball.follow(grazing, along=("amplitude", "frequency_ratio"))
+    first, last = map(str, found.end_reason.values)
+    assert first == (
+        "where the flight touches the table, its minimum merges with a maximum, at about "
+        "amplitude = 1.71, frequency ratio = 3.06"
+    )
+    assert last.startswith("the curve could not be continued beyond amplitude = 2.54, frequency")
+    # δ = δ′ = δ″ = 0 there, by the motion of a ball that leaves as the first orbit does.
+    one = next(found.states())
+    problem = one.problem("amplitude")
+    flight = problem.legs(one.point(problem)).departure.flight
+    time = np.linspace(0.5, 1.1, 601)
+    height, rate, second, _ = np.array([flight.gap(np.array([t])) for t in time])[..., 0].T
+    at = np.argmin(np.abs(rate))
+    assert abs(height[at]) < 1e-5 and abs(rate[at]) < 1e-5 and abs(second[at]) < 1e-2
+    # The differences of the condition end before the range does.
+    found = bouncing_ball.follow(grazing, along=("amplitude", "restitution"))
+    for reason, end in zip(found.end_reason.values, ("1e-09", "1"), strict=True):
+        assert str(reason) == (
+            f"the points accumulate next to restitution = {end}, the end of its range"
+        )

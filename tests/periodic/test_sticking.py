@@ -204,3 +204,16 @@ def test_a_branch_ends_where_all_flights_before_a_rest_vanish():
     assert aloft == pytest.approx(0.01, abs=1e-9)
     assert 0 < last.amplitude - 1 < aloft**2
     assert found.residual.max() < 1e-12
+
+
+def test_a_branch_with_bounces_that_shrink_by_a_hundred_ends_at_permanent_contact():
+    """At r = 0.01 the fourth impact has a millionth of the speed of the first one. The branch crept
+    towards Λ = 1, in 500 steps.
+    """
+    orbit = bouncing_ball.orbit_of_motion(bouncing_ball.rigid(restitution=0.01), amplitude=1.0005)
+    found = bouncing_ball.follow(orbit, to=0.5)
+    assert found.attrs["impacts"] == 4
+    why = "permanent contact: at a smaller Λ a ball at rest stays on the table"
+    assert str(found.end_reason.values[-1]) == why
+    assert found.sizes["point"] < 60
+    assert 0 < float(found.amplitude[-1]) - 1 < 2e-4

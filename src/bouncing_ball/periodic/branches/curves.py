@@ -26,7 +26,7 @@ from enum import StrEnum
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.numerics.branch import Branch, ContinuationError, End
+from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
 from bouncing_ball.numerics.continuation import continue_both_ways
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
@@ -36,14 +36,17 @@ from bouncing_ball.periodic.branches.following import (
     STEPS,
     Orbits,
 )
+from bouncing_ball.periodic.branches.grazing import lowest_touch
 from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.ends import (
+    CLOSE,
     Window,
     accumulation,
     events_along,
     explained,
     limits_of,
+    places_in_words,
     release_lost,
 )
 from bouncing_ball.periodic.orbits.normal_form import coefficient
@@ -68,6 +71,7 @@ _ANOTHER = 1e-3
 # The coefficient of doublings is computed at every so many points of a curve: it takes about as
 # long as a point, and changes slowly.
 _STRIDE = 4
+_INFLECTION = "where the flight touches the table, its minimum merges with a maximum"
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_IMPACT: impact_margin,
@@ -206,13 +210,25 @@ def curve_through(
 def _explained_end(
     problem: CurveProblem, end: End, points: np.ndarray, kind: Special, ranges: dict[str, Window]
 ) -> End:
-    """An end of a curve, with what is there if its points accumulate."""
+    """An end of a curve in words, with what is there if its steps became too short."""
+    if not end.stuck:
+        return end
     equations = problem.equations
+    if kind is Special.GRAZING_FLIGHT and lowest_touch(equations, points[0]).acceleration < CLOSE:
+        return End(f"{_INFLECTION}, at about {places_in_words(equations, points[0])}")
     tests = [each for each in events_along(equations) if each.name != kind]
-    found = explained(equations, end, points, tests, _limits(equations, ranges))
-    if not found.stuck:
-        return found
-    return accumulation(equations, found, points, ranges, CURVE_STEPS.creep)
+    # The tangents of a curve also turn where the differences of its condition fail, which is no
+    # corner of the map.
+    stuck = end._replace(kind=EndKind.SHORTEST_STEP)
+    found = explained(equations, stuck, points, tests, _limits(equations, ranges))
+    if found.stuck:
+        found = accumulation(equations, found, points, ranges, CURVE_STEPS.creep)
+    if found.stuck:
+        where = places_in_words(equations, points[0])
+        return End(
+            f"the curve could not be continued beyond {where}: no step was short enough", False
+        )
+    return found
 
 
 def _special_at(problem: CurveProblem, y: np.ndarray) -> np.ndarray:

@@ -185,14 +185,14 @@ def _grazing(orbit: Orbit, along: str) -> Grazing:
             f"in the {orbit.model.name} model an impact takes effect after a delay, so that none "
             "begins at a grazing flight"
         )
-    touch = _touch(problem, here)
+    touch = lowest_touch(problem, here)
     if not abs(touch.height) <= _TOUCHES:
         raise NoOrbitError(f"no flight of the orbit grazes: the lowest is at {touch.height:.1e}")
     free = _OF_INSTANT if _is_instant(orbit.model) else orbit.model.signature(_SLOW).duration
     return Grazing(problem, here, touch, _SLOW * touch.acceleration * float(free))
 
 
-def _touch(problem: OrbitEquations, y: np.ndarray) -> Touch:
+def lowest_touch(problem: OrbitEquations, y: np.ndarray) -> Touch:
     """The lowest local minimum of the flights of an orbit."""
     legs = problem.legs(y)
     flight = legs.departure.flight

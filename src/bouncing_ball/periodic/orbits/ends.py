@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.numerics.branch import Branch, End, EndKind
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.lost_release import lost_release
@@ -48,6 +49,9 @@ _BOUND = "bound"
 # Next to the threshold of permanent contact the lift-off moves as the root of the distance, so that
 # the steps become short at this distance.
 _AT_THRESHOLD = 1e-4
+# A step must not pass over the last bounce before a rest, and errs by its third power. It is fifty
+# times shorter if this bounce is shorter than the first one by this factor.
+_SHORTEST = 1e-5
 # The speed of an impact is a power of the flight time next to permanent contact. The exponent is at
 # most this one, and a straight line over logarithms has the same slope on two pieces, up to a
 # tenth. On each of them the speed becomes larger by this factor at least.
@@ -152,7 +156,8 @@ def ends_of_one_impact(equations: OrbitEquations) -> list[Event]:
 
 def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     """The end of a branch of orbits of the restitution models with a rest on the table where the
-    rest fills nearly the whole period; empty for other orbits.
+    rest fills nearly the whole period, or next to the threshold of permanent contact if the last
+    bounces are far shorter than the first one; empty for other orbits.
 
     All flights vanish together there, and the bounces before the rest are so much slower than the
     first one that rounding errors decide on them, before the steps become short.
@@ -166,8 +171,15 @@ def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     def aloft(y: np.ndarray) -> np.ndarray:
         return np.sum(equations.intervals(y) - equations.durations(y), axis=-1)
 
+    def above(y: np.ndarray) -> np.ndarray:
+        return _above_threshold(equations, y, legs.dynamics)
+
     near = min(CLOSE, float(aloft(start)) / 2)
-    return [Event(ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=ALL_VANISH)]
+    vanish = Event(ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=ALL_VANISH)
+    _, velocity = equations.states(start)
+    if above(start) > 0 and velocity.max() > _SHORTEST * velocity.min():
+        return [vanish, Event(_HELD, above, terminal=True, reason=_HELD)]
+    return [vanish]
 
 
 def bound_in_words(name: str, bound: float) -> str:
@@ -295,8 +307,12 @@ def _at_threshold(equations: OrbitEquations, y: np.ndarray) -> bool:
     legs = equations.legs(y)
     if legs.dynamics is None or not (legs.dynamics.forgets and np.any(legs.departure.sticks)):
         return False
-    above = equations.amplitude(y) / legs.dynamics.setting.threshold() - 1
-    return bool(np.all(above < _AT_THRESHOLD))
+    return bool(np.all(_above_threshold(equations, y, legs.dynamics) < 0))
+
+
+def _above_threshold(equations: OrbitEquations, y: np.ndarray, dynamics: Dynamics) -> np.ndarray:
+    """Positive where Λ is farther above the threshold of permanent contact than _AT_THRESHOLD."""
+    return (equations.amplitude(y) / dynamics.setting.threshold() - 1) / _AT_THRESHOLD - 1
 
 
 def next_to(tests: Sequence[Event], y: np.ndarray) -> Special | None:
@@ -368,13 +384,19 @@ def accumulation(
     place = _zero_ahead(points, lambda y: opening_rate(equations, y))
     if place is None:
         return end
-    values = equations.values(place).items()
-    where = ", ".join(f"{name.replace('_', ' ')} = {value:.3g}" for name, value in values)
+    where = places_in_words(equations, place)
     sentence = (
         f"the orbit is next to {_PLACES[Special.RELEASE_LOST]}, at about {where}, where its "
         "equations are not smooth"
     )
     return End(sentence, event=Special.RELEASE_LOST)
+
+
+def places_in_words(equations: OrbitEquations, y: np.ndarray) -> str:
+    """The parameters of an orbit, such as "amplitude = 1.71, frequency ratio = 3.06"."""
+    return ", ".join(
+        f"{name.replace('_', ' ')} = {x:.3g}" for name, x in equations.values(y).items()
+    )
 
 
 def _zero_ahead(

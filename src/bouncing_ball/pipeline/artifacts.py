@@ -72,16 +72,16 @@ class Artifact:
     --------
     >>> artifact = Artifact(
     ...     name="table1",
-    ...     module="paper.exhibits.orbits",
-    ...     figures="paper.exhibits.orbits_figures",
+    ...     module="paper.exhibits.continuation_of_orbits",
+    ...     figures="paper.exhibits.continuation_of_orbits_figures",
     ...     title="Table 1",
-    ...     study="ranges",
+    ...     study="stability_ranges",
     ...     table="table1",
     ... )
     >>> artifact.files
     ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
     >>> artifact.part, artifact.stage, artifact.place, artifact.dataset
-    ('paper', 'orbits', 'figures/table1', 'results/figures/table1.nc')
+    ('paper', 'continuation_of_orbits', 'figures/table1', 'results/figures/table1.nc')
     """
 
     name: str

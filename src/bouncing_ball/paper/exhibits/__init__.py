@@ -1,19 +1,28 @@
 """The figures and tables of the paper: one module for each stage, its pictures beside it.
 
-============= ==========================================
-Fig. 1, 4     :mod:`.schematics_figures`
-Fig. 2, 3     :mod:`.restitution_model`
-Fig. 5, 6     :mod:`.apparent_restitution`
-Fig. 7, 12    :mod:`.time_histories`
-Fig. 8, 9, 15 :mod:`.continuation_of_orbits`
-Fig. 10, 13   :mod:`.apparent_restitution`
-Fig. 11, 16   :mod:`.permanent_contact`
-Fig. 14       :mod:`.error_thresholds`
-Table 1       :mod:`.continuation_of_orbits`
-============= ==========================================
+========= ============================== =========================== ===========================
+item      module                         study                       drawing
+========= ============================== =========================== ===========================
+Fig. 1    :mod:`.schematics_figures`     –                           ``restitution_model``
+Fig. 2    :mod:`.restitution_model`      ``restitution_history``     ``restitution_history``
+Fig. 3    :mod:`.restitution_model`      ``restitution_orbits``      ``restitution_families``
+Fig. 4    :mod:`.schematics_figures`     –                           ``spring_damper_model``
+Fig. 5, 6 :mod:`.apparent_restitution`   ``apparent_restitution``    ``apparent_restitution``
+Fig. 7    :mod:`.time_histories`         ``contact_history``         ``contact_history``
+Fig. 8, 9 :mod:`.continuation_of_orbits` ``orbit_branches``          ``domains``
+Fig. 10   :mod:`.apparent_restitution`   ``frequency_sweep``         ``bounce_velocity``
+Fig. 11   :mod:`.permanent_contact`      ``permanent_contact``       ``permanent_contact``
+Fig. 12   :mod:`.time_histories`         ``both_histories``          ``both_histories``
+Fig. 13   :mod:`.apparent_restitution`   ``poincare_map``            ``poincare_map``
+Fig. 14   :mod:`.error_thresholds`       ``height_error``            ``height_error``
+Fig. 15   :mod:`.continuation_of_orbits` ``both_domains``            ``both_domains``
+Fig. 16   :mod:`.permanent_contact`      ``permanent_contact_error`` ``permanent_contact_error``
+Table 1   :mod:`.continuation_of_orbits` ``stability_ranges``        ``table1``
+========= ============================== =========================== ===========================
 
-A stage is a function ``study(parameters, …)`` that returns a dataset; the function of the same
-stage in the module ``…_figures`` draws it and computes nothing. Two stages have no picture and
-decide claims in words: :mod:`.lowest_period_doubling` and :mod:`.kinds_of_motion`. Stages share
+A stage is a rule of ``workflow/rules/paper.smk``. For each of its artifacts the rule names a
+study, a function ``study(parameters, …)`` of the module that returns a dataset, and the function in
+the module ``…_figures`` that draws this dataset and computes nothing. Two stages have no picture
+and decide claims in words: :mod:`.lowest_period_doubling` and :mod:`.kinds_of_motion`. Stages share
 :mod:`.orbit_parameters`, :mod:`.errors_along_ratio` and :mod:`.printed_table1`.
 """

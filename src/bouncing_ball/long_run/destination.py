@@ -268,7 +268,7 @@ def _advance(balls: Tracked, leg: Leg) -> None:
         first = sticking.store(forgot, leg.impact, balls.seen)
     balls.seen[:] += 1
     balls.time[:] += leg.passed
-    stretch.add(grown, forgot, balls.time, balls.seen)
+    stretch.add(grown, leg.contraction(), forgot, balls.time, balls.seen)
     if forgot.size:
         stretch.restart(first, balls.time)
 
@@ -356,7 +356,7 @@ def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
     """
     stretch = balls.stretch
     rate, error = stretch.exponent(which)
-    growth = stretch.sums[which, 1]
+    growth = stretch.of_motion(which)[:, 1]
     doubt = balls.doubt[which]
     separates = rate > _ERRORS * error
     # Next to a bifurcation neighbours may separate, but not exponentially.

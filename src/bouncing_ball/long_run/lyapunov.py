@@ -4,15 +4,24 @@ The deviation is multiplied by the derivative of the map and normalised to lengt
 impact; the logarithms of its growth are added up. The Lyapunov exponent is the ratio of the mean
 growth to the mean time, over sections of 32 impacts, so that its standard error can be computed.
 
-The speed of a nearly elastic ball changes slowly, so that its sections are not independent of each
-other: the speed forgets its value within some 1/(1 - r) impacts. The standard error is therefore
-also computed for blocks of 2, 4, 8, … sections (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461,
-1989), and the largest one is taken. Because few blocks tell their scatter badly, it is multiplied
-by the ratio of the quantiles 0.975 of Student's and of the normal distribution. Such a ball also
-gains speed for thousands of impacts, and its exponent falls meanwhile. The exponent of the first
-sections, between a quarter and a half of them, is therefore compared with that of the others. If
-they differ by more than three standard errors, the exponent drifts, and its error is at least the
-difference.
+The speed of a nearly elastic ball changes slowly. An impact multiplies its energy by r² and adds
+what the table gives, so that the difference of the mean energy from its stationary value falls by
+the factor e in a relaxation length of 1/(1 - r²) impacts. For every model the contraction of areas
+stands for r²: a relaxation length is the number of impacts in which areas contract by e. Therefore:
+
+* What the ball does in its first five relaxation lengths does not belong to the exponent, which is
+  that of the sections after them.
+* Sections that are no farther apart than some relaxation lengths are not independent. The standard
+  error is also computed for blocks of 2, 4, 8, … sections (Flyvbjerg and Petersen, J. Chem. Phys.
+  91, 461, 1989), and the largest one is taken. Because few blocks tell their scatter badly, it is
+  multiplied by the ratio of the quantiles 0.975 of Student's and of the normal distribution.
+* Sections over less than twenty relaxation lengths do not tell their scatter: the error of the
+  exponent is not known. If the ball is followed for less than the first five, its exponent is that
+  of all sections but two.
+
+The exponent of the first sections, between a quarter and a half of them, is also compared with that
+of the others. If they differ by more than three standard errors, the exponent drifts, and its error
+is at least the difference.
 
 The digits that a motion has lost follow from the same growth. They are counted anew when the ball
 forgets: when a contact shrinks the deviation so far that less than a rounding error is left of its
@@ -36,6 +45,9 @@ FORGOTTEN = DIGITS + float(np.log(NEAR))
 _BATCH = 32
 # Number of first sections that are left out.
 _TRANSIENT = 2
+# The numbers of relaxation lengths that are left out, and of those that tell the error.
+_SETTLED = 5.0
+_TELLING = 20.0
 # The exponent drifts if that of the first sections differs by this number of standard errors from
 # that of the others, which happens by chance once in four hundred.
 _DRIFTS = 3.0
@@ -70,6 +82,11 @@ class Stretching(NamedTuple):
     # The number of sections, and the sums over them of the growth g, the time t, g², g t and t²,
     # shape (balls, 6).
     sums: np.ndarray
+    # The sums of the sections before the motion had settled, whether it has, and the logarithm of
+    # the contraction of areas since then, or since the start.
+    unsettled: np.ndarray
+    settled: np.ndarray
+    contraction: np.ndarray
     # The same for blocks of 2, 4, 8, … sections, shape (balls, levels, 6), and g and t of the last
     # section or block that is the first one of a pair, shape (balls, levels, 2).
     of_blocks: np.ndarray
@@ -92,6 +109,9 @@ class Stretching(NamedTuple):
             section_growth=np.zeros(balls),
             section_start=np.zeros(balls),
             sums=np.zeros((balls, 6)),
+            unsettled=np.zeros((balls, 6)),
+            settled=np.zeros(balls, dtype=bool),
+            contraction=np.zeros(balls),
             of_blocks=np.zeros((balls, _LEVELS, 6)),
             unpaired=np.zeros((balls, _LEVELS, 2)),
             latest=np.zeros((balls, 6)),
@@ -119,13 +139,20 @@ class Stretching(NamedTuple):
         return np.flatnonzero(sticks & (self.growth + grown < self.least - DIGITS))
 
     def add(
-        self, grown: np.ndarray, forgot: np.ndarray, time: np.ndarray, seen: np.ndarray
+        self,
+        grown: np.ndarray,
+        contraction: np.ndarray,
+        forgot: np.ndarray,
+        time: np.ndarray,
+        seen: np.ndarray,
     ) -> None:
-        """Add the growth at an impact.
+        """Add the growth at an impact, and the factor by which areas contract on the way to it.
 
         ``forgot`` are the indices of the balls that forget there, ``time`` and ``seen`` the time of
         the impact and its number.
         """
+        with np.errstate(divide="ignore"):
+            self.contraction[:] += np.log(np.abs(contraction))
         self.section_growth[:] += grown
         self.growth[:] += grown
         if forgot.size:
@@ -142,6 +169,7 @@ class Stretching(NamedTuple):
             self.section_growth[at] = 0
             self.section_start[at] = time[at]
             counts = seen[at] > _TRANSIENT * _BATCH
+            self._settle(at)
             self.sums[at[counts]] += _terms(g, t)[counts]
             self._pair(at[counts], g[counts], t[counts])
             number = self.sums[at, 0].astype(int)
@@ -150,6 +178,15 @@ class Stretching(NamedTuple):
                 balls = at[doubled]
                 self.first[balls] = self.latest[balls]
                 self.latest[balls] = self.sums[balls]
+
+    def _settle(self, balls: np.ndarray) -> None:
+        """Begin the sums again for balls whose motion has just settled."""
+        new = balls[(self.contraction[balls] <= -_SETTLED) & ~self.settled[balls]]
+        self.settled[new] = True
+        self.contraction[new] = 0
+        self.unsettled[new] = self.sums[new]
+        for sums in (self.sums, self.latest, self.first, self.of_blocks):
+            sums[new] = 0
 
     def _pair(self, balls: np.ndarray, growth: np.ndarray, time: np.ndarray) -> None:
         """Join new sections of some balls with those before them to blocks of 2, 4, 8, … sections.
@@ -174,7 +211,7 @@ class Stretching(NamedTuple):
         """Begin the exponent again for balls that have forgotten for the first time."""
         self.section_growth[which] = 0
         self.section_start[which] = time[which]
-        for sums in (self.sums, self.latest, self.first, self.of_blocks):
+        for sums in (self.sums, self.unsettled, self.latest, self.first, self.of_blocks):
             sums[which] = 0
 
     def lost(self) -> np.ndarray:
@@ -201,18 +238,26 @@ class Stretching(NamedTuple):
         >>> rate.tolist(), error.tolist()
         ([2.0], [1.0])
         """
-        rate, error = _rate(self.sums[which])
+        rate, error = _rate(self.of_motion(which))
         return rate, np.where(error > _EQUAL * np.abs(rate), error, np.nan)
 
+    def of_motion(self, which: np.ndarray) -> np.ndarray:
+        """The sums of some balls over the sections of their motions, shape (balls, 6); those before
+        they had settled if there are no two others.
+        """
+        few = (self.sums[which, 0] < 2) & (self.unsettled[which, 0] >= 2)
+        return np.where(few[:, np.newaxis], self.unsettled[which], self.sums[which])
+
     def uncertainty(self, which: np.ndarray) -> np.ndarray:
-        """The error of the exponent: an interval of twice the error on both sides has 95 %, also if
-        the motion changes slowly, or drifts.
+        """The error of the exponent: an interval of twice the error on both sides has about 95 %;
+        NaN if the motion was followed for too few relaxation lengths to tell it.
 
         Examples
         --------
         Sixteen sections, of which eight have the growth 1 and then eight the growth 3:
 
         >>> stretch = Stretching.of(1)
+        >>> stretch.settled[:], stretch.contraction[:] = True, -100.0
         >>> for g in 8 * [1.0] + 8 * [3.0]:
         ...     stretch.sums[0] += 1, g, 1, g * g, g, 1
         ...     stretch._pair(np.array([0]), np.array([g]), np.ones(1))
@@ -230,7 +275,8 @@ class Stretching(NamedTuple):
             with np.errstate(invalid="ignore", divide="ignore"):
                 error = np.where(enough, wider * _rate(sums)[1], 0.0)
             found = np.fmax(found, error)
-        return found
+        tells = self.settled[which] & (self.contraction[which] <= -_TELLING)
+        return np.where(tells, found, np.nan)
 
     def drift(self, which: np.ndarray) -> np.ndarray:
         """The change of the exponent from the first sections to the others, 0 if it is within the

@@ -105,12 +105,15 @@ def lyapunov_exponent(
     -------
     Result
         ``lyapunov_exponent`` with ``lyapunov_error``: twice this error on both sides is an interval
-        of 95 %, also if the motion changes slowly; and the ``kind`` of the
-        motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
-        later motion does not depend on earlier impacts. ``exponent_sum`` is the sum of both
-        exponents: the mean of the logarithm of the determinant of the return map, over one
-        repetition, or over as many impacts as the ball was followed for. ``second_exponent`` is
-        the difference of the two. The figure shows the largest exponents with their errors.
+        of about 95 %. The error is NaN if the ball was followed for less than 25 times the number
+        of impacts in which areas contract by e, about 1/(1 - r²): 2500 impacts at r = 0.995 and
+        12500 at r = 0.999. The exponent of a nearly elastic ball falls as its speed rises, and may
+        be wrong by half of it then. The ``kind`` is that of the motion. For a periodic motion the
+        exponent follows from the larger multiplier, and is -∞ if the later motion does not depend
+        on earlier impacts. ``exponent_sum`` is the sum of both exponents: the mean of the logarithm
+        of the determinant of the return map, over one repetition, or over as many impacts as the
+        ball was followed for. ``second_exponent`` is the difference of the two. The figure shows
+        the largest exponents with their errors.
 
     Raises
     ------

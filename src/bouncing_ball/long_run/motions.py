@@ -66,9 +66,9 @@ class Motions(Batch):
         Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
         the larger multiplier, and is -∞ if the multiplier is zero; NaN where it is not known.
     exponent_error : array
-        Error of the exponent, twice which on both sides is an interval of 95 %, also if the motion
-        changes slowly (:meth:`.Stretching.uncertainty`); 0 for a motion that repeats, and NaN where
-        it is not known.
+        Error of the exponent, twice which on both sides is an interval of about 95 %
+        (:meth:`.Stretching.uncertainty`); 0 for a motion that repeats, and NaN where it is not
+        known, as for a motion that was followed for less than 25 of its relaxation lengths.
     reason : array of Reason
         The reason for which a motion is undecided, or the period of a locked motion not known.
     followed : array of int

@@ -13,7 +13,7 @@ Eqs.    what                      where
 6       phase of the n-T orbit    ``periodic.one_impact.restitution_branch.phase``
 7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
 8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
-9       rest on the table         ``models.setting.Setting.lift_off``
+9       rest on the table         ``models.setting.lift_off_phase``
 ..      its largest Λ, Λ_CR       ``models.permanent_contact.RESTITUTION_THRESHOLD``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``
@@ -42,9 +42,11 @@ Eqs.    what                      where
 
 The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only
 the threshold that follows from them (Eqs. 32 and 33). The row of these equations leads to the
-printed form of the last one. Eq. 8 is the period doubling of Holmes' map: its function gives it for
-that map, and by default that of the exact return map. The release (Eq. 23) is searched
-on the motion of Eq. 12 as the class ``ClosedFormMotion`` of the linear contact writes it.
+printed form of the last one. Eqs. 18 and 20 are conditions, which n-T orbits meet because they have
+one impact in n periods; the function is that of Eq. 19. Eq. 8 is the period doubling of Holmes'
+map: its function gives it for that map, and by default that of the exact return map. The release
+(Eq. 23) is searched on the motion of Eq. 12 as the class ``ClosedFormMotion`` of the linear contact
+writes it.
 
 Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The paper solves Eqs. 21-26 by
 continuation; at a given duration of the contact they are linear, so that the library also has

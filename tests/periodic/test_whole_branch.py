@@ -41,15 +41,18 @@ def test_a_branch_is_the_same_alone_and_beside_others(release):
     assert not all(isinstance(each, Followed) for each in together)
 
 
-def test_a_branch_is_kept_if_an_event_next_to_its_end_cannot_be_located():
+def test_a_branch_is_kept_where_a_doubling_is_announced_next_to_its_end():
     """Without damping all multipliers tend to -1 at permanent contact, at Λ = |ϖ² - 1|/ϖ² = 3, and
-    rounding errors decide where a doubling is announced. Λ - 3 is 3 T²/8 for a flight of T.
+    rounding errors decide whether a doubling is announced, which cannot be located. Λ - 3 is
+    3 T²/8 for a flight of T.
     """
     ball = bouncing_ball.spring_damper(restitution=1.0, frequency_ratio=0.5)
     found = bouncing_ball.branch(ball, n=1, points=30)
     lost, reached = (str(reason) for reason in found.end_reason.values)
-    assert lost.startswith("the flight vanishes: the orbit merges with permanent contact; ")
-    assert "period doubling" in lost and lost.endswith("could not be located")
+    merges = "the flight vanishes: the orbit merges with permanent contact"
+    assert lost == merges or (
+        lost.startswith(f"{merges}; ") and lost.endswith("could not be located")
+    )
     assert reached == "amplitude = 4.2 is reached"
     assert found.special_kind.size == 0
     flight = 2 * np.pi - float(found.contact_duration[0])

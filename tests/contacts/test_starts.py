@@ -14,7 +14,8 @@ from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.spring_damper import SpringDamper
 
-ORBIT, CHAOTIC = MotionName(Kind.ORBIT, 1, 1), MotionName(Kind.CHAOTIC, 0, 0)
+ORBIT = MotionName(Kind.ORBIT, 1, 1)
+CHAOTIC = MotionName(Kind.CHAOTIC, 0, 0)
 Z = NormalDist().inv_cdf(0.975)
 
 

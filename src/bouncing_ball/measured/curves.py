@@ -130,7 +130,8 @@ class LawCurve:
         """θ of the law that has this r at v₀, close enough for the start of a fit."""
         if self.kind is None or self.is_constant:
             return restitution
-        low, high = 0, _GROUPS.size - 1
+        low = 0
+        high = _GROUPS.size - 1
         while high - low > 1:
             middle = (low + high) // 2
             if _free(self.kind, _GROUPS[middle]).restitution >= restitution:

@@ -181,7 +181,7 @@ def _next_is_rounding(before: np.ndarray, size: np.ndarray) -> np.ndarray:
 def solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solutions (..., N) of linear systems; NaN where a matrix is singular or has NaN entries.
 
-    From 100 unknowns on they are sparse systems, because a leg has few of the unknowns. A dense
+    From 100 unknowns on they are sparse systems, because each equation has few of them. A dense
     solver would divide each of them among threads, which takes many times as long as one thread.
 
     Examples
@@ -229,8 +229,9 @@ def failure(problem: Problem, found: Correction) -> str:
 
 
 def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
-    """The condition that y lies in the plane ``normal · (y - through) = 0``; y has the shape of the
-    points ``through`` which the planes lead.
+    """The condition that y lies in the plane ``normal · (y - through) = 0``.
+
+    y has the shape of ``through``, the points through which the planes lead.
 
     Examples
     --------

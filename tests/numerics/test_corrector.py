@@ -177,3 +177,23 @@ def test_systems_of_few_and_of_many_unknowns_have_their_solutions(legs):
     regular = [0, 2, 3]
     lost = np.linalg.cond(matrices[regular])[:, np.newaxis] * np.abs(expected[regular]).max()
     assert np.all(np.abs(found[regular] - expected[regular]) < 1e-15 * lost)
+
+
+def test_a_known_solution_stays_as_it_is():
+    """Also beside an unknown that is so large that all steps are short against the vector."""
+
+    def equations(y):
+        values = np.stack([y[..., 0] ** 2 - 2, y[..., 1] - 1e6], axis=-1)
+        zero = np.zeros(y.shape[:-1])
+        rows = [[2 * y[..., 0], zero], [zero, zero + 1]]
+        return values, np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+    # The double nearest to the root of 2, the one beside it, and one that is off by much more than
+    # rounding, but by little against the second unknown.
+    root = np.sqrt(2.0)
+    beside = np.nextafter(root, 2.0)
+    guess = np.array([[root, 1e6], [beside, 1e6], [root + 1e-11, 1e6]])
+    found = solve(equations, guess)
+    assert found.converged.all()
+    assert found.point[:2, 0].tolist() == [root, beside]
+    assert abs(found.point[2, 0] - root) <= 2 * EPS

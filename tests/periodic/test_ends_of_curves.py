@@ -295,7 +295,7 @@ def test_branch_and_follow_name_a_lost_release_of_a_law_in_the_same_words():
     lost = "the orbit is next to a release without speed, where its equations are not smooth"
     assert str(whole.end_reason[0].values) == lost
     first, _, inner, *_ = whole.states()
-    followed = bouncing_ball.follow(inner, to=1.1 * first.amplitude, points=20)
+    followed = bouncing_ball.follow(inner, to=1.1 * first.amplitude, points=30)
     assert str(followed.end_reason[1].values) == lost
     for found in (whole, followed):
         assert "release lost" not in found.special_kind.values

@@ -11,6 +11,7 @@ above the table's highest point, z > Λ, and the search skips this part.
 """
 
 import math
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,6 +59,13 @@ class Lagged(NamedTuple):
     free_rate: Any = None
 
 
+class Above(NamedTuple):
+    """The times at which a ball passes the table's highest point, z = Λ; equal if it does not."""
+
+    begins: np.ndarray
+    ends: np.ndarray
+
+
 class Flight(Motion):
     """The motion y = -δ of balls in flight; its first upward zero is the landing.
 
@@ -77,12 +85,14 @@ class Flight(Motion):
         self.x = x
         self.y = y
         self.amplitude = amplitude
-        absolute = velocity + x
-        square = absolute * absolute + _TWO * (displacement + (y - amplitude))
+
+    @cached_property
+    def above(self) -> Above:
+        """The times between which z > Λ."""
+        absolute = self.velocity + self.x
+        square = absolute * absolute + _TWO * (self.displacement + (self.y - self.amplitude))
         root = np.sqrt(np.maximum(square, _ZERO))
-        # z > Λ between these two times; they are equal if z never exceeds Λ.
-        self.above = absolute - root
-        self.below = absolute + root
+        return Above(absolute - root, absolute + root)
 
     def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """δ, δ′, δ″ and δ‴ after a time of flight."""
@@ -125,7 +135,8 @@ class Flight(Motion):
 
     def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
         """The end of the time in which z > Λ, or the time itself if it is not within this time."""
-        return np.where((time >= self.above) & (time < self.below), self.below, time)
+        begins, ends = self.above
+        return np.where((time >= begins) & (time < ends), ends, time)
 
     @property
     def strongest(self) -> Any:

@@ -30,7 +30,7 @@ from bouncing_ball.periodic.orbits.problem import OrbitEquations, turns_of_half,
 from bouncing_ball.periodic.orbits.special import Coordinates, Special, halves, turns_apart
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
-STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
+STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
 """Steps in arclength, over the phases, the velocities and arsinh of the parameter. A branch ends
 where its points accumulate, for example where its orbits merge with permanent contact."""
 PATIENT = NewtonSettings(max_iterations=20, longest=0.3)

@@ -98,6 +98,8 @@ def branch_variables(found: Orbits) -> dict[str, Any]:
 def _in_order(found: Orbits, special: "_Special") -> Orbit:
     """The orbits of a branch, and after them its special orbits in their order along it."""
     count = len(found)
+    if np.all(np.diff(special.order) > 0):
+        return found.with_special
     return found.with_special[np.concatenate([np.arange(count), count + special.order])]
 
 

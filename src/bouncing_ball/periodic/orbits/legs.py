@@ -111,6 +111,15 @@ class Legs:
         return product_of(self.matrices)
 
     @cached_property
+    def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
+        """Trace and determinant of the monodromy of each orbit.
+
+        The determinant is the product of the contractions.
+        """
+        product = self.monodromy
+        return product[..., 0, 0] + product[..., 1, 1], self.contraction.prod(axis=-1)
+
+    @cached_property
     def contraction(self) -> np.ndarray:
         """The factors by which the contacts multiply areas."""
         if self.dynamics is None:

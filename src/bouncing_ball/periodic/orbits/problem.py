@@ -62,8 +62,8 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation
 _DIFFERENCE = 6e-6
 # An orbit that is moved by h lands earlier or later by about h/v at a slow impact, which must be
 # small against v/a, the time in which its speed changes. The step is therefore shorter by the
-# square of the ratio of the slowest impact to this speed, in its unit, and by this factor at most.
-_SLOW = 0.1
+# square of this factor times the slowest impact, in its unit, and by _LEAST at most.
+_PER_SLOW = 10.0
 _LEAST = 1e-4
 # Where the second difference of the height or the velocity of a leg is larger than this and than
 # half of the first one, it has no derivative but a jump. A jump that is not noticed spoils a
@@ -351,12 +351,13 @@ class OrbitEquations:
         lengths = []
         for j, (column, (low, high)) in enumerate(zip(columns, limits, strict=True)):
             here = y[..., column]
-            inside = (here >= low) & (here <= high)
             moved = step[..., column]
-            if not inside.all():
-                moved = np.where(inside, moved, 0.0)
-            right = np.minimum(here + moved, np.maximum(here, high))
-            left = np.maximum(here - moved, np.minimum(here, low))
+            right = here + moved
+            left = here - moved
+            if not ((left >= low) & (right <= high)).all():
+                inside = (here >= low) & (here <= high)
+                right = np.where(inside, np.minimum(right, high), here)
+                left = np.where(inside, np.maximum(left, low), here)
             points[1 + 2 * j, ..., column] = right
             points[2 + 2 * j, ..., column] = left
             lengths.append(right - left)
@@ -370,11 +371,13 @@ class OrbitEquations:
     def _step(self, y: np.ndarray) -> np.ndarray:
         """The steps of the central differences, of the shape of y."""
         unit = np.asarray(self.unit)
-        step = np.full(y.shape, _DIFFERENCE * unit)
         _, speed = self.states(np.abs(y / unit))
         # The whole step where the speed is not known.
-        share = np.maximum(np.fmin(speed.min(axis=-1) / _SLOW, 1.0) ** 2, _LEAST)
-        return step * share[..., np.newaxis]
+        slowest = np.fmin(speed.min(axis=-1) * _PER_SLOW, 1.0)
+        share = np.maximum(slowest * slowest, _LEAST)
+        step = np.empty(y.shape)
+        step[...] = (_DIFFERENCE * unit) * share[..., np.newaxis]
+        return step
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""
@@ -394,12 +397,8 @@ class OrbitEquations:
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Trace and determinant of the monodromy, each with the leading shape of y.
-
-        The determinant is the product of the contractions.
-        """
-        m = self.monodromy(y)
-        return m.a + m.d, self.compared(y).here.contraction.prod(axis=-1)
+        """Trace and determinant of the monodromy, each with the leading shape of y."""
+        return self.compared(y).here.trace_and_determinant
 
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
@@ -469,8 +468,8 @@ class LegsBeside:
         matrix = np.zeros((*leading, size, self.points.shape[-1]))
         self._fill_states(matrix)
         for j, column in enumerate(range(size, matrix.shape[-1])):
-            slope = self.slope(j, legs.residual)
             right, left = self.sides(j, legs.residual)
+            slope = self.slope(j, legs.residual)
             if (np.abs(right + left - 2 * legs.residual[0]) > _JUMP).any():
                 bend = self.bend(j, column, legs.residual)
                 jumps = bend > np.maximum(np.abs(right - left) / 2, _JUMP)

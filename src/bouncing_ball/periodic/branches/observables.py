@@ -200,8 +200,7 @@ def _orbits_in_columns(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict
     for name in ("phase", "contact_duration"):
         data[f"special_{name}"] = ("special", "impact"), observed[name][count:]
     data["stable"] = "point", orbits.is_stable()[:count]
-    # A special orbit is next to an inadmissible one, whose simulation is of no use.
-    data["admissible"] = "point", orbits[:count].is_admissible()
+    data["admissible"] = "point", orbits.is_admissible()[:count]
     defect = orbits.defect()
     data["residual"] = "point", defect[:count]
     data["digits_left"] = "point", orbits.digits_left()[:count]

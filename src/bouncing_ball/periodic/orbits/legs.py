@@ -208,8 +208,11 @@ def lag_of(dynamics: Dynamics, resumes: np.ndarray) -> np.ndarray:
 
 
 def without_force(impact: Impact, lag: np.ndarray) -> Impact:
-    """The impacts at δ = -κ δ′, where the force of the contact is zero; at δ = 0 for κ = 0."""
-    if not lag.any():
+    """The impacts at δ = -κ δ′, where the force of the contact is zero; at δ = 0 for κ = 0.
+
+    κ is an array over the impacts, or the number 0.
+    """
+    if not (lag.ndim and lag.any()):
         return impact
     return impact._replace(displacement=-lag * impact.velocity)
 

@@ -306,4 +306,5 @@ def count(high: int, low: int = 1) -> Range:
 FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
 AMPLITUDE = Range(1e-12, 1e8, "[]", or_zero=True)
 RESTITUTION = Range(0, 1, "(]")
+DAMPING_RATIO = Range(0, 1, "[)")
 FAMILY = count(1000)

@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bouncing_ball import contact_law
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 EPS = np.finfo(float).eps
 
@@ -96,3 +98,14 @@ def test_an_overdamped_ball_rebounds_where_its_force_vanishes(release, zeta):
     assert float(SpringDamper(2.0, zeta, release).free_duration) == pytest.approx(up.t[-1] / 2)
     many = SpringDamper(1.0, np.array([0.1, zeta]), release)
     assert many.free_duration[1] == contact.free_duration
+
+
+def test_a_ball_on_a_contact_without_closed_form_is_refused_with_its_maker(refusal):
+    # "displacement" has no such ball at all: its contact would not end.
+    with refusal(ModelError, "damping ratio ζ = 1.2 is not below 1"):
+        SpringDamperModel(SpringDamper(10.0, 1.2, "displacement"))
+    for contact in (SpringDamper(10.0, 1.2, "force"), SpringDamper(10.0, 0.2, "approach")):
+        with refusal(ModelError, f"the release {contact.release} ", 'contact_law("linear", '):
+            SpringDamperModel(contact)
+        law = {"frequency_ratio": 10.0, "damping_ratio": float(contact.damping_ratio)}
+        assert contact_law("linear", **law, release=str(contact.release)).impact_law == contact

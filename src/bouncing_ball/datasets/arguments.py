@@ -11,6 +11,7 @@ import numpy as np
 
 from bouncing_ball.errors import (
     AMPLITUDE,
+    DAMPING_RATIO,
     FAMILY,
     FREQUENCY_RATIO,
     RESTITUTION,
@@ -31,7 +32,6 @@ WholeAxis = Union[int, Sequence[int], np.ndarray, "DataArray"]
 """A whole number, or an array of whole numbers, which is an axis of the result."""
 
 AMPLITUDE_OF_ORBIT = AMPLITUDE._replace(or_zero=False)
-DAMPING_RATIO = Range(0, 1, "[)")
 TOLERANCE = Range(0, 1)
 # Heights, speeds and durations, and phases and velocities: their squares keep digits beside Λ.
 POSITIVE = Range(1e-12, 1e8, "[]")

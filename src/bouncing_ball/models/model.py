@@ -27,23 +27,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
+from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, Range
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
 from bouncing_ball.models.setting import PAPER, PaperSetting, Setting
-from bouncing_ball.models.suspension import DRAG, SPRING_DAMPING, SPRING_FREQUENCY
+from bouncing_ball.models.suspension import DRAG, SPRING_FREQUENCY
 from bouncing_ball.numerics.arrays import Batch, in_words
 
 RANGES: Mapping[str, Range] = {
     "frequency_ratio": FREQUENCY_RATIO,
     "restitution": RESTITUTION,
-    "damping_ratio": Range(0, 1, "[)"),
+    "damping_ratio": DAMPING_RATIO,
     "damping": Range(0, np.inf, "[)"),
     "drag": DRAG,
     "spring_frequency": SPRING_FREQUENCY,
-    "spring_damping": SPRING_DAMPING,
+    "spring_damping": DAMPING_RATIO,
 }
 """The ranges of the parameters of models that have one; other parameters are finite numbers."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, ParameterError, shortened
+from bouncing_ball.models.damping import Release
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.held_contact import held_by, held_threshold
 from bouncing_ball.models.instant import Instant
@@ -53,14 +54,17 @@ class SpringDamperModel(Model):
     def __post_init__(self) -> None:
         if not isinstance(self.contact, SpringDamper):
             raise ParameterError("contact = {} is not a SpringDamper", shortened(self.contact))
-        if not self.contact.release.is_linear:
+        release = self.contact.release
+        if release is Release.DISPLACEMENT:
+            # A contact that does not oscillate never comes back to the level of the table.
+            self.contact.require_underdamped()
+        elif not self.contact.is_linear_and_underdamped:
+            fault = "does not oscillate for ζ ≥ 1" if release.is_linear else "is not linear"
             raise ModelError(
-                f"a contact with the release {self.contact.release} is not linear: make its ball "
-                f'with contact_law("linear", frequency_ratio=…, damping_ratio=…, '
-                f'release="{self.contact.release}")'
+                f"a contact with the release {release} {fault}: make its ball with "
+                f'contact_law("linear", frequency_ratio=…, damping_ratio=…, release="{release}")'
             )
         require_setting(self.setting)
-        self.contact.require_underdamped()
         if not self.setting.is_paper:
             held_by(self.contact, self.setting).check(self.setting.waveform)
 

@@ -28,14 +28,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ParameterError, Range, shortened
+from bouncing_ball.errors import DAMPING_RATIO, ParameterError, Range, shortened
 from bouncing_ball.models.waveform import Waveform
 from bouncing_ball.numerics.arrays import Batch, as_numbers
 from bouncing_ball.numerics.elementary import exponential, sine_and_cosine
 
 DRAG = Range(0, ends="[)")
 SPRING_FREQUENCY = Range(0)
-SPRING_DAMPING = Range(0, 1, "[)")
 # Below this s max(√q, l) the responses are power series, of which this number of terms is enough
 # for double precision; above it the closed forms lose less than two digits.
 _SHORT, _TERMS = 0.5, 16
@@ -170,7 +169,7 @@ class Spring(Suspension):
 
     def __post_init__(self) -> None:
         _check("spring_frequency", self.spring_frequency, SPRING_FREQUENCY)
-        _check("spring_damping", self.spring_damping, SPRING_DAMPING)
+        _check("spring_damping", self.spring_damping, DAMPING_RATIO)
         _check("gap", self.gap, Range())
         self.check_shape()
 

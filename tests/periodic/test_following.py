@@ -20,10 +20,10 @@ from bouncing_ball.periodic.branches.switching import switch
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.halves import turns_apart, twice
 from bouncing_ball.periodic.orbits.orbit import orbit_of_point
-from bouncing_ball.periodic.orbits.problem import twice
 from bouncing_ball.periodic.orbits.simulation import is_admissible
-from bouncing_ball.periodic.orbits.special import Special, turns_apart
+from bouncing_ball.periodic.orbits.special import Special
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 

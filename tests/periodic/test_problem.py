@@ -6,7 +6,7 @@ import shooting
 from orbits_found import FOUND, balls, found_orbit, known_orbit
 
 from bouncing_ball.periodic.branches.following import point_near
-from bouncing_ball.periodic.orbits.problem import twice
+from bouncing_ball.periodic.orbits.halves import twice
 from bouncing_ball.periodic.orbits.simulation import is_admissible
 from bouncing_ball.periodic.orbits.special import flight_margin, opening_rate
 from bouncing_ball.periodic.orbits.stability import Bifurcation

@@ -25,9 +25,10 @@ from bouncing_ball.periodic.orbits.ends import (
     reason_at,
     with_explained_ends,
 )
+from bouncing_ball.periodic.orbits.halves import halves, turns_apart, turns_of_half, twice
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import OrbitEquations, turns_of_half, twice
-from bouncing_ball.periodic.orbits.special import Coordinates, Special, halves, turns_apart
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
+from bouncing_ball.periodic.orbits.special import Coordinates, Special
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)

@@ -22,7 +22,7 @@ from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tang
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.one_impact import corrected_branch as line
-from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
+from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel, in_order
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.ends import (
     ENDS,
@@ -34,7 +34,7 @@ from bouncing_ball.periodic.orbits.ends import (
     with_explained_ends,
 )
 from bouncing_ball.periodic.orbits.impacts import check_index
-from bouncing_ball.periodic.orbits.orbit import Orbit, in_order, orbit_of_point
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import bifurcations
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side

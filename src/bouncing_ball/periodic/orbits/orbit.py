@@ -459,18 +459,3 @@ def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Or
         kind=kind,
         along=along,
     )
-
-
-def in_order(orbits: list[Orbit], none: Orbit) -> Orbit:
-    """Those of the single n-T orbits of one model at one Λ that exist, as a row in order of contact
-    duration.
-
-    Both sides of a saddle-node are one orbit at the saddle-node itself. ``none`` is an orbit of
-    this model, which determines an empty row.
-    """
-    places = {(x.phase, x.contact_duration, x.impact_velocity, x.amplitude) for x in orbits}
-    known = [place for place in places if not any(np.isnan(place))]
-    # The orbit with the larger phase, which is on the stable side, comes first of two instants.
-    known.sort(key=lambda place: (place[1], -place[0]))
-    phase, duration, velocity, lam = np.array(known).reshape(-1, 4).T
-    return Orbit.of(none.model, none.n, lam, phase, duration, velocity)

@@ -54,6 +54,7 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
+from bouncing_ball.periodic.orbits.beside import LegsBeside
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, landed, without_force
 from bouncing_ball.periodic.orbits.products import shifted_determinant
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -65,10 +66,6 @@ _DIFFERENCE = 6e-6
 # square of this factor times the slowest impact, in its unit, and by _LEAST at most.
 _PER_SLOW = 10.0
 _LEAST = 1e-4
-# Where the second difference of the height or the velocity of a leg is larger than this and than
-# half of the first one, it has no derivative but a jump. A jump that is not noticed spoils a
-# solution by 1e-7 of its size.
-_JUMP = 1e-3
 # The ends of the range of a phase or a velocity.
 _UNLIMITED = np.array([-np.inf, np.inf])
 # κ of a contact that starts at δ = 0.
@@ -192,26 +189,35 @@ class OrbitEquations:
         return np.concatenate([np.broadcast_to(x, (*leading, x.shape[-1])) for x in parts], axis=-1)
 
     @cached_property
-    def _alone(self) -> Callable[[tuple[int, ...], bytes], Legs]:
-        # Several events need the legs at the same points.
-        def legs(shape: tuple[int, ...], entries: bytes) -> Legs:
-            return self._legs(np.frombuffer(entries).reshape(shape))
-
-        return lru_cache(maxsize=_KEPT)(legs)
-
-    @cached_property
-    def _kept(self) -> dict[tuple[tuple[int, ...], bytes], "LegsBeside"]:
-        # The last points at which legs were compared, in order. A step along a branch evaluates the
-        # residual, the Jacobian and the events at the same points.
+    def _kept(self) -> dict[tuple[tuple[int, ...], bytes], LegsBeside]:
+        # The legs at the last points, in order. A step along a branch evaluates the residual, the
+        # Jacobian and the events at the same points.
         return {}
+
+    def _known(self, y: np.ndarray, directions: int) -> LegsBeside:
+        """The legs at y and at points beside it in at least so many directions."""
+        place = y.shape, y.tobytes()
+        known = self._kept.get(place)
+        if known is None or len(known.lengths) < directions:
+            points, lengths = self._points_around(y, directions)
+            known = LegsBeside(points, lengths, self._legs(points), self.selects)
+            self._kept[place] = known
+            if len(self._kept) > _KEPT:
+                del self._kept[next(iter(self._kept))]
+        return known
 
     def legs(self, y: np.ndarray) -> Legs:
         """The legs of the orbits at points y of shape (..., N + parameters)."""
-        place = y.shape, y.tobytes()
-        # If no parameter varies there are no points beside y.
-        if self.along and place not in self._kept:
-            return self._alone(*place)
-        return self.compared(y).here
+        return self._known(y, 0).here
+
+    def compared(self, y: np.ndarray, everywhere: bool = False) -> LegsBeside:
+        """The legs at y and at points beside it.
+
+        They are y itself, y moved by ± the step of the differences in each parameter, and, if
+        ``everywhere`` is set, y with all θ or all v moved: a leg depends on the state at its start
+        alone. The latter may be there also if it is not set.
+        """
+        return self._known(y, len(self.along) + (2 if everywhere else 0))
 
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
@@ -314,42 +320,23 @@ class OrbitEquations:
             return here
         return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
 
-    def compared(self, y: np.ndarray, everywhere: bool = False) -> "LegsBeside":
-        """The legs at y and at points beside it.
-
-        They are y itself, y moved by ± the step of the differences in each parameter, and, if
-        ``everywhere`` is set, y with all θ or all v moved: a leg depends on the state at its start
-        alone. The latter may be there also if it is not set.
-        """
-        place = y.shape, y.tobytes()
-        known = self._kept.get(place)
-        if known is None or (everywhere and not known.everywhere):
-            points, lengths = self._points_around(y, everywhere)
-            known = LegsBeside(points, lengths, self._legs(points), self.selects, everywhere)
-            self._kept[place] = known
-            if len(self._kept) > _KEPT:
-                del self._kept[next(iter(self._kept))]
-        return known
-
-    def _points_around(
-        self, y: np.ndarray, everywhere: bool
-    ) -> tuple[np.ndarray, list[np.ndarray]]:
-        """The points of :meth:`compared`, and the distances of each pair of them.
+    def _points_around(self, y: np.ndarray, directions: int) -> tuple[np.ndarray, list[np.ndarray]]:
+        """The points of :meth:`compared` in the first of its directions, and the distances of each
+        pair of them.
 
         Points beside y do not leave the ranges of the parameters. Where y itself is outside of
         them, they are equal to y.
         """
-        columns: list[Any] = [slice(j, j + 1) for j in range(self.size, y.shape[-1])]
-        limits = self._limits
-        if everywhere:
-            columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
-            limits = [*limits, _UNLIMITED, _UNLIMITED]
-        points = np.repeat(y[np.newaxis], 1 + 2 * len(columns), axis=0)
-        if not columns:
+        points = np.repeat(y[np.newaxis], 1 + 2 * directions, axis=0)
+        if not directions:
             return points, []
+        columns = [slice(j, j + 1) for j in range(self.size, y.shape[-1])]
+        columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
+        limits = [*self._limits, _UNLIMITED, _UNLIMITED]
+        ranges = zip(columns[:directions], limits[:directions], strict=True)
         step = self._step(y)
         lengths = []
-        for j, (column, (low, high)) in enumerate(zip(columns, limits, strict=True)):
+        for j, (column, (low, high)) in enumerate(ranges):
             here = y[..., column]
             moved = step[..., column]
             right = here + moved
@@ -436,126 +423,3 @@ class OrbitEquations:
 def _of_next(values: np.ndarray) -> np.ndarray:
     """Values of the impacts of orbits, shape (..., k), for the impact after each of them."""
     return np.concatenate([values[..., 1:], values[..., :1]], axis=-1)
-
-
-@dataclass(frozen=True)
-class LegsBeside:
-    """Points beside some points y, and the legs there.
-
-    The first axis of ``points`` and of the legs has y, and then a pair of points for each direction
-    in which y is moved: along the parameters, and, if ``everywhere`` is set, along all θ and all v.
-    ``lengths`` are the distances of the two points of each pair, shape (..., 1), or (..., k) for θ
-    and v. ``selects`` is that of the equations.
-    """
-
-    points: np.ndarray
-    lengths: list[np.ndarray]
-    legs: Legs
-    selects: bool
-    everywhere: bool
-
-    @cached_property
-    def here(self) -> Legs:
-        """The legs at the points y."""
-        return self.legs.first()
-
-    @cached_property
-    def jacobian(self) -> np.ndarray:
-        """The Jacobian of the equations at y, shape (..., N, N + parameters)."""
-        legs = self.legs
-        *leading, k = legs.duration.shape[1:]
-        size = k * (3 if self.selects else 2)
-        matrix = np.zeros((*leading, size, self.points.shape[-1]))
-        self._fill_states(matrix)
-        for j, column in enumerate(range(size, matrix.shape[-1])):
-            right, left = self.sides(j, legs.residual)
-            slope = self.slope(j, legs.residual)
-            if (np.abs(right + left - 2 * legs.residual[0]) > _JUMP).any():
-                bend = self.bend(j, column, legs.residual)
-                jumps = bend > np.maximum(np.abs(right - left) / 2, _JUMP)
-                slope = np.where(jumps, np.nan, slope)
-            matrix[..., : 2 * k, column] = slope.reshape(*leading, 2 * k)
-            if self.selects:
-                matrix[..., 2 * k :, column] = -self.slope(j, legs.duration)
-        if self.selects:
-            self._fill_durations(matrix)
-        return matrix
-
-    def _fill_states(self, matrix: np.ndarray) -> None:
-        """The derivatives by the states: L (DP ds_i - ds_{i+1}), where L has the rows (δ′, 0) and
-        (-δ″, 1).
-        """
-        speed = self.legs.velocity[0]
-        pull = self.legs.acceleration[0]
-        a, b, c, d = (entry[0] for entry in self.legs.tangent_near)
-        start = np.empty((*speed.shape, 2, 2))
-        start[..., 0, 0] = speed * a
-        start[..., 0, 1] = speed * b
-        start[..., 1, 0] = c - pull * a
-        start[..., 1, 1] = d - pull * b
-        end = np.zeros(start.shape)
-        end[..., 0, 0] = speed
-        end[..., 1, 0] = -pull
-        end[..., 1, 1] = 1
-        k = speed.shape[-1]
-        for leg in range(k):
-            after = (leg + 1) % k
-            rows = matrix[..., 2 * leg : 2 * leg + 2, :]
-            rows[..., 2 * leg : 2 * leg + 2] = start[..., leg, :, :]
-            rows[..., 2 * after : 2 * after + 2] -= end[..., leg, :, :]
-
-    def _fill_durations(self, matrix: np.ndarray) -> None:
-        """The derivatives of the equations of the durations by the states and the durations."""
-        by_phase, by_velocity = (slopes[0] for slopes in self.legs.duration_slopes)
-        k = by_phase.shape[-1]
-        for contact in range(k):
-            row = matrix[..., 2 * k + contact, :]
-            row[..., 2 * contact] = -by_phase[..., contact]
-            row[..., 2 * contact + 1] = -by_velocity[..., contact]
-            row[..., 2 * k + contact] = 1
-
-    def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The values at the two points of a pair, of values of the legs."""
-        return values[1 + 2 * j], values[2 + 2 * j]
-
-    def bend(self, j: int, column: int, values: np.ndarray) -> np.ndarray:
-        """The modulus of the second difference of values of the legs over a pair of points, one of
-        which is nearer at an end of the range of a parameter, an entry of y; none at the end.
-        """
-        right, left = self.sides(j, values)
-        here, ahead, behind = (self.points[k, ..., column] for k in (0, 1 + 2 * j, 2 + 2 * j))
-        axes_of_values = (1,) * (right.ndim - here.ndim)
-        ahead, behind = (x.reshape(x.shape + axes_of_values) for x in (ahead - here, here - behind))
-        apart = (right - values[0]) * behind - (values[0] - left) * ahead
-        return np.abs(apart) * 2 / (ahead + behind)
-
-    def slope(self, j: int, values: np.ndarray) -> np.ndarray:
-        """The derivative of values of the legs, by a parameter."""
-        right, left = self.sides(j, values)
-        length = self.lengths[j]
-        axes_of_values = (1,) * (right.ndim - length.ndim)
-        return (right - left) / length.reshape(length.shape + axes_of_values)
-
-
-def twice(equations: OrbitEquations, y: np.ndarray) -> tuple[OrbitEquations, np.ndarray]:
-    """The same orbits, taken twice: the problem with 2k impacts and its points."""
-    phase, velocity = equations.states(y)
-    duration = equations.durations(y)
-    turns = np.concatenate([equations.turns, equations.turns], axis=-1)
-    resumes = np.tile(equations.resuming, 2)
-    whole = replace(equations, impacts=2 * equations.impacts, turns=turns, resumes=resumes)
-    phases = np.concatenate([phase, phase], axis=-1)
-    velocities = np.concatenate([velocity, velocity], axis=-1)
-    durations = np.concatenate([duration, duration], axis=-1)
-    return whole, whole.point(phases, velocities, durations, **equations.values(y))
-
-
-def turns_of_half(turns: np.ndarray, phase: np.ndarray) -> np.ndarray:
-    """The turns of the first half of an orbit that repeats after half its period, from the turns
-    and the phases of the whole orbit, each of shape (2k,).
-    """
-    half = len(turns) // 2
-    found = np.array(turns[:half])
-    # The half ends at its own first impact in place of that of the second half.
-    found[-1] += round(float(phase[half] - phase[0]) / (2 * np.pi))
-    return found

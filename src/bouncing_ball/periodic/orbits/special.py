@@ -149,37 +149,6 @@ def opening_rate(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     return np.where(rests, _FAR, lowest)
 
 
-def halves(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
-    """The differences of the second half of each orbit to the first: those of the times from half
-    the period after an impact to the impact that is k/2 later, and those of the velocities.
-
-    They all vanish for an orbit that repeats after half its period, and change continuously along a
-    branch. Their shape is (..., k), with an axis of length 0 if k or m is odd: such orbits do not
-    repeat after half their period.
-    """
-    half, odd = divmod(equations.impacts, 2)
-    if odd or np.any(np.asarray(equations.periods) % 2):
-        return np.empty((*y.shape[:-1], 0))
-    interval = equations.intervals(y)
-    begun = np.cumsum(interval, axis=-1) - interval
-    of_half = np.pi * np.asarray(equations.periods)[..., np.newaxis]
-    later = begun[..., half:] - begun[..., :half] - of_half
-    _, velocity = equations.states(y)
-    faster = velocity[..., half:] - velocity[..., :half]
-    return np.concatenate([later, faster], axis=-1)
-
-
-def turns_apart(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
-    """The distance of the two halves of each orbit, the root of the mean square over its impacts.
-
-    It vanishes for an orbit that repeats after half its period; 1 where no orbit does.
-    """
-    apart = halves(equations, y)
-    if not apart.shape[-1]:
-        return np.full(y.shape[:-1], _FAR)
-    return np.sqrt(np.sum(apart**2, axis=-1) * 2 / equations.impacts)
-
-
 def bifurcations(equations: OrbitEquations) -> list[Event]:
     """The saddle-node and the period doubling."""
 

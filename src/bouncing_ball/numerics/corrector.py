@@ -15,6 +15,8 @@ _TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
 _ROUNDING = np.finfo(float).eps
+# A change of an unknown by this share of it is a rounding error: that of its own and that of a step.
+_UNCERTAIN = 4 * _ROUNDING
 # The largest size of a last step that is longer than the tolerance. Its product with the error of a
 # Jacobian by differences, about 1e-9, is a rounding error.
 _SMALL = 1e-8
@@ -150,7 +152,7 @@ def solve(
             known = np.where(going, length, 0.0)
             share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
             change = share[..., np.newaxis] * change
-        moves = (np.abs(change) > _ROUNDING * (1 + np.abs(y))).any(axis=-1)
+        moves = (np.abs(change) > _UNCERTAIN * np.abs(y)).any(axis=-1)
         ahead = np.where(going[..., np.newaxis], y - change, y)
         before = size
         size = np.where(going, length / (1 + _norm(ahead)), size)

@@ -15,7 +15,7 @@ _TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
 _ROUNDING = np.finfo(float).eps
-# A change of an unknown by this share of it is a rounding error: that of its own and that of a step.
+# A change of an unknown by this share of it is a rounding error.
 _UNCERTAIN = 4 * _ROUNDING
 # The largest size of a last step that is longer than the tolerance. Its product with the error of a
 # Jacobian by differences, about 1e-9, is a rounding error.

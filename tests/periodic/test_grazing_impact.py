@@ -7,6 +7,8 @@ import pytest
 from orbits_found import balls, legs_of
 from scipy.optimize import brentq
 
+import bouncing_ball
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.periodic.branches.following import STEPS, branch_from
@@ -81,6 +83,18 @@ def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
     assert grazing.amplitude == pytest.approx(amplitude, abs=1e-12)
     assert abs(grazing.relative_impact_velocity.max()) < 1e-12
     assert str(found.branch.end).startswith("grazing of an impact")
+    _is_on_its_curve(grazing, amplitude)
+
+
+def _is_on_its_curve(impact, amplitude):
+    """In two parameters the grazing impact is followed as the grazing flight without it."""
+    curve = bouncing_ball.follow(impact, along=("amplitude", "restitution"), points=10)
+    assert (curve.attrs["curve_kind"], curve.attrs["impacts"]) == ("grazing of a flight", 1)
+    start = int(
+        np.argmin(np.abs(curve.restitution.values - float(impact.model.numbers()["restitution"])))
+    )
+    assert float(curve.amplitude[start]) == pytest.approx(amplitude, abs=1e-12)
+    assert 0 < start < curve.sizes["point"] - 1
 
 
 def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
@@ -104,3 +118,22 @@ def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     assert np.all(np.diff(closing) < 0) and closing[-1] > 0
     # What is left of the impact changes Λ by its speed's square, apart from a factor of order 1.
     assert abs(before[-1].amplitude - amplitude) < 10 * closing[-1] ** 2
+    _is_on_its_curve(ended, amplitude)
+
+
+def test_a_grazing_impact_without_a_grazing_flight_has_no_curve(refusal):
+    both = ("amplitude", "restitution")
+    # Another flight of this orbit is below the table.
+    ball = bouncing_ball.rigid(restitution=0.5)
+    branch = bouncing_ball.follow(bouncing_ball.orbit_of_motion(ball, amplitude=1.6), to=8)
+    with refusal(NoOrbitError, "another flight is below the table by 2,"):
+        bouncing_ball.follow(branch.first("grazing of an impact"), along=both)
+    one = replace(bouncing_ball.orbit(ball, amplitude=1.4), kind="grazing of an impact")
+    with refusal(NoOrbitError, "the only impact of the orbit grazes"):
+        bouncing_ball.follow(one, along=both)
+    # After a release by force below its level, the ball comes back to this level.
+    ball = bouncing_ball.spring_damper(restitution=0.34, frequency_ratio=10.0, release="force")
+    two = bouncing_ball.orbit_of_motion(ball, amplitude=1.4, phase=0.0, velocity=-5.0)
+    branch = bouncing_ball.follow(two, to=0.8)
+    with refusal(NoOrbitError, "only just comes up to the level of the table"):
+        bouncing_ball.follow(branch.first("grazing of an impact"), along=both)

@@ -53,7 +53,7 @@ from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import release_condition
-from bouncing_ball.periodic.orbits.special import Special, flight_margin, impact_margin
+from bouncing_ball.periodic.orbits.special import Special, flight_margin
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CURVE_STEPS = replace(STEPS, creep=1e-3)
@@ -72,10 +72,6 @@ _ANOTHER = 1e-3
 # long as a point, and changes slowly.
 _STRIDE = 4
 _INFLECTION = "where the flight touches the table, its minimum merges with a maximum"
-_MARGINS = {
-    Special.GRAZING_FLIGHT: flight_margin,
-    Special.GRAZING_IMPACT: impact_margin,
-}
 
 
 class Degenerate(StrEnum):
@@ -100,11 +96,10 @@ def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
         return lambda y: equations.bifurcation(bifurcation, y)
     if kind is Special.GRAZING_RELEASE:
         return lambda y: release_condition(equations, y)
-    if kind not in _MARGINS:
-        known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, *_MARGINS])
+    if kind is not Special.GRAZING_FLIGHT:
+        known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, Special.GRAZING_FLIGHT])
         raise ParameterError(f"{{}} is not one of {known}", repr(str(kind)))
-    margin = _MARGINS[kind]
-    return vanishing(lambda y: margin(equations, y))
+    return vanishing(lambda y: flight_margin(equations, y))
 
 
 @dataclass(frozen=True)
@@ -179,8 +174,6 @@ def curve_through(
         return Curve(equations, sticking_curve(equations, guess, (first, second), most), kind)
     problem = CurveProblem(equations, condition_of(equations, kind))
     limits = _limits(equations, windows)
-    # Where an impact grazes, so does its release.
-    ends = [] if kind is Special.GRAZING_IMPACT else [release_lost(equations)]
     first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
         places = orbit_of_point(equations, first).parameters.items()
@@ -189,7 +182,11 @@ def curve_through(
     with np.errstate(all="ignore"):
         try:
             branch = continue_both_ways(
-                problem, first, events=[*ends, *limits], control=control, max_points=most
+                problem,
+                first,
+                events=[release_lost(equations), *limits],
+                control=control,
+                max_points=most,
             )
         except ContinuationError as error:
             raise NoOrbitError(str(error)) from None

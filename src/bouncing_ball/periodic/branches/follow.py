@@ -65,7 +65,7 @@ def follow(
     comes behind the saddle-node if an orbit of the stable one is followed towards it. At the
     grazing of an impact, at a lost release and at the end of sticking a branch ends, and a closed
     branch at its start. With two parameters the curve of special orbits of this kind is followed in
-    both directions.
+    both directions, and from the grazing of an impact that of the grazing flight without it.
 
     Parameters
     ----------
@@ -210,6 +210,8 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
             "an ordinary orbit has no curve in two parameters: give a special one, such as "
             'follow(orbit).first("saddle-node")'
         )
+    if orbit.kind == Special.GRAZING_IMPACT:
+        orbit = grazing.with_one_less(orbit)
     if not isinstance(ranges, Mapping):
         first, second = names
         given = f'such as {{"{first}": (low, high), "{second}": (low, high)}}'

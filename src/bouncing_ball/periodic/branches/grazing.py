@@ -46,6 +46,8 @@ _SAMPLES = 2001
 _ROUNDS = 8
 # A flight touches the table if its lowest point is this near. Grazings are located to 1e-12.
 _TOUCHES = 1e-9
+# A flight this far below the table does not graze it at the place of an impact that is left out.
+_BELOW = 1e-3
 # The change of the parameter over which the height of the flight is compared.
 _ASIDE = 1e-6
 
@@ -271,6 +273,48 @@ def _one_more(grazing: Grazing, slow: float) -> Orbit:
             f"{float(found.residual):.1e} after {int(found.iterations)} Newton iterations"
         )
     return orbit_of_point(more, found.point)
+
+
+def with_one_less(orbit: Orbit) -> Orbit:
+    """The orbit without its grazing impact: there its flight grazes, up to the small speed that is
+    left of this impact.
+
+    Raises
+    ------
+    NoOrbitError
+        If the orbit has no other impact, if the flight before the impact comes up to the table from
+        below, as after a release by force, or if another flight is below the table.
+    """
+    if orbit.impacts == 1:
+        raise NoOrbitError(
+            "the only impact of the orbit grazes: there is no orbit without it whose flight grazes"
+        )
+    slow = int(np.argmin(np.abs(orbit.relative_impact_velocity)))
+    equations = orbit.problem()
+    if not equations.legs(orbit.point(equations)).acceleration[slow - 1] > 0:
+        raise NoOrbitError(
+            "the flight before this impact only just comes up to the level of the table: without "
+            "the impact there is no orbit whose flight grazes"
+        )
+    turns = np.array(orbit.turns)
+    turns[slow - 1] += turns[slow]
+    without = replace(
+        orbit,
+        turns=np.delete(turns, slow),
+        phases=np.delete(orbit.phases, slow),
+        velocities=np.delete(orbit.velocities, slow),
+        durations=np.delete(orbit.durations, slow),
+        resumes=np.delete(np.broadcast_to(orbit.resumes, turns.shape), slow),
+        kind=str(Special.GRAZING_FLIGHT),
+    )
+    problem = without.problem()
+    touch = lowest_touch(problem, without.point(problem))
+    if touch.height < -_BELOW:
+        raise NoOrbitError(
+            "no ball follows the orbit at this grazing impact: another flight is below the table "
+            f"by {-touch.height:.2g}, so that the orbit without the impact has no grazing flight"
+        )
+    return without
 
 
 def first_with_one_more(orbit: Orbit, along: str, to: float | None) -> tuple[Orbit, np.ndarray]:

@@ -401,10 +401,11 @@ class Orbit(Impacts):
             if part.kind:
                 problem = part.problem(part.along[0])
                 y = part.point(problem)
-            with np.errstate(invalid="ignore"):
+            # Next to a release without speed the slopes are infinite.
+            with np.errstate(invalid="ignore", over="ignore"):
                 matrix = np.nan_to_num(problem.jacobian(y))
+                size = np.max(np.abs(matrix) @ np.abs(y)[..., np.newaxis], axis=(-2, -1))
             largest = np.max(np.abs(y), axis=-1)
-            size = np.max(np.abs(matrix) @ np.abs(y)[..., np.newaxis], axis=(-2, -1))
             error = np.max(np.abs(problem.residual(y)), axis=-1) + _EPS * size
             smallest = np.linalg.svd(matrix, compute_uv=False)[..., -1]
             with np.errstate(divide="ignore"):

@@ -26,8 +26,8 @@ class LawModel(Model):
     """A ball on a contact of any law.
 
     A :class:`.SpringDamper` is such a law for every ζ and release. For ζ < 1 and a linear release
-    :class:`.SpringDamperModel` has the same contacts and the closed form of the branch, whereas the
-    orbits of this model are searched for: :func:`.model_of_law` chooses between them.
+    :class:`.SpringDamperModel` has the same contacts, flights beside gravity, and the closed form
+    of the branch, so that n-T orbits are those of this ball, which :func:`.model_of_law` makes.
 
     Parameters
     ----------

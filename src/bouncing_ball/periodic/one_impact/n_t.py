@@ -20,7 +20,7 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel, model_of_law
 from bouncing_ball.periodic.one_impact.closed_forms import (
     CorrectedLine,
     RestitutionLine,
@@ -69,6 +69,9 @@ def _(model: SpringDamperModel) -> OrbitsOfModel:
 
 @orbits_of.register
 def _(model: LawModel) -> OrbitsOfModel:
+    ball = model_of_law(model.law, model.setting)
+    if isinstance(ball, SpringDamperModel):
+        return orbits_of(ball)
     return SearchedOrbits(model) if model.setting.is_paper else OrbitsOfContact(model)
 
 

@@ -103,13 +103,13 @@ class Model(Batch, Ball, ABC):
             If a contact does not release the ball.
         """
 
-    def permanent_contact_threshold(self) -> np.ndarray:
+    def permanent_contact_threshold(self) -> Any:
         """Λ up to which the ball stays on the table, of the model's shape.
 
         By default it is that of instantaneous impacts: 1 in the paper (Eq. 9), and 0 for a spring
         that does not press the mass on its stop.
         """
-        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)
+        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)[()]
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int

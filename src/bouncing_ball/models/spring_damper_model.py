@@ -81,7 +81,7 @@ class SpringDamperModel(Model):
         """The signature in closed form, which is the same at every speed."""
         return self.contact.signature(speed)
 
-    def permanent_contact_threshold(self) -> np.ndarray:
+    def permanent_contact_threshold(self) -> Any:
         """Λ up to which the ball stays on the table, of the model's shape.
 
         It is Λ_SD(ϖ) for the displacement release and Λ_F(ϖ) for the force release, and
@@ -90,7 +90,7 @@ class SpringDamperModel(Model):
         contact = self.contact
         paper = self.setting.is_paper
         found: Any = contact.permanent_contact if paper else held_threshold(contact, self.setting)
-        return np.broadcast_to(found, self.shape).astype(float)
+        return np.broadcast_to(found, self.shape).astype(float)[()]
 
 
 def model_of_law(law: ContactLaw, setting: Setting = PAPER) -> SpringDamperModel | LawModel:

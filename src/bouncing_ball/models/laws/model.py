@@ -95,9 +95,9 @@ class LawModel(Model):
         at = law.signature if law.scaled(np.ones(1)) is None else Signature(law)
         return at(speed)
 
-    def permanent_contact_threshold(self) -> np.ndarray:
+    def permanent_contact_threshold(self) -> Any:
         """Λ up to which a steady contact never releases the ball, of the shape of the laws."""
         laws = self.law.flat(self.law.shape)
         table = self.setting.waveform
         found = [permanent_contact(laws.take(k), table) for k in range(self.law.size)]
-        return np.array(found).reshape(self.law.shape)
+        return np.array(found).reshape(self.law.shape)[()]

@@ -74,6 +74,21 @@ def imports(path: Path) -> frozenset[str]:
 
 
 @cache
+def _files_of_module(name: str) -> tuple[Path, ...]:
+    """The files that Python reads for a name of :func:`imports`: a module and its packages."""
+    parts = name.split(".")
+    files = (module_file(".".join(parts[: k + 1])) for k in range(len(parts)))
+    return tuple(file for file in files if file)
+
+
+@cache
+def _imported(path: Path) -> frozenset[Path]:
+    """The files that are read when a file is imported, without what these import."""
+    names = () if path in _ON_DEMAND else imports(path)
+    return frozenset(file for name in names for file in _files_of_module(name))
+
+
+@cache
 def _data_of_folder(folder: Path) -> tuple[Path, ...]:
     """The files of a package that are not Python, also in its folders that are no packages.
 
@@ -136,23 +151,14 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
     for module in modules:
         if module_file(module) is None:
             raise ModuleNotFoundError(f"no module {module}")
-    seen = set(files)
-    pending = list(modules)
-    for path in seen:
-        if path.suffix == ".py":
-            pending += imports(path)
-    while pending:
-        # A module's packages are imported with it.
-        parts = pending.pop().split(".")
-        for k in range(len(parts)):
-            path = module_file(".".join(parts[: k + 1]))
-            if path is None or path in seen:
-                continue
-            seen.add(path)
-            seen.update(data_beside(path))
-            if path not in _ON_DEMAND:
-                pending.extend(imports(path))
-    return sorted(seen, key=str)
+    given = set(files)
+    scripts = [path for path in given if path.suffix == ".py"]
+    found: set[Path] = set()
+    new = set().union(*map(_files_of_module, modules), *map(_imported, scripts)) - given
+    while new:
+        found |= new
+        new = set().union(*map(_imported, new)) - found - given
+    return sorted(given.union(found, *map(data_beside, found)), key=str)
 
 
 # The first digits of SHA-256; two versions of a file share them with a chance of 2⁻⁴⁸.

@@ -24,6 +24,7 @@ from pathlib import Path
 # What takes the time of a start of Snakemake, or of one of its jobs.
 IMPORTED = (
     *("snakemake.cli", "snakemake.workflow", "snakemake.script", "snakemake.executors.local"),
+    *("snakemake.report.html_reporter", "smart_open", "yte", "nbformat", "flint"),
     *("xarray.backends.netCDF4_", "pandas", "netCDF4", "pydantic", "jinja2"),
     *("scipy.optimize.elementwise", "scipy.integrate", "scipy.interpolate", "scipy.special"),
     *("matplotlib.pyplot", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),

@@ -49,6 +49,8 @@ def main(folder: Path) -> None:
     ctypes.CDLL(None).prctl(1, signal.SIGTERM)
     for name in IMPORTED:
         importlib.import_module(name)
+    # What the first call costs: the search for plugins.
+    sys.modules["snakemake.cli"].get_argument_parser()
     # What the first text costs, the parser of its symbols and the fonts.
     plt = sys.modules["matplotlib.pyplot"]
     plt.figtext(0, 0, r"a $\frac{x^2}{\Lambda}$")

@@ -34,7 +34,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # No run takes as many seconds, unless it hangs.
 HANGING = 1200
 # A fresh clone: neither results nor the state of earlier runs.
-OTHERS = ".git .venv* results .snakemake *.egg-info __pycache__ .*_cache"
+OTHERS = ".git .venv* results .snakemake *.egg-info .*_cache"
 IGNORED = shutil.ignore_patterns(*OTHERS.split())
 # The studies that take longest have the first so many entries of these lists only.
 SHORTER = {
@@ -308,7 +308,7 @@ def cloned(shared, warm, coarse) -> Tree:
             shorten(tree, coarse)
             tree.git("init", "--quiet")
             tree.commit("All")
-        # Once, and not by every process of every copy.
+        # Once, and not by every process of every copy; what is compiled already stays.
         compileall.compile_dir(folder / "src", quiet=2)
 
     return made_once(shared / "cloned", make, warm)

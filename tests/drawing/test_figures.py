@@ -192,7 +192,9 @@ def test_every_curve_and_mark_is_named_once(name, curves, accepted_figure):
 
 
 @pytest.mark.parametrize("name", ["fig08", "fig09"])
-def test_figures_8_and_9_have_every_orbit_of_their_dataset_in_both_panels(record, name, accepted_figure):
+def test_figures_8_and_9_have_every_orbit_of_their_dataset_in_both_panels(
+    record, name, accepted_figure
+):
     data = record[name]
     start, end = accepted_figure(name).axes
     assert start.get_title() == r"start of contact, $\varphi$"
@@ -245,7 +247,9 @@ def test_figure_16_shows_where_its_error_is_zero(record, accepted_figure):
 
 def test_errors_beyond_the_paper_show_their_zeros(record, accepted_figure):
     data = record["ext_orders"]
-    for axes, quantity in zip(accepted_figure("ext_orders").axes, data["quantity"].values, strict=True):
+    for axes, quantity in zip(
+        accepted_figure("ext_orders").axes, data["quantity"].values, strict=True
+    ):
         for model, name in (("restitution", "error_zero"), ("corrected", "corrected_error_zero")):
             zero = float(data[name].sel(quantity=quantity))
             (line,) = [x for x in axes.lines if x.get_label() == model]
@@ -334,7 +338,9 @@ def test_files_are_the_same_every_time(record, tmp_path):
 
 def test_basins_are_drawn_where_they_are(record, accepted_figure):
     data = record["ext_basins"]
-    panels = np.reshape(accepted_figure("ext_basins").axes, (data.sizes["case"], data.sizes["model"]))
+    panels = np.reshape(
+        accepted_figure("ext_basins").axes, (data.sizes["case"], data.sizes["model"])
+    )
     for k, axes in np.ndenumerate(panels):
         (image,) = axes.images
         assert np.array_equal(image.get_array(), data.destination.values[k])

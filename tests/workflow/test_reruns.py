@@ -62,11 +62,11 @@ def test_no_file_time_hides_a_change_of_the_code(complete):
     assert complete.planned("fig02") == again
     dataset = complete.path / "results/figures/fig02.nc"
     before = read_dataset(dataset)
-    complete.run("--cores", "1", "fig02")
+    complete.run("--cores", "1", "results/figures/fig02.nc")
     after = read_dataset(dataset)
     assert float(after.phase) != float(before.phase)
     assert after.attrs["provenance_code"] != before.attrs["provenance_code"]
-    assert complete.planned("fig02") == set()
+    assert complete.planned("results/figures/fig02.nc") == set()
 
 
 def test_no_file_time_hides_a_change_of_a_sample_or_of_the_atlas(complete):

@@ -54,8 +54,9 @@ lint: $(SETUP)
 	@said="$$($(BIN)/snakemake --lint 2>&1)" && case "$$said" in *"in a good condition!"*) ;; \
 	    *) false;; esac || { echo "$$said"; echo "snakemake --lint did not end"; exit 1; }
 
-# One worker for each processor; all workers share one run of the pipeline. Each worker has one
-# thread, because further threads would compete for the same processors.
+# One worker for each processor; all workers share one run of the pipeline, which goes on with the
+# results of `make all` if they are of this commit. Each worker has one thread, because further
+# threads would compete for the same processors.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
 
 # The results of one run of the pipeline are compared with the record and are not computed again.

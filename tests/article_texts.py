@@ -1,5 +1,6 @@
 """All texts that are read from the accepted datasets, for tests to change."""
 
+import functools
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
+from bouncing_ball.pipeline import article
 from bouncing_ball.pipeline.article import render_article, sections_of
 from bouncing_ball.pipeline.configuration import read_yaml
 
@@ -41,6 +43,8 @@ TABLES = {
     "claims": rows.claims,
 }
 DERIVED = ("claims", "ext_verdicts")
+# All texts cite the same works in the same order, for which pandoc runs once.
+PANDOC = functools.cache(article.pandoc)
 
 
 @pytest.fixture(scope="session")
@@ -68,12 +72,14 @@ def all_texts(data, verdicts=None):
     about = read_yaml(ROOT / "CITATION.cff")
     decided = rows.Claims(data["claims"])
     sections = {}
-    for name in ("supplement", "article", "motions"):
-        file = TEMPLATES / f"{name}.md.j2"
-        made[name] = render_article(
-            file, data, texts, decided, ARTIFACTS, about=about, sections=sections
-        )
-        sections = sections or sections_of(made[name])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(article, "pandoc", PANDOC)
+        for name in ("supplement", "article", "motions"):
+            file = TEMPLATES / f"{name}.md.j2"
+            made[name] = render_article(
+                file, data, texts, decided, ARTIFACTS, about=about, sections=sections
+            )
+            sections = sections or sections_of(made[name])
     return made
 
 

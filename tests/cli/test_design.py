@@ -13,6 +13,9 @@ from bouncing_ball.contacts.page_figures import draw
 from bouncing_ball.contacts.rows import document
 from bouncing_ball.drawing.labels import QUANTITIES
 
+# Where the verdict is not what is tested, the runs that it rests on are short.
+QUICK = pytest.mark.usefixtures("short_runs")
+
 CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
         "--restitution", "0.85")  # fmt: skip
 STIFF = (*CASE, "--stiffness", "1e7 N/m")
@@ -31,6 +34,7 @@ def data(found):
     return chart_and_motion(found)
 
 
+@QUICK
 def test_json_is_the_answer_of_the_call(ask):
     found = assessed(
         mass="20 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.85, stiffness="1e7 N/m"
@@ -56,6 +60,7 @@ def test_the_text_begins_with_the_verdict(said):
     assert lines[-1].split()[-6:] == ["+0.02", "%"] * 3
 
 
+@QUICK
 def test_without_a_family_each_has_one_line(said):
     short = said(*STIFF).splitlines()
     assert [line.split()[:2] for line in short[-4:-1]] == [[f"{n}-T", "yes"] for n in (1, 2, 3)]
@@ -65,6 +70,7 @@ def test_without_a_family_each_has_one_line(said):
     assert "2-T orbit" in one and "period doubling at Λ" in one and "3-T" not in one
 
 
+@QUICK
 def test_what_was_given_is_said_again_with_its_units(said):
     given = "Given: mass 20 g, frequency 50 Hz, acceleration 7.84532 m/s^2, stiffness 10 MN/m"
     assert said(*STIFF).splitlines()[3] == f"{given}, restitution 0.85."
@@ -73,11 +79,13 @@ def test_what_was_given_is_said_again_with_its_units(said):
     assert heavy.startswith("Given: mass 20 kg, stiffness 100 kN/m, damping 8 N s/m.")
 
 
+@QUICK
 def test_a_command_that_is_misspelt_is_found(refused):
     _, line = refused("desing", "--mass", "1")
     assert line.endswith("; did you mean design?")
 
 
+@QUICK
 def test_choosing(said):
     out = said(*CASE, "--quantity", "phase", "--tolerance", "0.1 %")
     assert out.splitlines()[1].startswith("A simulation needs a contact of at least ")
@@ -96,6 +104,7 @@ def test_choosing(said):
         (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),
     ],
 )
+@QUICK
 def test_mistakes_are_one_line(refused, monkeypatch, data, arguments, status, says):
     monkeypatch.setattr("bouncing_ball.contacts.page_data.chart_and_motion", lambda found: data)
     command = (*STIFF, *arguments)
@@ -191,6 +200,7 @@ def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
     assert draw(document(lonely), shown, []).axes
 
 
+@QUICK
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
     monkeypatch.setattr("bouncing_ball.contacts.page_data.chart_and_motion", lambda found: data)
     assert said(*STIFF, "--plot", str(tmp_path / "page.png")) == said(*STIFF)
@@ -200,12 +210,14 @@ def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monk
         assert np.mean(np.asarray(picture.convert("L")) < 128) > 0.005
 
 
+@QUICK
 def test_a_page_in_a_folder_that_does_not_exist_is_refused_and_makes_none(tmp_path, refused):
     _, line = refused(*STIFF, "--plot", str(tmp_path / "new" / "page.png"))
     assert "is no folder that can be written to" in line
     assert not (tmp_path / "new").exists()
 
 
+@QUICK
 def test_the_text_says_which_model_has_no_orbit(said):
     # Between the saddle-nodes of the contact and of the restitution model.
     lonely = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.247 g",

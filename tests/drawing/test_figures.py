@@ -1,5 +1,6 @@
 """The figures are drawn from their datasets, and from all that they should show."""
 
+import functools
 import json
 import operator
 from collections import Counter
@@ -44,6 +45,12 @@ def drawn(name, *data):
     draw = function(ARTIFACTS[name].figures, ARTIFACTS[name].drawing)
     with style():
         return draw(*data)
+
+
+@pytest.fixture(scope="module")
+def accepted_figure(record):
+    """The figure of an accepted dataset, drawn once: tests look at it and change nothing."""
+    return functools.cache(lambda name: drawn(name, record[name]))
 
 
 def lines(figure):
@@ -93,9 +100,9 @@ def test_schematics_are_drawn(name):
     assert ({"$k$", "$c$"} <= words) == (name == "fig04")
 
 
-def test_figure_7_marks_the_instants_and_velocities(record):
+def test_figure_7_marks_the_instants_and_velocities(record, accepted_figure):
     data = record["fig07"]
-    (axes,) = drawn("fig07", data).axes
+    (axes,) = accepted_figure("fig07").axes
     words = " ".join(text.get_text() for text in axes.texts)
     for symbol in (r"\tau_i", r"\tau_b", r"\tau_2", "z′_i", "z′_b", "z′_2"):
         assert symbol in words
@@ -111,9 +118,9 @@ def test_figure_7_marks_the_instants_and_velocities(record):
         assert x1 > x0 and slope == pytest.approx(float(velocity))
 
 
-def test_stability_is_drawn_solid_dashed_and_dotted(record):
+def test_stability_is_drawn_solid_dashed_and_dotted(record, accepted_figure):
     data = record["fig03"]
-    runs = [line for line in lines(drawn("fig03", data)) if len(line.get_xdata()) > 1]
+    runs = [line for line in lines(accepted_figure("fig03")) if len(line.get_xdata()) > 1]
     widths = {kind: look["linewidth"] for kind, look in LINES.items()}
     solid = [line for line in runs if line.get_linewidth() == widths["stable"]]
     # Each solid run begins at its saddle-node and ends at its period doubling.
@@ -125,9 +132,9 @@ def test_stability_is_drawn_solid_dashed_and_dotted(record):
 
 
 @pytest.mark.parametrize("name", ["fig03", "fig08", "fig09", "fig15"])
-def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, name):
+def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, name, accepted_figure):
     data = record[name]
-    found = lines(drawn(name, data))
+    found = lines(accepted_figure(name))
     marks = [line.get_xydata() for line in found if line.get_marker() in ("o", "s", "^", "v", ".")]
     marks = {tuple(point) for line in marks for point in line if np.all(np.isfinite(point))}
     runs = [line for line in found if line.get_marker() == "None" and len(line.get_xdata()) > 1]
@@ -143,10 +150,10 @@ def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, nam
     assert set(met) == marks and sorted(met.values()).count(1) == inside
 
 
-def test_what_marks_hide_of_a_branch_is_enlarged_in_a_corner(record):
+def test_what_marks_hide_of_a_branch_is_enlarged_in_a_corner(record, accepted_figure):
     """In Fig. 8 the contact opens just before the end of the branch of ϖ = 10."""
     data = record["fig08"]
-    start, end = drawn("fig08", data).axes
+    start, end = accepted_figure("fig08").axes
     (corner,) = start.child_axes
     assert not end.child_axes
     one = data.sel(frequency_ratio=10.0)
@@ -158,9 +165,9 @@ def test_what_marks_hide_of_a_branch_is_enlarged_in_a_corner(record):
     assert set(hidden.values) <= {x for line in dotted for x in line.get_xdata()}
 
 
-def test_markers_stand_at_the_bifurcations(record):
+def test_markers_stand_at_the_bifurcations(record, accepted_figure):
     data = record["fig08"].sel(frequency_ratio=10.0)
-    found = lines(drawn("fig08", record["fig08"]))
+    found = lines(accepted_figure("fig08"))
     for kind, marker in (("saddle-node", "o"), ("period doubling", "s")):
         shown = np.concatenate([x.get_xdata() for x in found if x.get_marker() == marker])
         at = data.special_amplitude.values[data.special_kind.values == kind]
@@ -168,11 +175,11 @@ def test_markers_stand_at_the_bifurcations(record):
 
 
 @pytest.mark.parametrize(("name", "curves"), [("fig03", 1), ("fig08", 6), ("fig15", 2)])
-def test_every_curve_and_mark_is_named_once(record, name, curves):
+def test_every_curve_and_mark_is_named_once(name, curves, accepted_figure):
     """Besides the kinds: Eq. 8 in Fig. 3, and in Fig. 8 the end of a branch, and where a long
     contact opens and is inadmissible.
     """
-    figure = drawn(name, record[name])
+    figure = accepted_figure(name)
     (legend,) = figure.legends
     names = [text.get_text() for text in legend.get_texts() if text.get_text()]
     if name == "fig03":
@@ -185,9 +192,11 @@ def test_every_curve_and_mark_is_named_once(record, name, curves):
 
 
 @pytest.mark.parametrize("name", ["fig08", "fig09"])
-def test_figures_8_and_9_have_every_orbit_of_their_dataset_in_both_panels(record, name):
+def test_figures_8_and_9_have_every_orbit_of_their_dataset_in_both_panels(
+    record, name, accepted_figure
+):
     data = record[name]
-    start, end = drawn(name, data).axes
+    start, end = accepted_figure(name).axes
     assert start.get_title() == r"start of contact, $\varphi$"
     assert end.get_title() == r"end of contact, $\varphi+\tau_b$"
     for axes, phase in ((start, data.phase), (end, data.release_phase)):
@@ -206,9 +215,9 @@ def test_figures_8_and_9_have_every_orbit_of_their_dataset_in_both_panels(record
         )
 
 
-def test_figure_3_marks_equation_8_beside_the_exact_map(record):
+def test_figure_3_marks_equation_8_beside_the_exact_map(record, accepted_figure):
     data = record["fig03"]
-    found = lines(drawn("fig03", data))
+    found = lines(accepted_figure("fig03"))
     for marker, kind in (("s", "exact"), ("x", "holmes")):
         shown = sorted(
             float(line.get_xdata().item()) for line in found if line.get_marker() == marker
@@ -216,18 +225,18 @@ def test_figure_3_marks_equation_8_beside_the_exact_map(record):
         assert shown == data.period_doubling_amplitude.sel(impact_map=kind).values.tolist()
 
 
-def test_figure_16_marks_the_printed_ratio_of_its_own_parameters_only(record):
+def test_figure_16_marks_the_printed_ratio_of_its_own_parameters_only(record, accepted_figure):
     data = record["fig16"]
-    (mark,) = [line for line in lines(drawn("fig16", data)) if line.get_marker() == "D"]
+    (mark,) = [line for line in lines(accepted_figure("fig16")) if line.get_marker() == "D"]
     assert mark.get_xydata().tolist() == [[PERMANENT_CONTACT, data.attrs["tolerance"]]]
     for change in ({"restitution": 0.2}, {"tolerance": 0.02}, {"release": "force"}):
         others = lines(drawn("fig16", data.assign_attrs(change)))
         assert not [line for line in others if line.get_marker() == "D"]
 
 
-def test_figure_16_shows_where_its_error_is_zero(record):
+def test_figure_16_shows_where_its_error_is_zero(record, accepted_figure):
     data = record["fig16"]
-    below = drawn("fig16", data).axes[1]
+    below = accepted_figure("fig16").axes[1]
     ratio, error = max(below.lines, key=lambda line: len(line.get_xdata())).get_data()
     # Eq. 33 equals one at 1/√(2 - 4ζ²); the zero lies between two samples of the grid.
     exact = 1 / np.sqrt(2 - 4 * float(data.damping_ratio) ** 2)
@@ -236,9 +245,11 @@ def test_figure_16_shows_where_its_error_is_zero(record):
     assert error.min() < 1e-9 < below.get_ylim()[0]
 
 
-def test_errors_beyond_the_paper_show_their_zeros(record):
+def test_errors_beyond_the_paper_show_their_zeros(record, accepted_figure):
     data = record["ext_orders"]
-    for axes, quantity in zip(drawn("ext_orders", data).axes, data["quantity"].values, strict=True):
+    for axes, quantity in zip(
+        accepted_figure("ext_orders").axes, data["quantity"].values, strict=True
+    ):
         for model, name in (("restitution", "error_zero"), ("corrected", "corrected_error_zero")):
             zero = float(data[name].sel(quantity=quantity))
             (line,) = [x for x in axes.lines if x.get_label() == model]
@@ -248,7 +259,7 @@ def test_errors_beyond_the_paper_show_their_zeros(record):
     data = record["ext_cascades"]
     shown = data.isel(restitution=data.sizes["restitution"] // 2).cascade_error
     changes = (np.diff(np.sign(shown.transpose(..., "frequency_ratio").values)) != 0).any(axis=-1)
-    panel = drawn("ext_cascades", data).axes[0]
+    panel = accepted_figure("ext_cascades").axes[0]
     curves = [line for line in panel.lines if len(line.get_xdata()) > 100]
     lowest = [line.get_ydata().min() < panel.get_ylim()[0] for line in curves]
     assert sum(lowest) == changes.sum() > 0
@@ -256,16 +267,16 @@ def test_errors_beyond_the_paper_show_their_zeros(record):
     zeros = data.law_error_zero.values
     drawn_zeros = [
         1 / (2 * data.attrs["n"] * line.get_xdata()[line.get_ydata().argmin()])
-        for axes in drawn("ext_laws", data).axes
+        for axes in accepted_figure("ext_laws").axes
         for line in axes.lines
         if len(line.get_ydata()) and min(line.get_ydata()) == 0
     ]
     assert sorted(drawn_zeros) == pytest.approx(sorted(zeros[np.isfinite(zeros)]), rel=1e-12)
 
 
-def test_an_orbit_diagram_has_every_exponent_that_was_found(record):
+def test_an_orbit_diagram_has_every_exponent_that_was_found(record, accepted_figure):
     data = record["ext_diagram"]
-    axes = drawn("ext_diagram", data).axes[-1]
+    axes = accepted_figure("ext_diagram").axes[-1]
     for model in data["model"].values:
         (line,) = [x for x in axes.lines if x.get_label() == f"{model} model"]
         exponent = data.lyapunov_exponent.sel(model=model).values
@@ -278,24 +289,24 @@ def test_an_orbit_diagram_has_every_exponent_that_was_found(record):
 
 
 @pytest.mark.parametrize("name", ["fig02", "fig07", "fig12"])
-def test_time_is_in_periods_of_the_table(record, name):
-    drawn_axes = drawn(name, record[name]).axes
+def test_time_is_in_periods_of_the_table(name, accepted_figure):
+    drawn_axes = accepted_figure(name).axes
     assert {axes.get_xlabel() for axes in drawn_axes} == {r"time $\tau/2\pi$"}
     first = drawn_axes[0].get_lines()
     longest = max(float(np.max(line.get_xdata())) for line in first)
     assert 1 <= longest <= 3, longest
 
 
-def test_figure_13_marks_round_frequency_ratios(record):
-    (axes,) = drawn("fig13", record["fig13"]).axes
+def test_figure_13_marks_round_frequency_ratios(accepted_figure):
+    (axes,) = accepted_figure("fig13").axes
     words = {text.get_text() for text in axes.texts}
     assert words == {rf"$\varpi={ratio}$" for ratio in (1, 2, 5, 10)}
 
 
 @pytest.mark.parametrize("name", ["fig14", "fig16"])
-def test_the_crossing_of_the_tolerance_lies_on_the_error(record, name):
+def test_the_crossing_of_the_tolerance_lies_on_the_error(record, name, accepted_figure):
     data = record[name]
-    below = drawn(name, data).axes[1]
+    below = accepted_figure(name).axes[1]
     assert below.get_yscale() == "log"
     curve = max(below.lines, key=lambda line: len(line.get_xdata()))
     # Without the zeros, which a logarithmic axis does not have.
@@ -325,9 +336,11 @@ def test_files_are_the_same_every_time(record, tmp_path):
     assert contents[:2] == contents[2:] and min(map(len, contents)) > 5000
 
 
-def test_basins_are_drawn_where_they_are(record):
+def test_basins_are_drawn_where_they_are(record, accepted_figure):
     data = record["ext_basins"]
-    panels = np.reshape(drawn("ext_basins", data).axes, (data.sizes["case"], data.sizes["model"]))
+    panels = np.reshape(
+        accepted_figure("ext_basins").axes, (data.sizes["case"], data.sizes["model"])
+    )
     for k, axes in np.ndenumerate(panels):
         (image,) = axes.images
         assert np.array_equal(image.get_array(), data.destination.values[k])

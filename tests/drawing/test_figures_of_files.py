@@ -49,7 +49,11 @@ def test_words_in_vector_graphics_are_text(tmp_path):
     assert b"/Type3" not in (tmp_path / "talk.pdf").read_bytes()
 
 
-@pytest.mark.parametrize("name", ["fig05", "fig08", "fig12", "fig14"])
+# One with a panel in a corner, and one with notes; others, weekly.
+FONTS = ["fig08", "fig12", *(pytest.param(x, marks=pytest.mark.long) for x in ("fig05", "fig14"))]
+
+
+@pytest.mark.parametrize("name", FONTS)
 def test_every_text_follows_the_font_size(name):
     data = opened(name)
 

@@ -1,14 +1,16 @@
 """Copies of the tree in which the workflow is run as a user runs it.
 
-A whole run costs as much as hundreds of other tests: there is one, killed and
-resumed on its way, which all workers share, and copies of it. All are started by
-``warm.py``, which has imported numpy and its like once for all jobs.
+A whole run costs as much as hundreds of other tests: there is one, which all workers
+share, and copies of it. It goes on with the results of the checkout if `make all` has made
+all of them at this very commit; Snakemake makes what is not up to date. Otherwise a shorter
+run makes everything. All runs are started by ``warm.py``, which has imported numpy and its
+like once for all jobs.
 """
 
 import compileall
 import fcntl
+import functools
 import hashlib
-import json
 import os
 import re
 import shutil
@@ -23,20 +25,27 @@ from pathlib import Path
 
 import pytest
 import yaml
+from declared_artifacts import ARTIFACTS
+
+from bouncing_ball.pipeline.artifacts import CARRIERS, TEXTS
+from bouncing_ball.pipeline.provenance import read_provenance
 
 ROOT = Path(__file__).resolve().parents[2]
 # No run takes as many seconds, unless it hangs.
 HANGING = 1200
 # A fresh clone: neither results nor the state of earlier runs.
-OTHERS = ".git .venv* results .snakemake tests *.egg-info __pycache__ .*_cache"
+OTHERS = ".git .venv* results .snakemake *.egg-info .*_cache"
 IGNORED = shutil.ignore_patterns(*OTHERS.split())
 # The studies that take longest have the first so many entries of these lists only.
 SHORTER = {
     ("ext_flights", "restitution"): 2,
     ("ext_laws", "further"): 1,
 }
-# Accepted samples tell whether the tests that made them have changed.
-MAKERS = "*_runs.py"
+# What a whole run leaves: its results, and what Snakemake has noted about them.
+MADE = (
+    *(f"results/{name}" for name in ("figures", "code", "logs", "shards", "tally.txt", *TEXTS)),
+    *(f".snakemake/{name}" for name in ("metadata", "incomplete")),
+)
 
 
 @dataclass(frozen=True)
@@ -178,13 +187,13 @@ class Tree:
             shutil.rmtree(self.path / ".snakemake" / "locks")
 
 
-def copy_tree(tree: Tree, target: Path, ignored: Callable | None = None) -> Tree:
-    """A copy of the repository, or of one of these trees with its git and its results."""
-    if ignored:
-        shutil.copytree(tree.path, target, ignore=ignored, copy_function=shutil.copy2)
-    else:
-        # A few times as quick.
-        subprocess.run(["cp", "-pPR", tree.path, target], check=True)
+def copy_tree(tree: Tree, target: Path) -> Tree:
+    """A copy of one of these trees with its git and its results."""
+    # A few times as quick as Python.
+    subprocess.run(["cp", "-pPR", tree.path, target], check=True)
+    # The sources are as old as the copy, and bytecode that is older would not be used.
+    for bytecode in target.rglob("*.pyc"):
+        bytecode.touch()
     return replace(tree, path=target)
 
 
@@ -242,28 +251,64 @@ def fewer(section: str, key: str, number: int) -> str:
     return found
 
 
+def shorten(tree: Tree, coarse: dict) -> None:
+    """Let a run of this tree take less time."""
+    config = tree.path / "config" / "config.yaml"
+    text = config.read_text(encoding="utf-8")
+    for (name, key), number in (coarse | SHORTER).items():
+        start = text.index(f"  {name}:")
+        end = text.index("\n\n", start)
+        text = text[:start] + fewer(text[start:end], key, number) + text[end:]
+    config.write_text(text, encoding="utf-8")
+    # Who looks at pictures looks at those of `make`.
+    settings = "src/bouncing_ball/drawing/style.mplstyle"
+    tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
+
+
+@functools.cache
+def made_by_this_commit() -> bool:
+    """Whether all results in the checkout are of its commit and nothing was changed since then.
+
+    Whether they are up to date is left to Snakemake.
+    """
+    checkout = Tree(ROOT)
+    made = {file for each in ARTIFACTS.values() for file in each.files}
+    made |= {f"results/{text}" for text in TEXTS}
+    if not all((checkout.path / file).exists() for file in made | {".git", ".snakemake"}):
+        return False
+    if checkout.git("status", "--porcelain"):
+        return False
+    commit = checkout.git("rev-parse", "HEAD")
+    figures = (checkout.path / "results" / "figures").rglob("*")
+    found = {path for path in figures if path.suffix in CARRIERS}
+    if not found <= {checkout.path / file for file in made}:
+        return False
+    return all(
+        (each["commit"], each["dirty"], each["configuration"]) == (commit, "no", {})
+        for each in map(read_provenance, found)
+    )
+
+
 @pytest.fixture(scope="session")
 def cloned(shared, warm, coarse) -> Tree:
-    """A fresh clone: the repository in a repository of its own with one commit."""
+    """A fresh clone with one commit: that of the checkout if all of its results are of this
+    commit, and otherwise one of a repository of its own in which runs are shorter.
+    """
 
     def make(folder: Path) -> None:
-        tree = copy_tree(Tree(ROOT), folder, IGNORED)
-        (folder / "tests").mkdir()
-        for path in (ROOT / "tests").glob(MAKERS):
-            shutil.copy2(path, folder / "tests")
-        config = folder / "config" / "config.yaml"
-        text = config.read_text(encoding="utf-8")
-        for (name, key), number in (coarse | SHORTER).items():
-            start = text.index(f"  {name}:")
-            end = text.index("\n\n", start)
-            text = text[:start] + fewer(text[start:end], key, number) + text[end:]
-        config.write_text(text, encoding="utf-8")
-        # Who looks at pictures looks at those of `make`.
-        settings = "src/bouncing_ball/drawing/style.mplstyle"
-        tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
-        tree.git("init", "--quiet")
-        tree.commit("All")
-        # Once, and not by every process of every copy.
+        shutil.copytree(ROOT, folder, symlinks=True, ignore=IGNORED)
+        tree = Tree(folder)
+        if made_by_this_commit():
+            tree.git("clone", "--quiet", "--shared", "--no-checkout", str(ROOT), "results/clone")
+            shutil.move(folder / "results" / "clone" / ".git", folder)
+            shutil.rmtree(folder / "results")
+            tree.git("reset", "--quiet")
+            assert tree.git("status", "--porcelain") == ""
+        else:
+            shorten(tree, coarse)
+            tree.git("init", "--quiet")
+            tree.commit("All")
+        # Once, and not by every process of every copy; what is compiled already stays.
         compileall.compile_dir(folder / "src", quiet=2)
 
     return made_once(shared / "cloned", make, warm)
@@ -273,21 +318,20 @@ def cloned(shared, warm, coarse) -> Tree:
 def pristine(shared, cloned) -> Tree:
     """A complete run. Tests must not change it, nor run in it: other workers copy it.
 
-    It was killed on its way and resumed; ``resumed.json`` holds what there was then and
-    what was said.
+    What its last call of Snakemake said is in ``said.txt``.
     """
 
     def make(folder: Path) -> None:
         tree = copy_tree(cloned, folder)
         # Git reads the copied files once, and not for every job.
         tree.git("status")
-        # Of quick figures, at the first: what was begun then is done twice.
-        quick = ("--cores", "2", "fig11", "fig12")
-        tree.interrupt(signal.SIGKILL, *quick, after=1, of="figures/[!.]*.nc")
-        early = tree.checksums("results")
-        last = tree.run("--cores", "2").stdout
-        found = json.dumps({"early": early, "last": last})
-        (shared / "resumed.json").write_text(found, encoding="utf-8")
+        if made_by_this_commit():
+            for name in MADE:
+                if (ROOT / name).exists():
+                    (folder / name).parent.mkdir(exist_ok=True)
+                    subprocess.run(["cp", "-pPR", ROOT / name, folder / name], check=True)
+        said = tree.run("--cores", "2").stdout
+        (shared / "said.txt").write_text(said, encoding="utf-8")
 
     return made_once(shared / "pristine", make, cloned.python)
 

@@ -37,7 +37,7 @@ def run_script(tmp_path, failing: str, hanging: str = "none") -> tuple[int, list
     environment = without_make()
     environment["PATH"] = f"{tmp_path}{os.pathsep}{environment['PATH']}"
     if hanging != "none":
-        environment["LIMIT"] = "2"
+        environment["LIMIT"] = "1"
     done = subprocess.run(
         [ROOT / ".ci" / "run"], env=environment, capture_output=True, text=True, check=False
     )

@@ -24,6 +24,7 @@ from pathlib import Path
 # What takes the time of a start of Snakemake, or of one of its jobs.
 IMPORTED = (
     *("snakemake.cli", "snakemake.workflow", "snakemake.script", "snakemake.executors.local"),
+    *("snakemake.report.html_reporter", "smart_open", "yte", "nbformat", "flint"),
     *("xarray.backends.netCDF4_", "pandas", "netCDF4", "pydantic", "jinja2"),
     *("scipy.optimize.elementwise", "scipy.integrate", "scipy.interpolate", "scipy.special"),
     *("matplotlib.pyplot", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
@@ -48,6 +49,8 @@ def main(folder: Path) -> None:
     ctypes.CDLL(None).prctl(1, signal.SIGTERM)
     for name in IMPORTED:
         importlib.import_module(name)
+    # What the first call costs: the search for plugins.
+    sys.modules["snakemake.cli"].get_argument_parser()
     # What the first text costs, the parser of its symbols and the fonts.
     plt = sys.modules["matplotlib.pyplot"]
     plt.figtext(0, 0, r"a $\frac{x^2}{\Lambda}$")

@@ -1,13 +1,15 @@
 """The texts on figures: quantities, parameters, notes."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import scipy
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.path import Path
 from matplotlib.text import Annotation
+from matplotlib.transforms import Bbox
 
 from bouncing_ball.datasets import CASE
 from bouncing_ball.drawing.style import GUIDE
@@ -147,11 +149,12 @@ def note_beside(axes: Axes, text: str, point: tuple[float, float], **look: Any) 
 
     The limits and the place of the panel must be known, so that this comes after its layout.
     """
+    others = _Content.of(axes)
     written = axes.annotate(text, point, xytext=(0, 0), textcoords="offset points", **look)
 
     def hidden(place: tuple[float, float]) -> float:
         _move(written, place)
-        return _hidden(axes, written)
+        return others.hidden_by(written.get_window_extent().padded(1.0))
 
     places = [(far * x, far * y) for far in _DISTANCES for x, y in _SIDES]
     _move(written, min(places, key=hidden))
@@ -167,23 +170,42 @@ def _move(text: Annotation, place: tuple[float, float]) -> None:
     )
 
 
-def _hidden(axes: Axes, text: Annotation) -> float:
-    """How much of a panel a text hides: a text more than a curve, and a curve more than a guide."""
-    box = text.get_window_extent().padded(1.0)
-    inside = axes.get_window_extent()
-    cost = 0.0 if inside.x0 <= box.x0 and box.x1 <= inside.x1 else 8.0
-    cost += 0.0 if inside.y0 <= box.y0 and box.y1 <= inside.y1 else 8.0
-    others = [x for x in axes.texts if x is not text and x.get_text()]
-    cost += 4.0 * sum(box.overlaps(x.get_window_extent()) for x in others)
-    arrows = [x.arrow_patch for x in axes.texts if isinstance(x, Annotation) and x.arrow_patch]
-    paths = [x.get_transform().transform_path(x.get_path()) for x in arrows]
-    cost += 2.0 * sum(path.intersects_bbox(box, filled=False) for path in paths)
-    for line in axes.lines:
-        path = line.get_transform().transform_path(line.get_path())
-        guide = line.get_color() == GUIDE["color"]
-        if line.get_linestyle() != "None" and path.cleaned().intersects_bbox(box, filled=False):
-            cost += 1.0 if guide else 2.0
-        if line.get_marker() != "None":
-            reach = line.get_markersize() / 2 * axes.figure.dpi / _POINTS_PER_INCH
+class _Content(NamedTuple):
+    """What a panel shows, in pixels: its own box, texts, arrows, lines with what hiding each of
+    them costs, and marks with their radius.
+    """
+
+    inside: Bbox
+    texts: list[Bbox]
+    arrows: list[Path]
+    lines: list[tuple[Path, float]]
+    marks: list[tuple[Path, float]]
+
+    @classmethod
+    def of(cls, axes: Axes) -> Self:
+        """The content of a panel whose limits and place are known."""
+        texts = [x.get_window_extent() for x in axes.texts if x.get_text()]
+        patches = [x.arrow_patch for x in axes.texts if isinstance(x, Annotation) and x.arrow_patch]
+        arrows = [x.get_transform().transform_path(x.get_path()) for x in patches]
+        lines = []
+        marks = []
+        for line in axes.lines:
+            path = line.get_transform().transform_path(line.get_path())
+            if line.get_linestyle() != "None":
+                lines.append((path.cleaned(), 1.0 if line.get_color() == GUIDE["color"] else 2.0))
+            if line.get_marker() != "None":
+                reach = line.get_markersize() / 2 * axes.figure.dpi / _POINTS_PER_INCH
+                marks.append((path, reach))
+        return cls(axes.get_window_extent(), texts, arrows, lines, marks)
+
+    def hidden_by(self, box: Bbox) -> float:
+        """How much of it a text hides: a text more than a curve, and a curve more than a guide."""
+        inside = self.inside
+        cost = 0.0 if inside.x0 <= box.x0 and box.x1 <= inside.x1 else 8.0
+        cost += 0.0 if inside.y0 <= box.y0 and box.y1 <= inside.y1 else 8.0
+        cost += 4.0 * sum(box.overlaps(other) for other in self.texts)
+        cost += 2.0 * sum(path.intersects_bbox(box, filled=False) for path in self.arrows)
+        cost += sum(each for path, each in self.lines if path.intersects_bbox(box, filled=False))
+        for path, reach in self.marks:
             cost += 2.0 * min(1, box.padded(reach).count_contains(path.vertices))
-    return cost
+        return cost

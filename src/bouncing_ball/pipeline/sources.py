@@ -11,10 +11,8 @@ An accepted sample also records digests of the code that computed it, without co
 docstrings. If one of these files computes something else today, the sample is older than its code.
 """
 
-import io
 import platform
 import re
-import tokenize
 from collections.abc import Iterable
 from functools import cache
 from hashlib import sha256
@@ -71,6 +69,21 @@ def imports(path: Path) -> frozenset[str]:
         found.add(module)
         found |= {f"{module}.{name}" for name in re.findall(r"\w+", names)}
     return frozenset(found)
+
+
+@cache
+def _files_of_module(name: str) -> tuple[Path, ...]:
+    """The files that Python reads for a name of :func:`imports`: a module and its packages."""
+    parts = name.split(".")
+    files = (module_file(".".join(parts[: k + 1])) for k in range(len(parts)))
+    return tuple(file for file in files if file)
+
+
+@cache
+def _imported(path: Path) -> frozenset[Path]:
+    """The files that are read when a file is imported, without what these import."""
+    names = () if path in _ON_DEMAND else imports(path)
+    return frozenset(file for name in names for file in _files_of_module(name))
 
 
 @cache
@@ -136,23 +149,14 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
     for module in modules:
         if module_file(module) is None:
             raise ModuleNotFoundError(f"no module {module}")
-    seen = set(files)
-    pending = list(modules)
-    for path in seen:
-        if path.suffix == ".py":
-            pending += imports(path)
-    while pending:
-        # A module's packages are imported with it.
-        parts = pending.pop().split(".")
-        for k in range(len(parts)):
-            path = module_file(".".join(parts[: k + 1]))
-            if path is None or path in seen:
-                continue
-            seen.add(path)
-            seen.update(data_beside(path))
-            if path not in _ON_DEMAND:
-                pending.extend(imports(path))
-    return sorted(seen, key=str)
+    given = set(files)
+    scripts = [path for path in given if path.suffix == ".py"]
+    found: set[Path] = set()
+    new = set().union(*map(_files_of_module, modules), *map(_imported, scripts)) - given
+    while new:
+        found |= new
+        new = set().union(*map(_imported, new)) - found - given
+    return sorted(given.union(found, *map(data_beside, found)), key=str)
 
 
 # The first digits of SHA-256; two versions of a file share them with a chance of 2⁻⁴⁸.
@@ -224,7 +228,22 @@ def changed_files(record: str, new: str) -> list[str]:
 _COMPUTES_NOTHING = re.compile(
     r"__init__\.py|errors\.py|(datasets|drawing|pipeline|workflow)/|.*figures\.py|.*/as_text\.py"
 )
-_STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
+# A comment, a string, or a bracket: no other sign of Python begins or ends one of them.
+_LEXEME = re.compile(
+    r"""[#][^\n]*
+    |(?:\b[rbuf]{1,2})?(?:\"{3}(?:\\.|[^\\])*?\"{3}|'{3}(?:\\.|[^\\])*?'{3})
+    |(?:\b[rbuf]{1,2})?(?:"(?:\\.|[^\\"\n])*"|'(?:\\.|[^\\'\n])*')
+    |[()\[\]{}]""",
+    re.DOTALL | re.IGNORECASE | re.VERBOSE,
+)
+
+
+def _stands_alone(code: str, start: int, end: int) -> bool:
+    """Whether a part of a text has its lines for itself, and goes on no earlier line."""
+    first = code.rfind("\n", 0, start) + 1
+    rest, _, _ = code[end:].partition("\n")
+    continued = code.endswith("\\\n", 0, first)
+    return not continued and not code[first:start].strip() and not rest.strip()
 
 
 # The samples are made by the same modules.
@@ -238,20 +257,20 @@ def without_remarks(code: str) -> str:
     def f():
         return '#'
     """
-    lines = code.splitlines(keepends=True)
-    tokens = list(tokenize.generate_tokens(io.StringIO(code).readline))
-    before = tokenize.ENCODING
-    remarks = []
-    for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
-        is_statement = before in _STARTS and after.type == tokenize.NEWLINE
-        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and is_statement):
-            remarks.append((token.start, token.end))
-        else:
-            before = token.type
-    for (first, start), (last, end) in reversed(remarks):
-        rest = lines[first - 1][:start] + lines[last - 1][end:]
-        lines[first - 1 : last] = [rest]
-    return "\n".join(line.rstrip() for line in "".join(lines).splitlines() if line.strip())
+    kept = []
+    end = 0
+    depth = 0
+    for found in _LEXEME.finditer(code):
+        lexeme = found[0]
+        if lexeme in "([{":
+            depth += 1
+        elif lexeme in ")]}":
+            depth -= 1
+        elif lexeme[0] == "#" or (depth == 0 and _stands_alone(code, *found.span())):
+            kept.append(code[end : found.start()])
+            end = found.end()
+    lines = "".join([*kept, code[end:]]).splitlines()
+    return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
 def _line_of_computation(path: Path) -> str:

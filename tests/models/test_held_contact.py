@@ -164,7 +164,7 @@ def test_a_ball_lies_still_up_to_the_threshold(flight, release):
     speed = ball.place.waveform.velocity(0.0)
     for factor, status in ((0.999, Status.PERMANENT_CONTACT), (1.001, Status.BOUNCING)):
         lam = factor * threshold
-        assert ball.simulate(lam, 0.0, lam * speed, 60).status == status
+        assert ball.simulate(lam, 0.0, lam * speed, 20).status == status
     assert bouncing_ball.permanent_contact(ball) == threshold
 
 

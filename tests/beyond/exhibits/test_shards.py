@@ -16,7 +16,7 @@ from bouncing_ball.pipeline.jobs import joined_shards
 
 GIVEN = read_yaml(Path(__file__).parents[3] / "config/config.yaml")["beyond"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
-GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 7}}
+GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 4}}
 HIGH = {"min": 1.5, "max": 2.0, "samples": 11}
 PLACES = {
     # Here a ball ends on another motion if it starts from the fourth amplitude beside its own.

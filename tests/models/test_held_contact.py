@@ -45,8 +45,8 @@ def test_legs_are_those_of_a_second_code(flight, release, ratio):
         )
         lag = 2 * zeta / ratio if release == "force" else 0.0
         scene = linear(table, ratio, zeta, lag, numbers)
-        found = ball.simulate(amplitude, 0.3, -4.0 + table(0.3, 1), 6)
-        for k in range(5):
+        found = ball.simulate(amplitude, 0.3, -4.0 + table(0.3, 1), 4)
+        for k in range(3):
             state = found.phase[k], found.displacement[k], found.relative_velocity[k]
             duration, passed, gap, rate = leg(scene, *state)
             slow = _SECOND_CODE * (1 + 1 / abs(rate))

@@ -26,9 +26,9 @@ PLACES = {
     | {"restitution": {"min": 0.5, "max": 0.6, "samples": 2}}
     | {"followed": [200, 300], "bands": [0.55], "resolved": 1.0, "resolved_impacts": 200},
     "ext_means": GRID | {"starts": 5, "samples": 10},
-    "ext_locked": LOW | {"nodes": 20},
+    "ext_locked": LOW | {"nodes": 10},
     "ext_lives": {"balls": 12, "impacts": 50},
-    "ext_basins": {"cases": GIVEN["ext_basins"]["cases"][1:], "starts": 10, "random": 25},
+    "ext_basins": {"cases": GIVEN["ext_basins"]["cases"][1:], "starts": 10, "random": 10},
 }
 
 

@@ -120,7 +120,7 @@ def designs(count):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [3, pytest.param(12, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [2, pytest.param(12, marks=pytest.mark.long)])
 def test_the_heights_of_random_designs_are_those_of_an_integration(count, short_runs):
     for answer, release in designs(count):
         table = answer.case.table

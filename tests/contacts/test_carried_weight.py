@@ -30,7 +30,7 @@ LAWS = [tsuji, hunt_crossley, kuwabara_kono]
 def test_orbits_that_exist_are_within_the_bounds(of, n):
     lam = 1.5
     found = False
-    for k in (0.05, 0.5, 2.0, 20.0):
+    for k in (0.5, 2.0):
         law = of(k)
         orbit = n_t.orbit(LawModel(law), n, lam)
         if not orbit.exists:

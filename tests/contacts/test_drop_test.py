@@ -8,8 +8,10 @@ from asked_contacts import answered, assessed, described
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.drop_test import rebound
+from bouncing_ball.contacts.rebounds import rises, slowed
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import LINEAR, Release
+from bouncing_ball.models.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball.periodic.one_impact import n_t
 
 G = 9.80665
@@ -143,3 +145,10 @@ def test_the_orbit_of_a_design_is_that_of_an_integration(
     predicted = float(simple) * found.case.table.length
     assert one.errors["max_height"] == pytest.approx(predicted / top - 1, abs=1e-7)
     assert np.sign(one.errors["max_height"]) == np.sign(predicted - top)
+
+
+@pytest.mark.parametrize("law", [Tsuji(100.0, 0.3), KuwabaraKono(100.0, 0.01)])
+def test_at_the_speed_at_which_gravity_is_felt_r_is_lowered_by_one_percent_for_a_law(law):
+    speed = np.array([slowed(law, 1e5)])
+    share = np.sqrt(2 * rises(law, speed)) / speed / law.signature(speed).restitution
+    assert share == pytest.approx(0.99, rel=1e-9)

@@ -439,7 +439,7 @@ def test_the_heights_of_a_motion_are_in_metres(few_starts):
         assert height == pytest.approx(length * unit.motion.greatest[name], rel=1e-6)
     # Greatest heights by a simulation of the restitution model, over both impacts of the motion.
     model = RestitutionModel(0.85)
-    run = model.simulate(1.1, 1.2, -3.0, 4000)
+    run = model.simulate(1.1, 1.2, -3.0, 1500)
     late = slice(-4, None)
     tops = 1.1 * np.sin(run.phase[late]) + run.bounce_velocity[late] ** 2 / 2
     assert unit.motion.greatest["restitution"] == pytest.approx(tops.max(), rel=1e-6)

@@ -16,7 +16,7 @@ MASS = 0.02
 
 
 @pytest.mark.parametrize("acceleration", [0.8, 2.0])
-@pytest.mark.parametrize("restitution", [0.1, 0.3, 0.6])
+@pytest.mark.parametrize("restitution", [0.1, 0.6])
 @pytest.mark.parametrize("stiffness", [5, 50, 1000])
 def test_a_soft_contact_is_answered(stiffness, restitution, acceleration):
     """The forced oscillation in contact is a closed form: it pulls above the threshold only."""

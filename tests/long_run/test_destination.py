@@ -261,21 +261,20 @@ def test_all_calls_that_judge_a_motion_have_one_default():
     assert defaults == {IMPACTS}
 
 
-@pytest.mark.slow
 def test_the_error_of_an_exponent_is_told_by_motions_that_have_settled():
-    """A nearly elastic ball gains speed for thousands of impacts: areas contract by e in 500."""
-    both = bouncing_ball.rigid(restitution=[0.999, 0.9])
+    """A nearly elastic ball gains speed for hundreds of impacts: areas contract by e in 25."""
+    both = bouncing_ball.rigid(restitution=[0.98, 0.9])
     found = {
         k: bouncing_ball.lyapunov_exponent(both, amplitude=2.0, velocity=-8.0, impacts=k)
-        for k in (IMPACTS, 4000, 14000)
+        for k in (500, 600, 1000)
     }
-    short, some, long = (each.sel(restitution=0.999) for each in found.values())
+    short, some, long = (each.sel(restitution=0.98) for each in found.values())
     assert short.kind.item() == some.kind.item() == long.kind.item() == "chaotic"
     assert np.isnan(short.lyapunov_error) and np.isnan(some.lyapunov_error)
-    # The value after eight million impacts.
-    assert abs(float(long.lyapunov_exponent) - 0.0392) < 2 * float(long.lyapunov_error) < 0.04
+    # The mean of 8000 balls after 1000 impacts, whose standard error is 0.0002.
+    assert abs(float(long.lyapunov_exponent) - 0.1900) < 2 * float(long.lyapunov_error) < 0.19
     # An exponent that is settled has its standard error only, which falls as the root.
-    some, more, _ = (each.sel(restitution=0.9) for each in found.values())
+    some, _, more = (each.sel(restitution=0.9) for each in found.values())
     assert some.kind.item() == more.kind.item() == "chaotic"
     assert 1.0 < float(some.lyapunov_error / more.lyapunov_error) < 2.4
 
@@ -285,12 +284,12 @@ def exponents_of_forty_balls():
     """Of both restitutions at once, which takes little longer than of one."""
     phases = np.random.default_rng(7).uniform(-3, 3, 40)
     return bouncing_ball.lyapunov_exponent(
-        bouncing_ball.rigid(restitution=[0.9, 0.99, 0.995]),
-        amplitude=2.0, phase=phases, velocity=-3.0, impacts=4000,
+        bouncing_ball.rigid(restitution=[0.9, 0.98, 0.99]),
+        amplitude=2.0, phase=phases, velocity=-3.0, impacts=2000,
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("restitution", [0.9, 0.99, 0.995])
+@pytest.mark.parametrize("restitution", [0.9, 0.98, 0.99])
 def test_intervals_of_exponents_contain_their_common_value(restitution):
     """Forty balls of one chaotic motion; at r = 0.99 the speed changes over a hundred impacts, so
     that one section does not tell the next one, and twice the standard error of independent

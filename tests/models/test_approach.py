@@ -131,7 +131,7 @@ def test_the_threshold_of_permanent_contact_is_that_of_an_integration(omega, zet
     last = 2 * np.pi * np.array([periods - 1, periods])
     run = solve_ivp(motion, (0.0, last[1]), [0.0, 0.0], method="LSODA", rtol=1e-11, atol=1e-15,
                     dense_output=True)  # fmt: skip
-    top = run.sol(np.linspace(*last, 200_001))[0].max()
+    top = run.sol(np.linspace(*last, 50_001))[0].max()
     contact = SpringDamper(omega, zeta, "approach")
     assert permanent_contact(contact) == pytest.approx(1 / (omega**2 * top), rel=1e-7)
 

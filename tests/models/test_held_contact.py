@@ -45,8 +45,8 @@ def test_legs_are_those_of_a_second_code(flight, release, ratio):
         )
         lag = 2 * zeta / ratio if release == "force" else 0.0
         scene = linear(table, ratio, zeta, lag, numbers)
-        found = ball.simulate(amplitude, 0.3, -4.0 + table(0.3, 1), 6)
-        for k in range(5):
+        found = ball.simulate(amplitude, 0.3, -4.0 + table(0.3, 1), 4)
+        for k in range(3):
             state = found.phase[k], found.displacement[k], found.relative_velocity[k]
             duration, passed, gap, rate = leg(scene, *state)
             slow = _SECOND_CODE * (1 + 1 / abs(rate))
@@ -164,7 +164,7 @@ def test_a_ball_lies_still_up_to_the_threshold(flight, release):
     speed = ball.place.waveform.velocity(0.0)
     for factor, status in ((0.999, Status.PERMANENT_CONTACT), (1.001, Status.BOUNCING)):
         lam = factor * threshold
-        assert ball.simulate(lam, 0.0, lam * speed, 60).status == status
+        assert ball.simulate(lam, 0.0, lam * speed, 20).status == status
     assert bouncing_ball.permanent_contact(ball) == threshold
 
 

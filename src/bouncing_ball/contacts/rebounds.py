@@ -6,13 +6,14 @@ ball takes that never leaves again, is one integration up to its turn.
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 import scipy
 
-from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.march import march
+from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.scales import rest, scales
 from bouncing_ball.models.sequence import Status
 
@@ -131,12 +132,17 @@ def greatest_loads(
     return found[0], found[1]
 
 
-def _ends(law: ContactLaw, speed: float) -> bool:
-    """Whether a free impact ends, as a fast one does not where the loss grows with the speed."""
-    try:
-        return float(law.signature(speed).restitution) > 0
-    except ModelError:
-        return False
+def _restitution(law: ContactLaw, speed: float) -> float:
+    """r of a free impact; NaN if it does not end, as a fast one if the loss grows with the speed.
+
+    The signature of a law has this r too, but is computed with all its derivatives.
+    """
+    known = law.constant_signature
+    if known is not None:
+        return float(known.restitution)
+    zero = np.zeros(1)
+    start = Start(depth=zero, rate=zero + speed, phase=zero, amplitude=zero, weight=zero)
+    return float(-march(law, start).rate[0] / speed)
 
 
 # An answer asks for it of the same contact several times.
@@ -157,19 +163,24 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     [0.99]
     """
 
+    @cache
+    def restitution(logarithm: float) -> float:
+        return _restitution(law, math.exp(logarithm))
+
+    @cache
     def surplus(logarithm: float) -> float:
         speed = np.exp([logarithm])
-        free = law.signature(speed).restitution
-        return float((np.sqrt(2 * rises(law, speed)) / speed - (1 - SLOWED) * free)[0])
+        rebound = float((np.sqrt(2 * rises(law, speed)) / speed)[0])
+        return rebound - (1 - SLOWED) * restitution(logarithm)
 
-    if _ends(law, fast) and float(law.signature(fast).restitution) > 1 - _ROUNDING:
-        return None
     # A loss that grows with the speed stops fast balls.
-    tried = math.log(fast) - math.log(10) * np.arange(_DECADES)
-    upper = next((x for x in tried.tolist() if _ends(law, math.exp(x)) and surplus(x) >= 0), None)
+    tried = (math.log(fast) - math.log(10) * np.arange(_DECADES)).tolist()
+    if restitution(tried[0]) > 1 - _ROUNDING:
+        return None
+    upper = next((x for x in tried if restitution(x) > 0 and surplus(x) >= 0), None)
+    if upper is None:
+        return None
     for _ in range(_HALVES):
-        if upper is None:
-            return None
         lower = upper - math.log(2)
         if surplus(lower) < 0:
             return math.exp(scipy.optimize.brentq(surplus, lower, upper, xtol=1e-10))

@@ -96,7 +96,7 @@ def test_rounding_may_decide_at_few_nodes_only(recorded):
 
 def test_many_digits_tell_periods_where_doubles_do_not():
     """At r = 0.55: what doubles know is kept, and most of what they do not is a period above 10."""
-    data = study(1000.0, (2.6, 3.6, 15), (0.55, 0.6, 2))
+    data = study(1000.0, (2.6, 3.6, 9), (0.55, 0.6, 2))
     r, lam = (x.ravel() for x in np.meshgrid(data.restitution, data.amplitude, indexing="ij"))
     velocity = lam * np.cos(START["phase"]) - START["impact_speed"]
     balls = final_motions(RestitutionModel(r), lam, START["phase"], velocity, impacts=200)
@@ -112,15 +112,15 @@ def test_many_digits_tell_periods_where_doubles_do_not():
 
 def test_a_contact_may_be_chaotic_where_the_restitution_model_locks():
     """At r = 0.7 on a compliant contact, ball by ball, also those that have stuck twice."""
-    data = study(100.0, (2.5, 4.5, 21), (0.7, 0.71, 2), impacts=400, further=800)
+    data = study(100.0, (2.5, 4.5, 21), (0.7, 0.71, 2), impacts=200, further=400)
     r, lam = (x.ravel() for x in np.meshgrid(data.restitution, data.amplitude, indexing="ij"))
     velocity = lam * np.cos(START["phase"]) - START["impact_speed"]
     contact, simple = (
-        final_motions(model, lam, START["phase"], velocity, impacts=400)
+        final_motions(model, lam, START["phase"], velocity, impacts=200)
         for model in three_models(r, 100.0, Release.DISPLACEMENT)[::-2]
     )
     both = (simple.kind == "locked") & (contact.kind == "chaotic")
-    assert both.sum() == data.chaotic_nodes[0] > 10
+    assert both.sum() == data.chaotic_nodes[0] > 5
     sticks = (contact.times_stuck > 1) & both
     assert 0 < sticks.sum() == data.chaotic_sticking_nodes[0] < both.sum()
     assert 0 < data.lasting_nodes[0] <= both.sum()

@@ -16,7 +16,7 @@ from bouncing_ball.pipeline.jobs import joined_shards
 
 GIVEN = read_yaml(Path(__file__).parents[3] / "config/config.yaml")["beyond"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
-GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 7}}
+GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 4}}
 HIGH = {"min": 1.5, "max": 2.0, "samples": 11}
 PLACES = {
     # Here a ball ends on another motion if it starts from the fourth amplitude beside its own.
@@ -26,9 +26,9 @@ PLACES = {
     | {"restitution": {"min": 0.5, "max": 0.6, "samples": 2}}
     | {"followed": [200, 300], "bands": [0.55], "resolved": 1.0, "resolved_impacts": 200},
     "ext_means": GRID | {"starts": 5, "samples": 10},
-    "ext_locked": LOW | {"nodes": 20},
+    "ext_locked": LOW | {"nodes": 10},
     "ext_lives": {"balls": 12, "impacts": 50},
-    "ext_basins": {"cases": GIVEN["ext_basins"]["cases"][1:], "starts": 10, "random": 25},
+    "ext_basins": {"cases": GIVEN["ext_basins"]["cases"][1:], "starts": 10, "random": 10},
 }
 
 

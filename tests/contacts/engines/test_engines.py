@@ -29,7 +29,7 @@ def per_mass(restitution, release=Release.DISPLACEMENT):
 
 @pytest.mark.parametrize("name", ENGINES)
 @given(mass=st.floats(1e-3, 1e3), stiffness=st.floats(1.0, 1e9), r=st.floats(0.2, 1.0))
-@hypothesis.settings(max_examples=8)
+@hypothesis.settings(max_examples=4)
 def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, stiffness, r):
     engine = ENGINES[name]
     # Damping on approach leaves e⁻¹, and some engines have no contact without damping.

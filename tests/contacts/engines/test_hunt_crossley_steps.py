@@ -9,7 +9,6 @@ import pytest
 from asked_contacts import answered
 from engine_runs import Trial, drake
 from installed_engines import only_if_installed
-from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines import hunt_crossley_steps
 from bouncing_ball.contacts.engines.drake import HuntCrossleyDrake
@@ -35,22 +34,34 @@ def each_spread_once():
         yield
 
 
-def impact(speed, step, fraction, damping=0.5, stiffness=1e5):
-    """r of one impact, by the equation of each step as it is written, solved by bisection."""
-    x = -fraction * step * speed
-    v = -speed
-    for _ in range(10_000):
-        if x >= 0:
-            return v / speed
-        p = -x
+def root(rest, low, high):
+    """The zero of an increasing function between two rows of numbers, by bisection."""
+    while True:
+        middle = (low + high) / 2
+        if np.all((middle <= low) | (middle >= high)):
+            return middle
+        below = rest(middle) < 0
+        low = np.where(below, middle, low)
+        high = np.where(below, high, middle)
 
-        def rest(after, p=p, before=v):
-            force = stiffness * max(p - step * after, 0.0) * max(1 - damping * after, 0.0)
+
+def impacts(speed, step, fraction, damping=0.5, stiffness=1e5):
+    """r of impacts, by the equation of each step as it is written, solved by bisection."""
+    x = -fraction * step * speed
+    v = np.full_like(x, -speed)
+    for _ in range(10_000):
+        (inside,) = np.nonzero(x < 0)
+        if not inside.size:
+            return v / speed
+        p, before = -x[inside], v[inside]
+
+        def rest(after, p=p, before=before):
+            force = stiffness * np.maximum(p - step * after, 0) * np.maximum(1 - damping * after, 0)
             return 0.5 * (after - before) - step * force
 
-        v = brentq(rest, v, p / step + 1 / damping + abs(v), xtol=1e-15)
-        x += step * v
-    return 0.0
+        v[inside] = root(rest, before, p / step + 1 / damping + np.abs(before))
+        x[inside] += step * v[inside]
+    return np.where(x < 0, 0.0, v / speed)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +78,7 @@ def impact(speed, step, fraction, damping=0.5, stiffness=1e5):
 )
 def test_the_range_is_that_of_single_impacts(step, speed):
     at = answered(**ALONE, time_step=step, speed=speed).at_step
-    many = np.array([impact(speed, step, f) for f in np.linspace(1e-6, 1.0, 401)])
+    many = impacts(speed, step, np.linspace(1e-6, 1.0, 401))
     # Instants 2.5e-3 apart; r changes by less than 2 over one step.
     assert at.least == pytest.approx(many.min(), abs=5e-3)
     assert at.most == pytest.approx(many.max(), abs=5e-3)
@@ -103,46 +114,48 @@ LAW = {"mass": 0.5, "law": "hunt-crossley-linear", "contact_time": "7 ms", "rest
 WRITTEN = LAW | {"engine": "drake", "speed": "1 m/s"}
 
 
-def dropped(settings, drop):
-    """The rise of a ball that is dropped, by the recipe's parameters and the equation of a step."""
+def dropped(settings, drops):
+    """Rises of balls that are dropped, by the recipe's parameters and the equation of a step."""
     k = settings.parameters["point_contact_stiffness"] / 2
     damping = settings.parameters["hunt_crossley_dissipation"]
     h = settings.time_step
-    g = 9.80665
-    x = drop
-    v = 0.0
-    was_in = False
+    x = np.array(drops)
+    v = np.zeros_like(x)
+    was_in = np.zeros(x.size, dtype=bool)
+    rising = np.ones(x.size, dtype=bool)
     for _ in range(100_000):
-        free = v - g * h
+        free = v - 9.80665 * h
         p = -x
 
         def rest(after, p=p, free=free):
-            force = k * max(p - h * after, 0.0) * max(1 - damping * after, 0.0)
+            force = k * np.maximum(p - h * after, 0) * np.maximum(1 - damping * after, 0)
             return 0.5 * (after - free) - h * force
 
-        v = (
-            brentq(rest, free, free + 1 + 2 * h * k * max(p, 0.0) + 20, xtol=1e-15)
-            if p > 0
-            else free
-        )
-        was_in |= p > 0
-        if was_in and p <= 0 and v <= 0:
+        inside = p > 0
+        v = free
+        if inside.any():
+            held = root(rest, free, free + 1 + 2 * h * k * np.maximum(p, 0) + 20)
+            v = np.where(inside, held, free)
+        was_in |= inside
+        # A ball stays at its top.
+        rising &= ~(was_in & (p <= 0) & (v <= 0))
+        if not rising.any():
             return x
-        x += h * v
-    return 0.0
+        x = np.where(rising, x + h * v, x)
+    return np.where(rising, 0.0, x)
 
 
 def test_a_law_is_written_for_a_step_with_what_the_engine_then_does():
-    answer = answered(**WRITTEN, time_step="1 ms")
+    answer = answered(**WRITTEN, time_step="1 ms", restitution_error=0.05)
     at = answer.engine.at_step
     k, d = answer.engine.parameters.values()
-    many = np.array([impact(1.0, 1e-3, f, d, k / 2) for f in np.linspace(1e-6, 1.0, 401)])
+    many = impacts(1.0, 1e-3, np.linspace(1e-6, 1.0, 401), d, k / 2)
     assert not at.is_within
     assert at.least == pytest.approx(many.min(), abs=5e-3)
     assert at.most == pytest.approx(many.max(), abs=5e-3)
     assert at.mean == pytest.approx(many.mean(), abs=5e-3)
     drops = 1 / (2 * 9.80665) + 1e-3 * np.linspace(-0.5, 0.5, 101)
-    rises = np.array([dropped(answer.engine, drop) / drop for drop in drops]) / (2 * 9.80665)
+    rises = dropped(answer.engine, drops) / drops / (2 * 9.80665)
     # A hundred heights of the drop, between which the rise has jumps.
     assert answer.dropped_at_step.least == pytest.approx(rises.min(), rel=0.02)
     assert answer.dropped_at_step.most == pytest.approx(rises.max(), rel=0.02)
@@ -154,7 +167,7 @@ def test_the_softer_and_the_retuned_contact_of_a_law_have_its_r_at_the_step():
     r = settings.restitution
     for found in (settings, settings.softer, settings.retuned):
         k, d = found.parameters.values()
-        many = np.array([impact(1.0, 2e-4, f, d, k / 2) for f in np.linspace(1e-6, 1.0, 41)])
+        many = impacts(1.0, 2e-4, np.linspace(1e-6, 1.0, 41), d, k / 2)
         assert np.abs(many - r).max() <= max(found.at_step.error, 0.05) + 1e-9
         assert found.at_step.mean == pytest.approx(many.mean(), abs=5e-3)
     soft = settings.softer
@@ -165,7 +178,7 @@ def test_the_softer_and_the_retuned_contact_of_a_law_have_its_r_at_the_step():
     )
     # A contact that is stiffer by more than the search leaves open is not within the error.
     k, d = soft.parameters.values()
-    many = np.array([impact(1.0, 2e-4, f, d, 1.02 * k / 2) for f in np.linspace(1e-6, 1.0, 41)])
+    many = impacts(1.0, 2e-4, np.linspace(1e-6, 1.0, 41), d, 1.02 * k / 2)
     assert np.abs(many - r).max() > 0.05
     assert answer.softer.contact.measured_restitution == pytest.approx(r, rel=1e-9)
     law = answer.softer.contact.law
@@ -180,7 +193,7 @@ def test_on_a_table_a_law_at_a_step_has_the_r_of_its_orbit(said, refusal):
     assert found.engine.at_step.speed == found.found.judged.impact_speed
     assert "takes 3.233 s, more than the table's period of 50 ms" in found.softer.verdict
     options = [f"--{name.replace('_', '-')}={value}" for name, value in WRITTEN.items()]
-    text = said("design", *options, "--time-step=1 ms")
+    text = said("design", *options, "--time-step=1 ms", "--restitution-error=0.05")
     assert "is not resolved in drake: a free impact at 1 m/s has r = 0.4202 to 0.5206" in text
     assert "hunt-crossley-linear, damping         495.9 ms/m" in text
     with refusal(ModelError, "for drake with"):
@@ -203,7 +216,7 @@ def test_drake_itself_has_this_range(step):
         r = (away[-1] - away[-2]) / step
         # The ball arrives at this fraction of the step after the one before the contact.
         assert at.least - 1e-5 <= r <= at.most + 1e-5
-        assert r == pytest.approx(impact(1.0, step, 1 - fraction), abs=1e-5)
+        assert r == pytest.approx(impacts(1.0, step, np.array([1 - fraction]))[0], abs=1e-5)
 
 
 @pytest.mark.engines

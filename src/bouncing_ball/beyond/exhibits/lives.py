@@ -145,8 +145,8 @@ def mean_with_limits(values: np.ndarray, confidence: float) -> tuple[float, floa
     mean = values.mean()
     if values.size == 1:
         return mean, np.nan, np.nan
-    quantile = scipy.stats.t.ppf((1 + confidence) / 2, values.size - 1)
-    width = quantile * scipy.stats.sem(values)
+    quantile = scipy.special.stdtrit(values.size - 1, (1 + confidence) / 2)
+    width = quantile * (values.std(ddof=1) / np.sqrt(values.size))
     return mean, mean - width, mean + width
 
 

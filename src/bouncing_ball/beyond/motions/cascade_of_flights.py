@@ -55,6 +55,9 @@ _ABOVE = 1e-3
 # which may close again, in smaller ones.
 _STEP = 1.2
 _SMALL_STEP = 1.05
+# So many steps are tried at the same time, by balls that all start from the orbit below them; this
+# takes little longer than one step.
+_AHEAD = 8
 # The search on a contact begins and ends at these shares of the E of the limit of stiff contacts.
 _LOWEST, _HIGHEST = 0.02, 1.5
 # An opening is bracketed within this fraction of E before its equations are solved.
@@ -217,7 +220,7 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     """The openings of contacts with the displacement release, shape (ζ, most, ϖ).
 
     Opening k is the first from below: Λ is raised from opening k - 1, or from near Λ_SD, in steps
-    of a twentieth of E, while a simulated ball stays on the orbit with k flights in each period.
+    of a twentieth of E, while simulated balls stay on the orbit with k flights in each period.
     It is NaN, with all openings above it, where the orbit ends or loses its stability before its
     contact opens, or where there is no stable orbit with k + 1 flights right above. Each contact is
     computed for itself, so that the openings do not depend on the other contacts. If the contact
@@ -260,6 +263,11 @@ def balls_behind_the_top(law: SpringDamper, amplitude: np.ndarray) -> Motions:
     phase, closing = _behind_the_top(law)
     velocity = amplitude * np.cos(phase) + closing
     return final_motions(SpringDamperModel(law), amplitude, phase, velocity, impacts=_IMPACTS)
+
+
+def _steps(excess: np.ndarray) -> np.ndarray:
+    """The next steps of E, shape (steps, orbits)."""
+    return excess * _SMALL_STEP ** np.arange(1.0, _AHEAD + 1)[:, np.newaxis]
 
 
 def _behind_the_top(law: SpringDamper) -> tuple[np.ndarray, np.ndarray]:
@@ -313,22 +321,17 @@ class _Followed(Batch):
         indices of the contacts that have such an E up to ``top``.
         """
         low, has = self.at(self.excess, flights)
-        high = np.full(top.shape, np.nan)
+        stopped = []
         rising = np.flatnonzero(has)
         while rising.size:
-            stopped = low.climb(rising, flights, top)
-            ahead = _SMALL_STEP * low.excess[stopped]
-            same = low.move(stopped, ahead, flights)
-            high[stopped[~same]] = ahead[~same]
-            rising = stopped[same]
-        wide = np.flatnonzero(np.isfinite(high))
-        while wide.size:
-            middle = (low.excess[wide] + high[wide]) / 2
-            same = low.move(wide, middle, flights)
-            high[wide[~same]] = middle[~same]
-            wide = wide[(high - low.excess)[wide] > _BRACKET * low.excess[wide]]
-        known = np.flatnonzero(np.isfinite(high))
-        return low.take(known), known
+            rising = low.climb(rising, flights, top)
+            risen = low.rise(rising, _steps(low.excess[rising]), flights)
+            stopped.append(rising[risen == 0])
+            rising = rising[risen > 0]
+        known = np.sort(np.concatenate([rising, *stopped]))
+        found = low.take(known)
+        found.refine(flights)
+        return found, known
 
     def climb(self, which: np.ndarray, flights: int, top: np.ndarray) -> np.ndarray:
         """Raise the orbits with these indices in steps of E while they are soon seen to be orbits
@@ -336,22 +339,35 @@ class _Followed(Batch):
         """
         stopped = []
         while which.size:
-            ahead = _SMALL_STEP * self.excess[which]
-            same = self.move(which, ahead, flights, _SOON)
-            stopped.append(which[~same])
-            which = which[same & (ahead < top[which])]
+            risen = self.rise(which, _steps(self.excess[which]), flights, _SOON)
+            below = self.excess[which] < top[which]
+            stopped.append(which[(risen == 0) & below])
+            which = which[(risen > 0) & below]
         return np.concatenate(stopped) if stopped else which
 
-    def move(
+    def refine(self, flights: int) -> None:
+        """Raise the orbits, which the next step of E ends, to a small fraction of E below that."""
+        every = np.arange(self.excess.size)
+        width = (_SMALL_STEP - 1) * self.excess
+        while np.any(width > _BRACKET * self.excess):
+            width = width / _AHEAD
+            ahead = self.excess + np.arange(1, _AHEAD)[:, np.newaxis] * width
+            self.rise(every, ahead, flights)
+
+    def rise(
         self, which: np.ndarray, excess: np.ndarray, flights: int, impacts: int = _LATE
     ) -> np.ndarray:
-        """Move the orbits with these indices to other E, if there they are orbits with this number
-        of flights; return whether they are.
+        """Raise the orbits with these indices along increasing E, shape (steps, orbits), up to the
+        first at which they are no orbits with this number of flights; return the numbers of steps.
         """
-        there, same = self.take(which).at(excess, flights, impacts)
+        steps = len(excess)
+        there, same = self.take(np.tile(which, steps)).at(excess.ravel(), flights, impacts)
+        risen = np.logical_and.accumulate(same.reshape(excess.shape)).sum(axis=0)
+        moved = np.flatnonzero(risen)
+        last = (risen[moved] - 1) * which.size + moved
         for name in ("excess", "phase", "closing"):
-            getattr(self, name)[which[same]] = getattr(there, name)[same]
-        return same
+            getattr(self, name)[which[moved]] = getattr(there, name)[last]
+        return risen
 
     def opened(self, flights: int) -> tuple[Self, Openings, np.ndarray]:
         """From orbits shortly below an opening those right above it, the openings, and the indices

@@ -17,7 +17,7 @@ the bounds of r are the limits at the jumps.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import NamedTuple
@@ -252,15 +252,20 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     duration = float(contact.free_duration)
     exact = float(contact.restitution)
 
-    def off(steps: float) -> float:
-        # At a whole number of steps r may jump, and parameters are written with twelve digits.
-        sides = (steps, steps * (1 + _ASIDE))
-        found = [spread_in_steps(scheme, zeta, release, duration / side) for side in sides]
-        return max(one.error(exact) for one in found)
+    def sides(steps: float) -> Iterator[float]:
+        """The errors at this number of steps and just above it.
+
+        At a whole number of steps r may jump, and parameters are written with twelve digits.
+        """
+        for side in (steps, steps * (1 + _ASIDE)):
+            yield spread_in_steps(scheme, zeta, release, duration / side).error(exact)
+
+    def exceeds(steps: float) -> bool:
+        return any(found > error for found in sides(steps))
 
     sampled = fewest_steps(scheme, zeta, release, error)
     good = sampled * (1 + _MARGIN)
-    while (found := off(good)) > error:
+    while (found := max(sides(good))) > error:
         # The error falls about as 1/N.
         good *= max(1 + _MARGIN / 4, found / error)
         if good > _MOST:
@@ -268,7 +273,7 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     least = max(FEWEST, sampled * (1 - _MARGIN))
     bad = None
     for steps in np.linspace(good, least, _TRIED)[1:].tolist():
-        if off(steps) > error:
+        if exceeds(steps):
             bad = steps
             break
         good = steps
@@ -276,7 +281,7 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
         return good
     while good - bad > _FINE * good:
         middle = (good + bad) / 2
-        if off(middle) > error:
+        if exceeds(middle):
             bad = middle
         else:
             good = middle

@@ -104,7 +104,7 @@ def impacts_in_steps(
     True
     """
     duration = _duration(float(damping_ratio), release)
-    linear = LinearStep.of(scheme, 1.0, 2 * float(damping_ratio), release, step)
+    linear = _linear_step(scheme, float(damping_ratio), release, float(step))
     start = np.asarray(fraction, dtype=float).ravel()
     state = np.stack([-step * start, -np.ones_like(start)])
     if duration / step < FEWEST:
@@ -156,6 +156,12 @@ def _halves(step: LinearStep, most: int) -> list[np.ndarray]:
         powers.append(np.linalg.matrix_power(step.matrix, half))
         most -= half
     return [*powers, step.matrix]
+
+
+@lru_cache(maxsize=4)
+def _linear_step(scheme: Scheme, damping_ratio: float, release: Release, size: float) -> LinearStep:
+    """The step of a contact with ω = 1, which keeps its matrix."""
+    return LinearStep.of(scheme, 1.0, 2 * damping_ratio, release, size)
 
 
 @lru_cache(maxsize=4)

@@ -7,6 +7,7 @@ are per unit of mass, in units of any time and length.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol, Self
 
 import numpy as np
@@ -98,14 +99,14 @@ class LinearStep:
             return held
         return np.where(self.grip(place, before, free) < 0, held, free)
 
-    @property
+    @cached_property
     def matrix(self) -> np.ndarray:
         """The matrix of (x, v) of a step in contact without gravity, also where the force pulls."""
         place, before = np.eye(2)
         held = replace(self, release=Release.DISPLACEMENT)._held(place, before, before)
         return np.stack([place + self.size * held, held])
 
-    @property
+    @cached_property
     def ending(self) -> np.ndarray:
         """The numbers by which (x, v) is multiplied for what ends a contact where it is ≥ 0: y for
         the force release, otherwise x.
@@ -113,7 +114,7 @@ class LinearStep:
         place, before = np.eye(2)
         return place if self.release.at_surface else self.grip(place, before, before)
 
-    @property
+    @cached_property
     def elastic(self) -> Self:
         """The step without the damper."""
         return replace(self, damping=0.0)

@@ -69,7 +69,7 @@ class _Steady(NamedTuple):
 
     def pull(self, angle: np.ndarray, order: int = 0) -> Any:
         """-u″ of the table, or a derivative of it."""
-        if self.table == SINE:
+        if self.table.is_sine:
             return np.cos(angle) if order else np.sin(angle)
         k = self.table.orders
         whole = self.table.coefficients * np.exp(1j * k * np.asarray(angle)[..., np.newaxis])
@@ -134,12 +134,12 @@ def _touching(law: ForceLaw, at_surface: bool, table: Waveform = SINE) -> float:
         return np.nan
     # The same motion, shifted by half a period, is the solution of a sine with -Λ.
     lam = float(found.p[1])
-    return abs(lam) if table == SINE or lam > 0 else np.nan
+    return abs(lam) if table.is_sine or lam > 0 else np.nan
 
 
 def _least_load(steady: _Steady) -> tuple[float, float]:
     """The phase at which the load of the table is least, and -u″ there."""
-    if steady.table == SINE:
+    if steady.table.is_sine:
         return np.pi / 2, 1.0
     phase = np.linspace(-np.pi, np.pi, _SAMPLES * int(steady.table.orders[-1]))
     top = phase[int(np.argmax(steady.pull(phase)))]
@@ -153,7 +153,7 @@ def _holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
     phase, _ = _least_load(steady)
     z = np.array([phase, amplitude])
     time = np.linspace(0.0, _PERIOD, _GRID * int(table.orders[-1]))
-    if table == SINE:
+    if table.is_sine:
         load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
     else:
         load = np.maximum(1 - amplitude * steady.pull(phase + time), _SLACK)
@@ -185,7 +185,7 @@ def permanent_contact(law: ForceLaw, table: Waveform = SINE) -> float:
     >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 15)
     0.25
     """
-    if law.permanent_contact is not None and table == SINE:
+    if law.permanent_contact is not None and table.is_sine:
         return float(law.permanent_contact)
     # If the contact that touches the surface is held throughout, the grip vanishes later.
     for at_surface in (True, False) if law.feels_load else (False,):

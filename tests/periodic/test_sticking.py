@@ -145,12 +145,12 @@ def test_a_simulated_ball_rests_in_its_first_turn_before_the_end_and_not_beyond_
 def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
     orbit = ended(*CASES[0])
     curve = bouncing_ball.follow(
-        orbit, along=("amplitude", "restitution"), ranges={"restitution": (0.4, 0.487)}, points=10
+        orbit, along=("amplitude", "restitution"), ranges={"restitution": (0.47, 0.487)}, points=10
     )
-    assert type(curve).__name__ == "SpecialCurve" and curve.sizes["point"] == 12
+    assert type(curve).__name__ == "SpecialCurve" and curve.sizes["point"] == 7
     assert str(curve.end_reason[1].values) == "restitution = 0.487 is reached"
     assert curve.attrs["curve_kind"] == "end of sticking"
-    for point in list(curve.states())[1::4]:
+    for point in list(curve.states())[1:-1:4]:
         assert point.defect() < 1e-12
         r = point.model.impact_law
         self_similar(point, "amplitude", point.amplitude, r, within=ON_A_CURVE)
@@ -162,9 +162,9 @@ def test_a_curve_of_ends_has_the_directions_from_point_to_point():
     orbit = ended(*CASES[0])
     equations = orbit.problem("amplitude", "restitution")
     ranges = Window(0.0, np.inf), Window(0.0, 1.0)
-    curve = sticking_curve(equations, orbit.point(equations), ranges, 3)
+    curve = sticking_curve(equations, orbit.point(equations), ranges, 2)
     chords = curve.points[2:] - curve.points[:-2]
-    assert len(curve.points) == 5
+    assert len(curve.points) == 3
     lengths = np.linalg.norm(chords, axis=-1, keepdims=True)
     np.testing.assert_allclose(curve.tangents[1:-1], chords / lengths, rtol=0, atol=1e-12)
 

@@ -29,6 +29,10 @@ GRAZES = 1e-5
 NEXT_TO = 1e-4
 # The rate of a located release without speed, which is a double zero: half the digits.
 LOST = 1e-6
+# The rate of a release, over the speed of its impact, next to the place where it is lost.
+NEARLY = 1e-2
+# A branch that comes back passes its start within a small part of a step.
+CLOSED = 1e-6
 # How near a ball of the corrected model is to leaving, or to staying, where its branch ends: its
 # height or its speed above the table, of the numbers of the second code, which keep eleven digits.
 LEAVES = 1e-11
@@ -101,10 +105,12 @@ def orbit_of(name, rng, setting=SINE):
 
 
 class End(NamedTuple):
-    """The last orbit of a branch, the parameter, the reason, the slowest impact of the orbit, and
-    for the corrected model the distance from the border between leaving and staying.
+    """The first and the last orbit of a branch, the parameter, the reason, the slowest impact of
+    the last one, and for the corrected model the distance from the border between leaving and
+    staying.
     """
 
+    first: object
     last: object
     along: str
     reason: str
@@ -114,7 +120,7 @@ class End(NamedTuple):
 
 def _is_right(end):
     """Whether the last orbit is what the reason says, None if there is no test for the reason."""
-    last, along, reason, slowest, border = end
+    first, last, along, reason, slowest, border = end
     if reason.endswith("is reached"):
         value = float(reason.split("=")[1].split()[0])
         return abs(last.parameters[along] - value) <= 1e-5 * abs(value)
@@ -127,7 +133,13 @@ def _is_right(end):
         return float(np.max(np.abs(last.velocities[:half] - last.velocities[half:]))) < 1e-7
     if reason.startswith("release lost") and last.model.name != "corrected":
         return float(np.min(np.abs(rates_of_release(last)))) < LOST
-    if reason.startswith("permanent contact"):
+    if reason.startswith("the orbit is next to a release without speed"):
+        return float(np.min(np.abs(rates_of_release(last) / closing_of(last)))) < NEARLY
+    if reason.startswith("the branch is closed"):
+        return float(np.max(np.abs(last.velocities - first.velocities))) < CLOSED
+    if reason.startswith("the flight vanishes"):
+        return slowest <= NEXT_TO and float(last.flight_time) < 0.1
+    if reason.startswith(("permanent contact", "the flights vanish")):
         # Steps along Λ become as short there as the difference by which the equations have slopes.
         return 0 < float(last.amplitude) / Outside.of(last).threshold() - 1 < 1e-4
     if reason.startswith("end of sticking") and last.model.name == "corrected":
@@ -143,10 +155,10 @@ def judged(orbit, along, to, setting=SINE):
     *_, last = found.states()
     if special and reason.startswith(special[-1][0]):
         last = special[-1][1]
-    return verdict_on(last, along, reason, setting)
+    return verdict_on(orbit, last, along, reason, setting)
 
 
-def verdict_on(last, along, reason, setting=SINE):
+def verdict_on(first, last, along, reason, setting=SINE):
     """What the second code says of the last orbit of a branch that ends for a reason."""
     border = np.inf
     if last.model.name == "corrected":
@@ -160,7 +172,7 @@ def verdict_on(last, along, reason, setting=SINE):
         defect = defect_of(last)
     slowest = float(np.min(np.abs(closing)))
     closes = defect < CLOSES
-    right = _is_right(End(last, along, reason, slowest, border))
+    right = _is_right(End(first, last, along, reason, slowest, border))
     verdict = "named" if right is None and closes else "right" if right and closes else "wrong"
     return Verdict(
         model=last.model.name,

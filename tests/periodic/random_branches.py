@@ -33,6 +33,10 @@ LOST = 1e-6
 NEARLY = 1e-2
 # A branch that comes back passes its start within a small part of a step.
 CLOSED = 1e-6
+# A branch with a rest ends at Λ/threshold - 1 = 1e-4 at the latest, where the steps along Λ become
+# as short as the difference by which the equations have slopes; the second code knows the threshold
+# to six digits.
+HELD = 1e-4 + 1e-6
 # How near a ball of the corrected model is to leaving, or to staying, where its branch ends: its
 # height or its speed above the table, of the numbers of the second code, which keep eleven digits.
 LEAVES = 1e-11
@@ -140,8 +144,7 @@ def _is_right(end):
     if reason.startswith("the flight vanishes"):
         return slowest <= NEXT_TO and float(last.flight_time) < 0.1
     if reason.startswith(("permanent contact", "the flights vanish")):
-        # Steps along Λ become as short there as the difference by which the equations have slopes.
-        return 0 < float(last.amplitude) / Outside.of(last).threshold() - 1 < 1e-4
+        return 0 < float(last.amplitude) / Outside.of(last).threshold() - 1 < HELD
     if reason.startswith("end of sticking") and last.model.name == "corrected":
         return border < LEAVES
     return None

@@ -144,7 +144,8 @@ def test_a_contact_that_lasts_has_no_square_root(ball):
     [
         (0.3741033749511521, 26.900080270186287, 2, 3.4),
         (0.387, 48.6, 3, 5.0),
-        (0.787, 68.4, 3, 5.0),
+        # The same with less loss, weekly.
+        pytest.param(0.787, 68.4, 3, 5.0, marks=pytest.mark.long),
     ],
 )
 def test_a_branch_begins_at_its_grazing_and_not_behind_a_fold_beside_it(

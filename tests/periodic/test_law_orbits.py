@@ -119,7 +119,7 @@ def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(mon
     assert orbit.defect() < 1e-12 * 300
     assert orbit.trace_and_determinant()[0] > 2
     # A walk of a few steps does not arrive, and one of 300 takes seconds.
-    monkeypatch.setattr("bouncing_ball.periodic.one_impact.start._POINTS", 20)
+    monkeypatch.setattr("bouncing_ball.periodic.one_impact.start._POINTS", 8)
     with pytest.raises(NoOrbitError, match="none was found, but one may exist"):
         n_t.require_orbit(model, 20, 1000.0, Side.UNSTABLE)
 

@@ -15,12 +15,13 @@ from bouncing_ball.long_run.orbit_of_motion import of_impact
 _DIGITS = 8.0
 
 
-@pytest.mark.parametrize("ratio", [10.0, 32.0, 100.0])
+# A compliant and a stiff contact, and one between them weekly.
+@pytest.mark.parametrize("ratio", [10.0, pytest.param(32.0, marks=pytest.mark.long), 100.0])
 def test_the_locked_orbits_on_which_balls_end_are_orbits_of_the_equations(ratio):
     """At random places of (Λ, r), from the motions on which balls end."""
     random = np.random.default_rng(61)
-    r = random.uniform(0.1, 0.7, 40)
-    lam = random.uniform(1.2, 5.0, 40)
+    r = random.uniform(0.1, 0.7, 25)
+    lam = random.uniform(1.2, 5.0, 25)
     model = balls("spring-damper", lam, r, ratio).model
     motion = final_motions(model, lam, -np.pi / 2, 0.0, impacts=200)
     locked = np.flatnonzero((motion.kind == Kind.LOCKED) & (motion.periods > 0))
@@ -36,4 +37,4 @@ def test_the_locked_orbits_on_which_balls_end_are_orbits_of_the_equations(ratio)
         assert orbit.periods == motion.periods[k] and orbit.is_admissible()
         assert orbit.defect() < 1e-12 and legs_of(orbit).departure.sticks.any()
         found.append(k)
-    assert len(found) > 10
+    assert len(found) > 6

@@ -146,30 +146,33 @@ def test_simulated_balls_on_both_sides_of_a_doubling_do_what_the_normal_form_say
     # The rates are proportional to it, so that fewer impacts are seen with a larger one.
     share = 3e-3
 
-    def aside(change, xi, impacts):
-        """ξ of a ball at each impact from the one-impact orbit plus ξ q on."""
-        lam = doubling.amplitude + change
-        one = bouncing_ball.orbit(ball, amplitude=lam)
-        phase = one.phase + xi * found.direction[0]
-        relative = one.relative_impact_velocity + xi * found.direction[1]
-        waveform = ball.place.waveform
-        velocity = relative + lam * waveform.velocity(phase)
-        followed = ball.simulate(lam, phase, float(velocity), impacts)
-        return np.abs(reduce_angle(np.ravel(followed.phase) - one.phase))
-
     size = math.sqrt(abs(found.rate * share / found.coefficient))
+    # The change of Λ and ξ of each ball at the first impact, over the share and the size.
+    starts = [(1, 0.2), (-1, 2.0)] if supercritical else [(-1, 0.5), (-1, 1.5), (1, 0.1)]
+    lam, phase, velocity, at = [], [], [], []
+    for side, xi in starts:
+        here = doubling.amplitude + side * share
+        one = bouncing_ball.orbit(ball, amplitude=here)
+        lam.append(here)
+        at.append(one.phase)
+        phase.append(one.phase + xi * size * found.direction[0])
+        relative = one.relative_impact_velocity + xi * size * found.direction[1]
+        velocity.append(float(relative + here * ball.place.waveform.velocity(phase[-1])))
+    # |ξ q| of each ball at each impact, from the one-impact orbit on.
+    followed = ball.simulate(lam, phase, velocity, 2001 if supercritical else 1401)
+    aside = np.abs(reduce_angle(followed.phase - np.array(at))).T
     if supercritical:
         # Beyond the doubling small and large deviations end on the doubled orbit, before it none.
-        assert aside(share, 0.2 * size, 2001)[-1] == pytest.approx(
-            size * abs(found.direction[0]), rel=0.1
-        )
-        assert aside(-share, 2 * size, 2001)[-1] < 1e-6
+        beyond, before = aside
+        assert beyond[-1] == pytest.approx(size * abs(found.direction[0]), rel=0.1)
+        assert before[-1] < 1e-6
     else:
         # Before the doubling the unstable doubled orbit is the border of the basin. A ball that
         # leaves may come back much later.
-        assert aside(-share, 0.5 * size, 1401)[-1] < 0.1 * size
-        assert aside(-share, 1.5 * size, 1401).max() > 2 * size
-        assert aside(share, 0.1 * size, 1401).max() > 2 * size
+        inside, outside, beyond = aside
+        assert inside[-1] < 0.1 * size
+        assert outside.max() > 2 * size
+        assert beyond.max() > 2 * size
 
 
 def test_the_doublings_on_both_sides_of_a_generalized_one_differ():

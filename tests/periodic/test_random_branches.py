@@ -1,24 +1,43 @@
-"""Random branches of all models: each end is right by a second code, or named."""
+"""Random branches of all models and settings: each end is right by a second code, or named."""
 
 import numpy as np
 import pytest
-from random_branches import MODELS, orbit_of, sample
+from random_branches import ELSEWHERE, ON_SINES, orbit_of, sample
 
 from bouncing_ball.periodic.branches.following import branch_from
 
+LONG = [pytest.mark.long, pytest.mark.slow]
+
+
+def check(verdicts):
+    """No verdict is wrong, and at most one in twenty ends is only named."""
+    assert not [each for each in verdicts if each.verdict == "wrong"]
+    named = [each for each in verdicts if each.verdict == "named"]
+    assert len(named) <= max(1, 0.05 * len(verdicts))
+
+
+@pytest.mark.parametrize("count, seed", [(5, 7), pytest.param(300, 480411, marks=LONG)])
+def test_the_ends_of_random_branches_are_right_or_named(count, seed):
+    verdicts = sample(count, seed, ON_SINES)
+    models = {"restitution", "spring-damper", "contact-law", "corrected"}
+    assert count < len(ON_SINES) * 4 or {each.model for each in verdicts} == models
+    # Of the 300 branches 297 were right, and 3 were named.
+    check(verdicts)
+
+
+# Another 300, in three parts that can be computed side by side.
+PARTS = [(200, 480413), (50, 480414), (50, 480415)]
+
 
 @pytest.mark.parametrize(
-    "count, seed", [(5, 7), pytest.param(300, 480411, marks=[pytest.mark.long, pytest.mark.slow])]
+    "count, seed, kinds",
+    [(5, 8, ELSEWHERE[1:18:4]), *(pytest.param(*x, ELSEWHERE, marks=LONG) for x in PARTS)],
 )
-def test_the_ends_of_random_branches_are_right_or_named(count, seed):
-    verdicts = sample(count, seed)
-    models = {"restitution", "spring-damper", "contact-law", "corrected"}
-    assert count < len(MODELS) * 4 or {each.model for each in verdicts} == models
-    wrong = [each for each in verdicts if each.verdict == "wrong"]
-    assert not wrong
-    # Of the 300 branches 297 were right, and 3 were named.
-    named = [each for each in verdicts if each.verdict == "named"]
-    assert len(named) <= max(1, 0.05 * count)
+def test_the_ends_of_random_branches_elsewhere_are_right_or_named(count, seed, kinds):
+    """The second sample of 300: tables of several harmonics or of samples, drag and springs."""
+    verdicts = sample(count, seed, kinds)
+    assert {each.setting for each in verdicts} == {setting for _, setting in kinds}
+    check(verdicts)
 
 
 @pytest.mark.parametrize("name", ["rigid", "displacement", "force", "corrected"])

@@ -82,7 +82,7 @@ def test_another_table_and_flight_come_back(flight, tmp_path):
     ball = bouncing_ball.rigid(
         restitution=0.5, table=bouncing_ball.Waveform([1.0, 0.3], [0.1]), flight=flight
     )
-    one = bouncing_ball.orbit_of_motion(ball, amplitude=1.5)
+    one = bouncing_ball.orbits(ball, amplitude=1.5)[0]
     found = bouncing_ball.follow(one, to=1.6, points=20)
     again = _written_and_read(found, tmp_path)
     assert all(map(_same_bits, found.states(), again.states()))

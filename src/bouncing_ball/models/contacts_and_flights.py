@@ -15,10 +15,11 @@ import numpy as np
 from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.flight import land
+from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero
+from bouncing_ball.numerics.first_zero import Zero, first_zero
 
 
 class Level(NamedTuple):
@@ -66,6 +67,18 @@ class Departure(NamedTuple):
     aloft: np.ndarray | float = 0.0
     by: Any = None
     sticks: Any = None
+
+    def with_landings(self, which: np.ndarray, start: np.ndarray) -> "Departure":
+        """The departures with the times of the landings of the balls with these indices, and with
+        those of their flights marked that never end; before ``start`` the balls have not landed.
+        """
+        found = first_zero(self.flight.take(which), start)
+        status = self.status.copy()
+        status[which[found.ended]] = Status.ALOFT
+        status[which[found.undecided]] = Status.UNDECIDED
+        aloft = np.zeros(status.shape)
+        aloft[which] = found.time
+        return self._replace(status=status, aloft=aloft)
 
 
 @dataclass(frozen=True, repr=False)

@@ -35,6 +35,7 @@ from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Released
 from bouncing_ball.models.linear_contact import PATIENCE, ROUNDING, LinearContactDynamics
 from bouncing_ball.models.linear_flight import LinearFlight
+from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.suspension import Suspension
 from bouncing_ball.models.waveform import Waveform, largest
 from bouncing_ball.numerics.elementary import exponential, sine_and_cosine
@@ -243,6 +244,15 @@ class HeldContactDynamics(LinearContactDynamics):
     def oscillator(self) -> Held:
         """What moves the balls in contact."""
         return held_by(self.law, self.setting)
+
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The end of each contact, permanent contact, or a flight that never ends."""
+        departure = super().depart(impact, differentiate=differentiate)
+        if not departure.flight.may_miss:
+            return departure
+        going = np.flatnonzero(departure.status == Status.BOUNCING)
+        start, resumed = self.take(going).resumption(departure.flight.take(going))
+        return departure.with_landings(going[~resumed], start[~resumed])
 
     def _motion(self, impact: Impact) -> Any:
         flight = gap_in_contact(self.law, self.setting, impact, self.amplitude)

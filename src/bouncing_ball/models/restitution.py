@@ -33,7 +33,6 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.sticking import lifted, pressed, stay
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.first_zero import first_zero
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -88,19 +87,6 @@ def chattering(
     return sticks, np.where(sticks, first * (1 + correction), 0.0)
 
 
-def _aloft(departure: Departure) -> Departure:
-    """The departures with the flights marked that never end, and the ends of the others."""
-    flying = np.flatnonzero(departure.status == Status.BOUNCING)
-    part = departure.flight.take(flying)
-    found = first_zero(part, part.earliest_landing())
-    status = departure.status.copy()
-    status[flying[found.ended]] = Status.ALOFT
-    status[flying[found.undecided]] = Status.UNDECIDED
-    aloft = np.zeros(status.shape)
-    aloft[flying] = found.time
-    return departure._replace(status=status, aloft=aloft)
-
-
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
     """Impacts and flights of the restitution model; ``law`` holds numbers r in (0, 1], or what
@@ -146,7 +132,9 @@ class RestitutionDynamics(Dynamics):
         flight = setting.flight(none, velocity, impact.phase, level, self.amplitude)
         departure = self._left(impact, flight, sticks, settling)
         if departure.flight.may_miss:
-            departure = _aloft(departure)
+            going = np.flatnonzero(departure.status == Status.BOUNCING)
+            start = departure.flight.take(going).earliest_landing()
+            departure = departure.with_landings(going, start)
         return lifted(departure, self.amplitude, setting) if differentiate else departure
 
     def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:

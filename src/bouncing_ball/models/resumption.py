@@ -115,6 +115,8 @@ class ResumingDynamics(Dynamics):
         """The landing or an earlier resumption, and the time from the last impact to it."""
         flight = departure.flight
         start, resumed = self.resumption(flight)
+        if flight.may_miss:
+            start = np.maximum(start, departure.aloft)
         landing = land(flight, start)
         time = landing.time
         velocity = -landing.rate

@@ -46,6 +46,9 @@ _COMPLIANT = 1 / 400
 # The time after which a contact is not followed any further. A contact that oscillates for so long
 # has more panels than are tried, so that its ball lies on the table.
 _LASTING = 20 * 2 * np.pi
+# The speed of an impact, over the strongest gravity, above which a flight lasts for thousands of
+# periods of the table.
+_FASTEST = 3e4
 # Number of samples of the grip of a slow ball, and of bisections for the time of its return.
 _SAMPLES = 65
 _BISECTIONS = 60
@@ -73,8 +76,13 @@ class ContactDynamics(ResumingDynamics):
         """The first ends, with their derivatives.
 
         A periodic orbit does not need to know which balls stick, which costs a second contact.
+        Next to an end of a branch Newton's method leaps to speeds at which damped contacts take
+        thousands of panels: no end is computed there.
         """
-        return self._departed(impact, differentiate=True)
+        strongest = 1 + self.setting.strength(self.amplitude)
+        known = np.abs(impact.velocity) <= _FASTEST * strongest
+        slower = impact._replace(velocity=np.where(known, impact.velocity, np.nan))
+        return self._departed(slower, differentiate=True)
 
     def _departed(self, impact: Impact, differentiate: bool) -> Departure:
         """The ends of the contacts, without the marks of the balls that stick."""

@@ -22,6 +22,7 @@ equations alone. The cusp is therefore a zero of the derivative of g in the dire
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import lru_cache
 
 import numpy as np
 
@@ -71,6 +72,8 @@ _ANOTHER = 1e-3
 # The coefficient of doublings is computed at every so many points of a curve: it takes about as
 # long as a point, and changes slowly.
 _STRIDE = 4
+# Number of points at which the condition of a curve is known at the same time.
+_KEPT = 4
 _INFLECTION = "where the flight touches the table, its minimum merges with a maximum"
 
 
@@ -100,6 +103,18 @@ def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
         known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, Special.GRAZING_FLIGHT])
         raise ParameterError(f"{{}} is not one of {known}", repr(str(kind)))
     return vanishing(lambda y: flight_margin(equations, y))
+
+
+def _kept(condition: Condition) -> Condition:
+    """The same condition, of which the last values are kept: the residual and the Jacobian of a
+    step of Newton's method need it at the same points.
+    """
+
+    @lru_cache(maxsize=_KEPT)
+    def at(shape: tuple[int, ...], entries: bytes) -> tuple[np.ndarray, np.ndarray]:
+        return condition(np.frombuffer(entries).reshape(shape))
+
+    return lambda y: at(y.shape, y.tobytes())
 
 
 @dataclass(frozen=True)
@@ -172,7 +187,7 @@ def curve_through(
     if kind is Special.STICKING:
         first, second = windows.values()
         return Curve(equations, sticking_curve(equations, guess, (first, second), most), kind)
-    problem = CurveProblem(equations, condition_of(equations, kind))
+    problem = CurveProblem(equations, _kept(condition_of(equations, kind)))
     limits = _limits(equations, windows)
     first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:

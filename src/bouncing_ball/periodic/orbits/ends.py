@@ -19,7 +19,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.numerics.branch import Branch, End, EndKind
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.lost_release import lost_release
@@ -172,7 +171,7 @@ def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
         return np.sum(equations.intervals(y) - equations.durations(y), axis=-1)
 
     def above(y: np.ndarray) -> np.ndarray:
-        return _above_threshold(equations, y, legs.dynamics)
+        return _above_threshold(equations, y)
 
     near = min(CLOSE, float(aloft(start)) / 2)
     vanish = Event(ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=ALL_VANISH)
@@ -307,12 +306,18 @@ def _at_threshold(equations: OrbitEquations, y: np.ndarray) -> bool:
     legs = equations.legs(y)
     if legs.dynamics is None or not (legs.dynamics.forgets and np.any(legs.departure.sticks)):
         return False
-    return bool(np.all(_above_threshold(equations, y, legs.dynamics) < 0))
+    return bool(_above_threshold(equations, y) < 0)
 
 
-def _above_threshold(equations: OrbitEquations, y: np.ndarray, dynamics: Dynamics) -> np.ndarray:
-    """Positive where Λ is farther above the threshold of permanent contact than _AT_THRESHOLD."""
-    return (equations.amplitude(y) / dynamics.setting.threshold() - 1) / _AT_THRESHOLD - 1
+def _above_threshold(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
+    """Positive where Λ is farther above the threshold of permanent contact than _AT_THRESHOLD.
+
+    The threshold depends on what moves the ball in flight, which may vary along the branch; it is 0
+    for a spring that does not press the mass on its stop.
+    """
+    threshold = equations.at(y).model.place.threshold()
+    with np.errstate(divide="ignore"):
+        return (equations.amplitude(y) / threshold - 1) / _AT_THRESHOLD - 1
 
 
 def next_to(tests: Sequence[Event], y: np.ndarray) -> Special | None:

@@ -285,13 +285,16 @@ class Impacts(Batch):
         return self._lam * self.model.place.waveform.height(phase)
 
     def _flight_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times since the releases, shape (..., k), NaN where there is no orbit."""
-        shape = (*self.shape, self.impacts)
+        """δ and δ′ at times since the releases, shape (..., k) or with further axes in front; NaN
+        where there is no orbit.
+        """
+        shape = np.broadcast_shapes(np.shape(time), (*self.shape, self.impacts))
         departure = self._legs.departure
         if departure is None:
             return np.full(shape, np.nan), np.full(shape, np.nan)
         with np.errstate(invalid="ignore"):
-            gap, rate, _, _ = departure.flight.gap(np.broadcast_to(time, shape).ravel())
+            each = np.broadcast_to(time, shape).reshape(-1, self.size * self.impacts)
+            gap, rate, _, _ = departure.flight.gap(each)
         return gap.reshape(shape), rate.reshape(shape)
 
     @property

@@ -155,9 +155,8 @@ class Orbit(Impacts):
         """Greatest height in flight."""
 
         def height(since: np.ndarray) -> np.ndarray:
-            left = self.phases + self.durations
-            gap = [self._flight_motion(each)[0] for each in since]
-            return np.array(gap) + self._table_height(left + since)
+            gap, _ = self._flight_motion(since)
+            return gap + self._table_height(self.phases + self.durations + since)
 
         return self._top(height, self._flights)
 
@@ -236,8 +235,7 @@ class Orbit(Impacts):
         legs = self._legs
         number = np.arange(self.size) * self.impacts + impact
         _, departure = legs.dynamics.kept(number, legs.departure)
-        found = np.array([departure.flight.gap(row)[:2] for row in each])
-        gap, rate = np.moveaxis(found, 1, 0).reshape(2, *shape)
+        gap, rate = (x.reshape(shape) for x in departure.flight.gap(each)[:2])
         waveform = self.model.place.waveform
         phase = self.phases[..., impact] + self.durations[..., impact] + since
         height = gap + self.amplitude * waveform.height(phase)

@@ -39,7 +39,6 @@ from bouncing_ball.models.laws.panel import (
     lever_of,
     load_of,
     slopes_of,
-    turning_of,
 )
 
 
@@ -177,9 +176,10 @@ class Sweeps:
         # Derivatives need short panels, for which Picard's sweeps suffice.
         self.is_newton = (law.root == 1 and count == NODES) or linearised
         self.kind = _NEWTON if self.is_newton else _PICARD
+        # Under any load at first, because the slopes need not be exact.
+        self.loaded = self.law.under(start.weight)
         if self.is_newton:
-            # Under any load, because the slopes need not be exact.
-            self.slopes = slopes_of(self.law.under(start.weight).force, now.root, now.rate)
+            self.slopes = slopes_of(self.loaded.force, now.root, now.rate)
 
     def panel(self) -> Panel:
         """The panels, after as many sweeps as most of them need."""
@@ -234,17 +234,22 @@ class Sweeps:
         out *= self.step
         out += begin
 
-    def ahead(
-        self, loaded: ForceLaw, root: np.ndarray, rate: np.ndarray, time: np.ndarray
-    ) -> np.ndarray:
+    def _loaded_at(self, time: np.ndarray) -> ForceLaw:
+        """The law under the load at these times."""
+        # Most laws are the same under any load, which need not be computed for them.
+        if self.loaded is self.law:
+            return self.law
+        return self.law.under(load_of(self.start, time))
+
+    def ahead(self, root: np.ndarray, rate: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Functions that are positive up to the end of a panel, one in each row.
 
         The rows are the grip, or the time that is left; q if the contact may also end at p = 0; and
-        the law's kink function, with its sign at the start. ``loaded`` is the law under the load.
+        the law's kink function, with its sign at the start.
         """
         law = self.law
         if self.until is None:
-            rows = [grip_of(loaded, self.m, root, rate)]
+            rows = [grip_of(self._loaded_at(time), self.m, root, rate)]
             if law.also_at_surface:
                 rows.append(root)
         else:
@@ -259,13 +264,10 @@ class Sweeps:
         """These functions at the end of a panel, and their derivatives along the motion with
         respect to s. ``final`` is F at the end.
         """
-        lever = lever_of(self.m, root)
-        turning = turning_of(self.start, self.start.phase + time) * lever
         found = self.ahead(
-            self.law.under(load_of(self.start, time) + IMAGINARY_STEP * turning),
             root + IMAGINARY_STEP * rate,
             rate + IMAGINARY_STEP * final,
-            time + IMAGINARY_STEP * lever,
+            time + IMAGINARY_STEP * lever_of(self.m, root),
         )
         return found.real, found.imag / IMAGINARY_STEP.imag
 
@@ -275,15 +277,14 @@ class Sweeps:
         Newton's method for the end starts there; otherwise several sweeps would be spent on halving
         a long panel.
         """
-        ahead = self.ahead(self.loaded, self.root[:-1], self.old_rate[:-1], self.time[:-1])
+        ahead = self.ahead(self.root[:-1], self.old_rate[:-1], self.time[:-1])
         inside = (ahead > 0).all(axis=0)
         self.next_step = self.step * np.where(inside, 1.0, self.rule.node).min(axis=0)
         self.last = self.next_step < self.step
 
     def _aim(self) -> None:
         """A step of Newton's method for the length of the panels that reach their end."""
-        loaded = self.law.under(load_of(self.start, self.time[-1]))
-        left = self.ahead(loaded, self.root[-1], self.rate[-1], self.time[-1])
+        left = self.ahead(self.root[-1], self.rate[-1], self.time[-1])
         self.functions = len(left)
         self.last |= (left <= 0).any(axis=0)
         # Most panels end within the contact, so that no slopes are needed.

@@ -280,7 +280,7 @@ def test_the_ball_is_held_in_contact_and_above_the_table_in_flight(some):
     if isinstance(law, ContactLaw):
         depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
         angle = orbit.phase + share * orbit.contact_duration
-        assert np.all(law.loaded_grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)
+        assert np.all(law.under(1 - orbit.amplitude * np.sin(angle)).grip(depth, rate) > 0)
     time = float(orbit.contact_duration) + share * float(orbit.flight_time)
     gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
     rising = gap > 0

@@ -232,7 +232,7 @@ def can_carry(law: ContactLaw, n: np.ndarray, amplitude: float) -> np.ndarray:
     """
     period = 2 * math.pi * n
     deepest = period * period / 4 + 2 * amplitude
-    force = law.loaded_force(deepest, period + amplitude, 1 + amplitude)
+    force = law.under(1 + amplitude).force(deepest, period + amplitude)
     return np.asarray(force >= 1)
 
 

@@ -66,10 +66,11 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
     """
     length, rate = (float(x[0]) for x in scales(law, np.array([speed]), np.ones(1)))
     unit = length / rate
+    loaded = law.under(1.0)
 
     def fall(_: float, state: np.ndarray) -> list[float]:
         p, v = state * [length, rate]
-        force = max(float(law.loaded_force(np.array([max(p, 0.0)]), np.array([v]), 1.0)[0]), 0.0)
+        force = max(float(loaded.force(np.array([max(p, 0.0)]), np.array([v]))[0]), 0.0)
         return [v / rate, (1 - force) * unit / rate]
 
     def turn(_: float, state: np.ndarray) -> float:
@@ -122,7 +123,7 @@ def greatest_loads(
 
     def loads(times: np.ndarray) -> np.ndarray:
         p, rate, load = motion(times)
-        return np.array([p, law.loaded_force(np.maximum(p, 0.0), rate, load)])
+        return np.array([p, law.under(load).force(np.maximum(p, 0.0), rate)])
 
     tops = loads(times).argmax(axis=1)
     found = []

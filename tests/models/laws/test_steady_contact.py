@@ -76,7 +76,7 @@ def test_more_nodes_do_not_change_a_threshold(law, monkeypatch):
 
 @pytest.mark.parametrize("law", [ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)])
 def test_steady_contacts_have_the_thresholds_of_the_closed_forms(law):
-    assert _touching(law, law.feels_load) == pytest.approx(permanent_contact(law), rel=1e-10)
+    assert _touching(law, law.also_at_surface) == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
 def test_the_grip_changes_at_the_rate_that_depth_speed_and_load_give_it():
@@ -107,13 +107,13 @@ def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():
     def rates(t, state):
         p, u = state.reshape(2, -1)
         load = 1 - lam * np.sin(t)
-        return np.concatenate([u, load - law.loaded_force(p, u, load)])
+        return np.concatenate([u, load - law.under(load).force(p, u)])
 
     end = 5 * 2 * np.pi
     time = np.linspace(end - 2 * np.pi, end, 2001)
     run = solve_ivp(rates, (0, end), [0.01] * 2 + [0.0] * 2, "LSODA", time, rtol=1e-9, atol=1e-12)
     depth, rate = run.y.reshape(2, 2, -1)
-    grip = np.minimum(depth, law.loaded_grip(depth, rate, 1 - lam[:, np.newaxis] * np.sin(time)))
+    grip = np.minimum(depth, law.under(1 - lam[:, np.newaxis] * np.sin(time)).grip(depth, rate))
     low = grip.min(axis=1) / 0.01
     # At the threshold the parabola's lowest point is within half a sample.
     assert low[0] > 1e-3 and abs(low[1]) < 1e-5

@@ -85,7 +85,7 @@ class Impedance(OscillatorLaw):
     Examples
     --------
     >>> law = Impedance(2.0, 0.5, 0.75)
-    >>> float(law.grip(1.0, -2.0)), float(law.loaded_grip(1.0, -2.0, 4.0))
+    >>> float(law.grip(1.0, -2.0)), float(law.under(4.0).grip(1.0, -2.0))
     (0.0, 0.75)
     >>> Impedance(2.0, 0.5, 0.75, 0.25, width=4.0).impedance(np.array([0.0, 1.0, 3.0, 5.0]))
     array([0.25  , 0.3125, 0.6875, 0.75  ])
@@ -107,7 +107,7 @@ class Impedance(OscillatorLaw):
     }
     release = Release.FORCE
     lag: ClassVar[None] = None
-    feels_load: ClassVar[bool] = True
+    also_at_surface: ClassVar[bool] = True
 
     def __post_init__(self):
         super().__post_init__()
@@ -181,26 +181,27 @@ class Impedance(OscillatorLaw):
         """The impedance d(p), of the shape of p."""
         return self.share * self._ratio(penetration) + 0 * penetration
 
-    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """s (ϖ² s p + 2ζϖ p′), the force over the weight without the part d a due to the load."""
-        return self.loaded_force(penetration, rate, 0.0)
+    # The load on the ball. It is no parameter: laws under several loads are equal.
+    _load: ClassVar[Any] = 0.0
 
-    def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """f + d a, the whole force on the ball with a load a."""
+    def under(self, load: Any) -> Self:
+        """The law whose force includes the part d a due to a load a."""
+        law = copy(self)
+        object.__setattr__(law, "_load", load)
+        return law
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """f + d a, the whole force on the ball; without a load f = s (ϖ² s p + 2ζϖ p′)."""
         s = self._ratio(penetration)
         omega = self.frequency_ratio
         spring = omega * (omega * (s * penetration) + 2 * self.damping_ratio * rate)
-        return s * (spring + self.share * load)
+        return s * (spring + self.share * self._load)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """s p + κ p′, the grip without load."""
+        """s p + κ p′ + d_max a/ϖ²."""
         lag = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
-        return self._ratio(penetration) * penetration + lag * rate
-
-    def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """s p + κ p′ + d_max a/ϖ², the grip with a load a."""
-        held = self.share / np.asarray(self.frequency_ratio) ** 2 * load
-        return self.grip(penetration, rate) + held
+        held = self.share / np.asarray(self.frequency_ratio) ** 2 * self._load
+        return self._ratio(penetration) * penetration + lag * rate + held
 
     @property
     def constant_signature(self) -> Instant | None:

@@ -38,21 +38,11 @@ def require_analytic(law: ForceLaw) -> None:
     kind = type(law)
     if kind in _FOUND:
         return
-    one = law.flat(law.shape).take(0)
+    one = law.flat(law.shape).take(0).under(1.0)
     depth, rate = (x.ravel() for x in np.meshgrid(_DEPTHS, _RATES))
-    load = 1.0
-    compare(
-        f"the force of {law.name}",
-        "p",
-        lambda p: one.loaded_force(p, rate, load),
-        depth,
-    )
-    compare(
-        f"the force of {law.name}",
-        "p′",
-        lambda u: one.loaded_force(depth, u, load),
-        rate,
-    )
+    what = f"the force of {law.name}"
+    compare(what, "p", lambda p: one.force(p, rate), depth)
+    compare(what, "p′", lambda u: one.force(depth, u), rate)
     _FOUND.add(kind)
 
 

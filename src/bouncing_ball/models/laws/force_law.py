@@ -101,19 +101,18 @@ class ForceLaw(Batch, ABC):
         """
         return 0.0 if self.release.at_surface else None
 
-    feels_load: ClassVar[bool] = False
-    """Whether the contact force depends on the load through :meth:`loaded_force`.
+    also_at_surface: ClassVar[bool] = False
+    """Whether a contact that is released by force ends at p = 0, too, whichever comes first.
 
-    If it does, the ball is released where :meth:`loaded_grip` vanishes or where p = 0, whichever
-    comes first, and m is 1.
+    A ball that the force would pull at p = 0 then meets no force there. m is 1.
     """
 
-    def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The force under a load a, a linear function of a; by default f(p, p′).
+    def under(self, load: Any) -> "ForceLaw":
+        """The law whose force and grip are those under a load a; the law itself by default.
 
-        It has the shape to which p, p′ and a broadcast with the parameters.
+        The law itself has those without a load. a broadcasts with p and p′, and may be complex.
         """
-        return self.force(penetration, rate)
+        return self
 
     feels_start_speed: ClassVar[bool] = False
     """Whether the force depends on the speed at the start of the contact, see :meth:`started`."""
@@ -150,10 +149,6 @@ class ForceLaw(Batch, ABC):
         """
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
-
-    def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The grip function under a load a; by default the load has no effect."""
-        return self.grip(penetration, rate)
 
     @property
     def constant_signature(self) -> Instant | None:

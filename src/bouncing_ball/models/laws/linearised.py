@@ -43,19 +43,16 @@ def at_end(
     bend = m * (m - 1) * q ** max(m - 2, 0)
     depth = panel.root[:-1] ** m
     rate = panel.rate[:-1]
-    load = load_of(start, panel.time[:-1]) if law.feels_load else 0.0
-    slopes = slopes_of(lambda p, u: law.loaded_force(p, u, load), depth, rate)
+    load = load_of(start, panel.time[:-1])
+    slopes = slopes_of(law.under(load).force, depth, rate)
 
     def column(rows):
         return rows[:, :, np.newaxis]
 
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
-    # The share of the load that the force carries; the force is linear in the load.
-    if law.feels_load:
-        carried = law.loaded_force(depth, rate, 1.0) - law.force(depth, rate)
-    else:
-        carried = np.zeros(1)
+    # The share of the load that the force carries.
+    carried = np.imag(law.under(load + IMAGINARY_STEP).force(depth, rate)) / IMAGINARY_STEP.imag
     felt = lever * (1 - carried.T)
     if start.amplitude.ndim == 1:
         by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
@@ -106,9 +103,11 @@ def at_release(
     lever = lever_of(m, root)
     angle = start.phase + panel.time[-1]
     load = load_of(start, panel.time[-1])
-    grip_by_root = np.imag(grip_of(law, m, root + IMAGINARY_STEP, rate, load)) / IMAGINARY_STEP.imag
-    grip_by_rate = np.imag(grip_of(law, m, root, rate + IMAGINARY_STEP, load)) / IMAGINARY_STEP.imag
-    grip_by_load = np.imag(grip_of(law, m, root, rate, load + IMAGINARY_STEP)) / IMAGINARY_STEP.imag
+    loaded = law.under(load)
+    more = law.under(load + IMAGINARY_STEP)
+    grip_by_root = np.imag(grip_of(loaded, m, root + IMAGINARY_STEP, rate)) / IMAGINARY_STEP.imag
+    grip_by_rate = np.imag(grip_of(loaded, m, root, rate + IMAGINARY_STEP)) / IMAGINARY_STEP.imag
+    grip_by_load = np.imag(grip_of(more, m, root, rate)) / IMAGINARY_STEP.imag
     grip_by_root = np.where(panel.surfaced, 1.0, grip_by_root)
     grip_by_rate = np.where(panel.surfaced, 0.0, grip_by_rate)
     grip_by_load = np.where(panel.surfaced, 0.0, grip_by_load)
@@ -116,7 +115,7 @@ def at_release(
     # Up to the release the force is that of the law; the panel's F at its end is extrapolated
     # from the nodes, with an error of the order of the last Legendre coefficients and not of their
     # squares.
-    force = law.loaded_force(root**m, rate, load)
+    force = loaded.force(root**m, rate)
     final = lever * (load - force)
     falls = grip_by_root * rate + grip_by_rate * final + grip_by_load * turning * lever
     # If the force has a step at the release, the rate of change of the grip has a step too.

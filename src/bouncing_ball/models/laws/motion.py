@@ -66,8 +66,8 @@ class ContactDynamics(ResumingDynamics):
         """The end of each contact. Where no end was found, the contact is permanent if a steady
         contact at Λ holds the ball, and the status is undecided otherwise.
 
-        If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
-        Its contact then has the duration 0, and the ball continues its flight below p = 0.
+        If the contact also ends at p = 0, a slow ball that the load pulls meets no force there. Its
+        contact then has the duration 0, and the ball continues its flight below p = 0.
         """
         departure = self._departed(impact, differentiate)
         return self._with_sticking(impact, departure) if differentiate else departure
@@ -126,8 +126,8 @@ class ContactDynamics(ResumingDynamics):
         """Whether a ball at the surface meets no force, because the load pulls it."""
         level = self.setting.level(impact.phase, self.amplitude)
         load = 1 - self.setting.at_rest(impact.phase, level, self.amplitude)[1]
-        grip = self.law.loaded_grip(depth, -impact.velocity, load)
-        return (depth == 0) & (grip < 0) & self.law.feels_load
+        grip = self.law.under(load).grip(depth, -impact.velocity)
+        return (depth == 0) & (grip < 0) & self.law.also_at_surface
 
     def _ends(
         self, impact: Impact, depth: np.ndarray, free: np.ndarray, differentiate: bool
@@ -213,7 +213,7 @@ def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarr
     rate = -flight.velocity
     slopes = slopes_of(law.grip, depth, rate)
     lag = slopes.by_rate / slopes.by_penetration
-    by_load = law.loaded_grip(depth, rate, 1.0) - law.loaded_grip(depth, rate, 0.0)
+    by_load = law.under(1.0).grip(depth, rate) - law.grip(depth, rate)
     fast = leaves_fast(flight, lag, by_load / slopes.by_penetration)
     return of_slow_balls(
         flight, np.flatnonzero(~fast), lambda slow, which: _sampled(slow, law.take(which))
@@ -225,7 +225,7 @@ def _sampled(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
 
     def held(time):
         displacement, rate, second, _ = flight.gap(time)
-        return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
+        return law.under(-second).grip(np.maximum(-displacement, 0.0), -rate) > 0
 
     rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]

@@ -201,11 +201,11 @@ def scaling_of(start: Start, angle: np.ndarray) -> np.ndarray:
     return -np.sin(angle) if start.amplitude.ndim == 1 else -_harmonics(start, angle)
 
 
-def grip_of(law: ForceLaw, m: int, root: Any, rate: Any, load: Any) -> Any:
+def grip_of(law: ForceLaw, m: int, root: Any, rate: Any) -> Any:
     """The function that vanishes at the release: the grip, or q if the grip is a power of q."""
     if law.release.at_surface:
         return root
-    grip = law.loaded_grip(root**m, rate, load)
+    grip = law.grip(root**m, rate)
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 

@@ -77,12 +77,13 @@ def rest(law: ForceLaw) -> float:
     """
     weight = np.ones(1)
     deepest = float(depth(law, 0 * weight, 0.0, weight)[0])
-    if not law.feels_load:
+    loaded = law.under(1.0)
+    if loaded is law:
         return deepest
     # The load adds to the force, so that the ball at rest lies less deep.
 
     def surplus(p: float) -> float:
-        return law.loaded_force(p * weight, 0 * weight, 1.0)[0] - 1
+        return loaded.force(p * weight, 0 * weight)[0] - 1
 
     # Stiff contacts are less deep than the absolute tolerance that is scipy's default.
     return scipy.optimize.brentq(surplus, 0.0, 2 * deepest, xtol=_ROUNDING * deepest)

@@ -9,8 +9,8 @@ of the boundary value problem ::
     p(0) = p(2π),   p′(0) = p′(2π),   g = 0 and dg/dt = 0 at t = 0
 
 where φ and Λ are unknown too; for a release at p = 0 the last two equations are p = p′ = 0. It is
-solved by scipy's collocation, whose adaptive grid also resolves the kinks of a law. If the force
-depends on the load, the ball may also touch the surface, p = p′ = 0, before the grip vanishes.
+solved by scipy's collocation, whose adaptive grid also resolves the kinks of a law. If a contact
+also ends at p = 0, the ball may touch the surface, p = p′ = 0, before the grip vanishes.
 
 The iteration starts from a motion that is integrated over one period from p = p′ = 0. A ball on a
 Hertzian contact of the depth p₁ at rest has p = p₁ (t²/2)^{2/3} there, next to the least load
@@ -77,8 +77,8 @@ class _Steady(NamedTuple):
 
     def grip(self, p: np.ndarray, u: np.ndarray, load: Any) -> np.ndarray:
         """The grip over that at rest."""
-        full = self.law.loaded_grip(np.array(self.unit), np.array(0.0), 1.0)
-        return self.law.loaded_grip(p, u, load) / full
+        full = self.law.under(1.0).grip(np.array(self.unit), np.array(0.0))
+        return self.law.under(load).grip(p, u) / full
 
     def state(self, time: ArrayLike, y: np.ndarray, z: np.ndarray):
         """p, p′ and the load; z has φ and Λ."""
@@ -89,7 +89,7 @@ class _Steady(NamedTuple):
     def rates(self, time: ArrayLike, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """The rates of change of y."""
         p, u, load = self.state(time, y, z)
-        return np.array([u, load - self.law.loaded_force(p, u, load)]) / self.unit
+        return np.array([u, load - self.law.under(load).force(p, u)]) / self.unit
 
     def release(self, first: np.ndarray, z: np.ndarray) -> tuple[Any, Any]:
         """The grip at the start and its rate of change."""
@@ -102,7 +102,7 @@ class _Steady(NamedTuple):
     def is_held(self, found: Any, z: np.ndarray) -> bool:
         """Whether a solution was found that never releases the ball."""
         held = self.grip(*self.state(found.x, found.y, z))
-        if self.law.root > 1 or self.law.feels_load:
+        if self.law.root > 1 or self.law.also_at_surface:
             held = np.minimum(held, found.y[0])
         return bool(found.success and np.min(held) > -_SLACK)
 
@@ -188,7 +188,7 @@ def permanent_contact(law: ForceLaw, table: Waveform = SINE) -> float:
     if law.permanent_contact is not None and table.is_sine:
         return float(law.permanent_contact)
     # If the contact that touches the surface is held throughout, the grip vanishes later.
-    for at_surface in (True, False) if law.feels_load else (False,):
+    for at_surface in (True, False) if law.also_at_surface else (False,):
         with np.errstate(all="ignore"):
             found = _touching(law, at_surface, table)
             if np.isfinite(found) and not _holds(law, _ABOVE * found, table):

@@ -176,11 +176,10 @@ class Sweeps:
         # Derivatives need short panels, for which Picard's sweeps suffice.
         self.is_newton = (law.root == 1 and count == NODES) or linearised
         self.kind = _NEWTON if self.is_newton else _PICARD
+        # Under any load at first, because the slopes need not be exact.
+        self.loaded = self.law.under(start.weight)
         if self.is_newton:
-            # Under any load, because the slopes need not be exact.
-            self.slopes = slopes_of(
-                lambda p, u: self.law.loaded_force(p, u, start.weight), now.root, now.rate
-            )
+            self.slopes = slopes_of(self.loaded.force, now.root, now.rate)
 
     def panel(self) -> Panel:
         """The panels, after as many sweeps as most of them need."""
@@ -218,12 +217,12 @@ class Sweeps:
             lever_of(self.m, inside, self.lever)
             self._integrate(self.now.time, self.lever, self.time)
             self.load = load_of(self.start, self.time[:-1])
+            self.loaded = self.law.under(self.load)
         if self.m > 1:
-            np.subtract(self.load, self.law.root_force(inside, rate), out=self.push)
+            np.subtract(self.load, self.loaded.root_force(inside, rate), out=self.push)
             self.push *= self.lever
         else:
-            pushed = self.law.loaded_force(inside, rate, self.load)
-            np.subtract(self.load, pushed, out=self.push)
+            np.subtract(self.load, self.loaded.force(inside, rate), out=self.push)
         self._integrate(self.now.rate, self.push, self.rate)
         if self.is_newton:
             self.rate -= _excess(self.slopes, self.step, self.rate[:-1] - rate)
@@ -235,18 +234,23 @@ class Sweeps:
         out *= self.step
         out += begin
 
+    def _loaded_at(self, time: np.ndarray) -> ForceLaw:
+        """The law under the load at these times."""
+        # Most laws are the same under any load, which need not be computed for them.
+        if self.loaded is self.law:
+            return self.law
+        return self.law.under(load_of(self.start, time))
+
     def ahead(self, root: np.ndarray, rate: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Functions that are positive up to the end of a panel, one in each row.
 
-        The rows are the grip, or the time that is left; q if the force depends on the load, because
-        such a contact may also end at p = 0; and the law's kink function, with its sign at the
-        start.
+        The rows are the grip, or the time that is left; q if the contact may also end at p = 0; and
+        the law's kink function, with its sign at the start.
         """
         law = self.law
         if self.until is None:
-            load = load_of(self.start, time) if law.feels_load else None
-            rows = [grip_of(law, self.m, root, rate, load)]
-            if law.feels_load:
+            rows = [grip_of(self._loaded_at(time), self.m, root, rate)]
+            if law.also_at_surface:
                 rows.append(root)
         else:
             rows = [self.until - time]
@@ -331,7 +335,7 @@ class Sweeps:
         none = np.zeros_like(self.last)
         # The kink function is the last of the functions, and q the second.
         turned = self.last & (self.first == self.functions - 1) if law.has_kink else none
-        surfaced = self.first == 1 if law.feels_load and until is None else none
+        surfaced = self.first == 1 if law.also_at_surface and until is None else none
         error = self._error()
         good = self.reached & self._held() & (self.change <= _ENOUGH)
         good &= error <= self.kind.spectrum
@@ -364,7 +368,7 @@ class Sweeps:
         """Whether the law holds the ball at all nodes, on one side of its kink."""
         law = self.law
         inside = self.root[:-1]
-        grip = grip_of(law, self.m, inside, self.rate[:-1], self.load)
+        grip = grip_of(self.loaded, self.m, inside, self.rate[:-1])
         held = ((inside > 0) & (grip > 0)).all(axis=0)
         if law.has_kink:
             # A sign that changes twice within a panel is not seen at its end. A panel up to a given

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from declared_artifacts import ARTIFACTS
+from jinja2 import BytecodeCache, Environment
 
 from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.beyond.exhibits import (
@@ -47,6 +48,23 @@ DERIVED = ("claims", "ext_verdicts")
 PANDOC = functools.cache(article.pandoc)
 
 
+class Compiled(BytecodeCache):
+    """The compiled templates, which are the same for all data."""
+
+    def __init__(self):
+        self.known = {}
+
+    def load_bytecode(self, bucket):
+        if (bucket.key, bucket.checksum) in self.known:
+            bucket.bytecode_from_string(self.known[bucket.key, bucket.checksum])
+
+    def dump_bytecode(self, bucket):
+        self.known[bucket.key, bucket.checksum] = bucket.bytecode_to_string()
+
+
+COMPILED = functools.partial(Environment, bytecode_cache=Compiled())
+
+
 @pytest.fixture(scope="session")
 def record(recorded):
     """The accepted datasets that are computed, not read off others."""
@@ -74,6 +92,7 @@ def all_texts(data, verdicts=None):
     sections = {}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(article, "pandoc", PANDOC)
+        patch.setattr(article, "Environment", COMPILED)
         for name in ("supplement", "article", "motions"):
             file = TEMPLATES / f"{name}.md.j2"
             made[name] = render_article(

@@ -6,9 +6,9 @@ w = -Λ cos t. Where an engine has no moving table, the table is the frame. Each
 the heights over the table, and the seconds of processor time that its steps took.
 """
 
+import math
 import re
 from dataclasses import replace
-import math
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path

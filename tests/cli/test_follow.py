@@ -49,7 +49,8 @@ def test_the_command_follows_a_curve_up_to_its_resonance(ask):
     (("--to", "-1"), "to = -1.0 is not a number in"),
 ])  # fmt: skip
 def test_a_mistake_is_one_line(refused, options, words):
-    _, line = refused(*ORBIT, *options)
+    command = (*ORBIT, *options)
+    _, line = refused(*command)
     assert words.replace("to =", "--to =") in line
 
 

@@ -23,7 +23,9 @@ def integrated(omega, zeta, speed, amplitude=0.0, phase=0.0, gravity=1.0):
         load = gravity - amplitude * np.sin(t + phase)
         return [rate, load - omega**2 * p - (2 * zeta * omega * rate if damped else 0.0)]
 
-    time, state, damped = 0.0, [0.0, speed], True
+    time = 0.0
+    state = [0.0, speed]
+    damped = True
     for _ in range(50):
 
         def turn(_, state):
@@ -40,7 +42,8 @@ def integrated(omega, zeta, speed, amplitude=0.0, phase=0.0, gravity=1.0):
             lambda t, y, damped=damped: motion(t, y, damped), (time, time + 20), state,
             method="DOP853", events=(turn, end), rtol=1e-12, atol=1e-14, max_step=0.1 / omega,
         )  # fmt: skip
-        time, state = run.t[-1], run.y[:, -1]
+        time = run.t[-1]
+        state = run.y[:, -1]
         if run.t_events[1].size:
             return time, -state[1]
         damped = not damped

@@ -149,7 +149,10 @@ def test_simulated_balls_on_both_sides_of_a_doubling_do_what_the_normal_form_say
     size = math.sqrt(abs(found.rate * share / found.coefficient))
     # The change of Λ and ξ of each ball at the first impact, over the share and the size.
     starts = [(1, 0.2), (-1, 2.0)] if supercritical else [(-1, 0.5), (-1, 1.5), (1, 0.1)]
-    lam, phase, velocity, at = [], [], [], []
+    lam = []
+    phase = []
+    velocity = []
+    at = []
     for side, xi in starts:
         here = doubling.amplitude + side * share
         one = bouncing_ball.orbit(ball, amplitude=here)

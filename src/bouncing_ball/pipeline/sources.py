@@ -11,8 +11,10 @@ An accepted sample also records digests of the code that computed it, without co
 docstrings. If one of these files computes something else today, the sample is older than its code.
 """
 
+import io
 import platform
 import re
+import tokenize
 from collections.abc import Iterable
 from functools import cache
 from hashlib import sha256
@@ -152,7 +154,12 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
     given = set(files)
     scripts = [path for path in given if path.suffix == ".py"]
     found: set[Path] = set()
-    new = set().union(*map(_files_of_module, modules), *map(_imported, scripts)) - given
+    new: set[Path] = set()
+    for module in modules:
+        new.update(_files_of_module(module))
+    for script in scripts:
+        new |= _imported(script)
+    new -= given
     while new:
         found |= new
         new = set().union(*map(_imported, new)) - found - given
@@ -228,22 +235,7 @@ def changed_files(record: str, new: str) -> list[str]:
 _COMPUTES_NOTHING = re.compile(
     r"__init__\.py|errors\.py|(datasets|drawing|pipeline|workflow)/|.*figures\.py|.*/as_text\.py"
 )
-# A comment, a string, or a bracket: no other sign of Python begins or ends one of them.
-_LEXEME = re.compile(
-    r"""[#][^\n]*
-    |(?:\b[rbuf]{1,2})?(?:\"{3}(?:\\.|[^\\])*?\"{3}|'{3}(?:\\.|[^\\])*?'{3})
-    |(?:\b[rbuf]{1,2})?(?:"(?:\\.|[^\\"\n])*"|'(?:\\.|[^\\'\n])*')
-    |[()\[\]{}]""",
-    re.DOTALL | re.IGNORECASE | re.VERBOSE,
-)
-
-
-def _stands_alone(code: str, start: int, end: int) -> bool:
-    """Whether a part of a text has its lines for itself, and goes on no earlier line."""
-    first = code.rfind("\n", 0, start) + 1
-    rest, _, _ = code[end:].partition("\n")
-    continued = code.endswith("\\\n", 0, first)
-    return not continued and not code[first:start].strip() and not rest.strip()
+_STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
 
 
 # The samples are made by the same modules.
@@ -257,20 +249,20 @@ def without_remarks(code: str) -> str:
     def f():
         return '#'
     """
-    kept = []
-    end = 0
-    depth = 0
-    for found in _LEXEME.finditer(code):
-        lexeme = found[0]
-        if lexeme in "([{":
-            depth += 1
-        elif lexeme in ")]}":
-            depth -= 1
-        elif lexeme[0] == "#" or (depth == 0 and _stands_alone(code, *found.span())):
-            kept.append(code[end : found.start()])
-            end = found.end()
-    lines = "".join([*kept, code[end:]]).splitlines()
-    return "\n".join(line.rstrip() for line in lines if line.strip())
+    lines = code.splitlines(keepends=True)
+    tokens = list(tokenize.generate_tokens(io.StringIO(code).readline))
+    before = tokenize.ENCODING
+    remarks = []
+    for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
+        is_statement = before in _STARTS and after.type == tokenize.NEWLINE
+        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and is_statement):
+            remarks.append((token.start, token.end))
+        else:
+            before = token.type
+    for (first, start), (last, end) in reversed(remarks):
+        rest = lines[first - 1][:start] + lines[last - 1][end:]
+        lines[first - 1 : last] = [rest]
+    return "\n".join(line.rstrip() for line in "".join(lines).splitlines() if line.strip())
 
 
 def _line_of_computation(path: Path) -> str:

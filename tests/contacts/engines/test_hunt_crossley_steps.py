@@ -53,7 +53,8 @@ def impacts(speed, step, fraction, damping=0.5, stiffness=1e5):
         (inside,) = np.nonzero(x < 0)
         if not inside.size:
             return v / speed
-        p, before = -x[inside], v[inside]
+        p = -x[inside]
+        before = v[inside]
 
         def rest(after, p=p, before=before):
             force = stiffness * np.maximum(p - step * after, 0) * np.maximum(1 - damping * after, 0)

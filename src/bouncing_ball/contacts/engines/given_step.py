@@ -27,6 +27,7 @@ import scipy
 
 from bouncing_ball.contacts.engines.impacts import (
     FEWEST,
+    bisected,
     fewest_steps,
     has_stable_steps,
     impacts_in_steps,
@@ -260,8 +261,8 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
         for side in (steps, steps * (1 + _ASIDE)):
             yield spread_in_steps(scheme, zeta, release, duration / side).error(exact)
 
-    def exceeds(steps: float) -> bool:
-        return any(found > error for found in sides(steps))
+    def is_within(steps: float) -> bool:
+        return not any(found > error for found in sides(steps))
 
     sampled = fewest_steps(scheme, zeta, release, error)
     good = sampled * (1 + _MARGIN)
@@ -273,19 +274,13 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     least = max(FEWEST, sampled * (1 - _MARGIN))
     bad = None
     for steps in np.linspace(good, least, _TRIED)[1:].tolist():
-        if exceeds(steps):
+        if not is_within(steps):
             bad = steps
             break
         good = steps
     if bad is None:
         return good
-    while good - bad > _FINE * good:
-        middle = (good + bad) / 2
-        if exceeds(middle):
-            bad = middle
-        else:
-            good = middle
-    return good * (1 + _ASIDE)
+    return bisected(is_within, good, bad, _FINE * good) * (1 + _ASIDE)
 
 
 def stiffest_contact(

@@ -4,6 +4,7 @@ Because r depends on the instant within a step at which the ball meets the wall,
 many such instants.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -33,7 +34,7 @@ def restitution_in_steps(
     scheme: Scheme,
     damping_ratio: float,
     release: Release,
-    steps: int,
+    steps: float,
     fraction: ArrayLike = _FRACTIONS,
 ) -> np.ndarray:
     """Restitution of free impacts computed with N time steps in the duration of the contact.
@@ -45,7 +46,7 @@ def restitution_in_steps(
         ζ, below 1 with the displacement release.
     release : Release
         The rule that ends the contact.
-    steps : int
+    steps : float
         N, the number of steps in a contact.
     fraction : array_like
         Time, in steps and in (0, 1], from meeting the wall to the first step that begins in
@@ -184,7 +185,7 @@ def has_stable_steps(scheme: Scheme, damping_ratio: float, step: float) -> bool:
     return bool(np.abs(np.linalg.eigvals(linear.matrix)).max() <= 1 + _ROUNDING)
 
 
-def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: int) -> float:
+def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: float) -> float:
     """The largest |r_N - r| of a contact with N steps, over the instants of contact in a step.
 
     Raises
@@ -248,14 +249,20 @@ def fewest_steps(scheme: Scheme, damping_ratio: float, release: Release, error: 
     good = float(steps_for(scheme, damping_ratio, release, error))
     if good in (FEWEST, _ASYMPTOTIC) or good > _ASYMPTOTIC:
         return good
-    contact = SpringDamper(1.0, float(damping_ratio), release)
-    duration = float(contact.free_duration)
-    exact = float(contact.restitution)
-    bad = good - 1
-    while good - bad > _FINE:
+
+    def is_within(number: float) -> bool:
+        return error_in_steps(scheme, damping_ratio, release, number) <= error
+
+    return bisected(is_within, good, good - 1, _FINE)
+
+
+def bisected(is_within: Callable[[float], bool], good: float, bad: float, fine: float) -> float:
+    """The least number that is within an error, up to ``fine``, between one that is and one that is
+    not.
+    """
+    while good - bad > fine:
         middle = (good + bad) / 2
-        computed = impacts_in_steps(scheme, damping_ratio, release, duration / middle)
-        if np.max(np.abs(computed - exact)) <= error:
+        if is_within(middle):
             good = middle
         else:
             bad = middle

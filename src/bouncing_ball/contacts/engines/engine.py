@@ -339,7 +339,8 @@ class Engine(ABC):
         """What a contact that is written for the engine does with a time step in s, in place of the
         one that was asked for.
         """
-        return at_step(self.name, self.scheme, contact, release, time_step, error, asked)
+        given = self.name, self.scheme, contact, release
+        return at_step(*given, time_step=time_step, error=error, asked=asked)
 
     def at_step_of(
         self,

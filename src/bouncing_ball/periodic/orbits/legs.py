@@ -182,7 +182,15 @@ def landed(
     of_section, slope = dynamics.section_lag(velocity)
     height = gap + (lag + of_section) * velocity
     rate = velocity + (lag + slope) * acceleration
-    return Landing(time, height, velocity, rate, acceleration, -height / rate, lag)
+    return Landing(
+        time=time,
+        height=height,
+        velocity=velocity,
+        rate=rate,
+        acceleration=acceleration,
+        late=-height / rate,
+        lag=lag,
+    )
 
 
 def arrived(

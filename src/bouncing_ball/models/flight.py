@@ -60,8 +60,7 @@ class Lagged(NamedTuple):
 
     def derivatives(self, ended: np.ndarray) -> Derivatives:
         """y as a search for its zero takes it, which may stop for the functions marked."""
-        orders = self.values + self.bounds
-        return Derivatives(*orders, ended=ended)
+        return Derivatives._make((*self.values, *self.bounds, ended))
 
 
 class Above(NamedTuple):

@@ -17,7 +17,7 @@ def about_highest(
     Parameters
     ----------
     height : callable
-        The heights at times of the shape (samples, ...).
+        The heights at times of the shape (samples, ...); of a motion all of them may be NaN.
     left, right : array
         The first times between which a motion has its highest point.
     samples, rounds : int
@@ -39,8 +39,7 @@ def about_highest(
     for _ in range(rounds):
         time = left + (right - left) * share
         value = height(time)
-        highest = np.argmax(np.where(np.isnan(value), -np.inf, value), axis=0)
-        inner = np.clip(highest, 1, samples - 2)
+        inner = np.clip(value.argmax(axis=0), 1, samples - 2)
         three = inner + np.array([-1, 0, 1]).reshape(-1, *(1,) * inner.ndim)
         left, _, right = np.take_along_axis(time, three, axis=0)
     return value, np.take_along_axis(value, three, axis=0), left, right

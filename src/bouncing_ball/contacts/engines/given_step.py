@@ -32,11 +32,10 @@ from bouncing_ball.contacts.engines.impacts import (
     has_stable_steps,
     impacts_in_steps,
 )
-from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.engines.physical import Physical, free_duration
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, restitution_coefficient
 
 # Velocities below this part of that of the impact are those of a ball that does not leave.
 _STAYS = 1e-6
@@ -249,9 +248,8 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     error has a tooth in each step: of 84 cases single teeth above exceeded the error in ten, by a
     sixth at most.
     """
-    contact = SpringDamper(1.0, zeta, release)
-    duration = float(contact.free_duration)
-    exact = float(contact.restitution)
+    duration = free_duration(zeta, release)
+    exact = float(restitution_coefficient(zeta, release))
 
     def sides(steps: float) -> Iterator[float]:
         """The errors at this number of steps and just above it.
@@ -295,7 +293,7 @@ def stiffest_contact(
     ('4550.6 N/m', True)
     """
     fewest = _fewest(scheme, round(zeta, _DIGITS), release, error)
-    omega = float(SpringDamper(1.0, zeta, release).free_duration) / (fewest * time_step)
+    omega = free_duration(zeta, release) / (fewest * time_step)
     return Physical(mass, mass * omega**2, 2 * zeta * mass * omega), fewest
 
 

@@ -180,3 +180,14 @@ def test_parameters_whose_shapes_do_not_broadcast_are_refused(refusal):
 def test_an_unknown_release_is_refused_with_the_names_that_are_known(release, refusal):
     with refusal(ModelError, f"unknown release {release!r}", "displacement, force"):
         SpringDamper(2.0, 0.1, release)
+
+
+@pytest.mark.parametrize("zeta", [0.1, 1.5])
+@pytest.mark.parametrize("release", ["force", "approach"])
+def test_a_contact_of_floats_has_floats(zeta, release):
+    contact = SpringDamper(10.0, zeta, release)
+    names = "stiffness", "decay_rate", "loss", "detuning", "off_resonance", "release_sine", "lag"
+    names += "restitution", "free_duration", "permanent_contact"
+    numbers = [getattr(contact, name) for name in names] + list(contact.signature(1.0))
+    # The damper that acts on approach only may have no threshold.
+    assert [type(x) for x in numbers if not isinstance(x, float | None)] == []

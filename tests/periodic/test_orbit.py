@@ -1,6 +1,5 @@
 """Observables of orbits, their distances and derivatives."""
 
-from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -58,7 +57,6 @@ def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
         _table_height=np.zeros_like,
         _in_contact=lambda time: (-((time - top) ** 2), None),
     )
-    contact._top = partial(Orbit._top, contact)
     assert abs(Orbit._contact_top(contact)) < 1e-13
 
 

@@ -9,12 +9,11 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.families import families
 from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
-from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.contacts.needed import Needed, needed
 from bouncing_ball.contacts.notes import remarks
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
-from bouncing_ball.contacts.resolve import first_stable_family, law_type, resolve
+from bouncing_ball.contacts.resolve import first_stable_family, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
@@ -124,10 +123,8 @@ def choose(
     plain = contact.by_stiffness_and_loss(written)
     if plain.is_stiff:
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
-    if plain.law is not None and law_named(str(plain.law)) is not SpringDamper:
+    if plain.law_unless_linear is not None:
         return _of_law(contact, table, question, written)
-    # The linear contact by its name, or a law that does not exist.
-    law_type(replace(plain, law=None))
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)
     if not plain.rule.is_linear:

@@ -26,6 +26,7 @@ from bouncing_ball.contacts.quantities import (
 )
 from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -188,6 +189,18 @@ class Contact:
             raise ParameterError("{rebound_height} and {drop_height} are needed together")
 
     @property
+    def law_unless_linear(self) -> type[ContactLaw] | None:
+        """The class of the contact law; None for a spring and a damper, named or not.
+
+        Raises
+        ------
+        ModelError
+            If there is no such law.
+        """
+        kind = SpringDamper if self.law is None else law_named(self.law)
+        return None if kind is SpringDamper else kind
+
+    @property
     def rule(self) -> Release:
         """The release rule, by default that of the law.
 
@@ -196,7 +209,7 @@ class Contact:
         ModelError
             If there is no such rule, or no such law.
         """
-        law = SpringDamper if self.law is None else law_named(self.law)
+        law = self.law_unless_linear or SpringDamper
         return Release.of(self.release or law.release)
 
     @property
@@ -242,7 +255,7 @@ class Contact:
         >>> found.stiffness, found.damping, found.release
         (100.0, 2.0, 'force')
         """
-        if self.release is not None and self.law not in (None, SpringDamper.name):
+        if self.release is not None and self.law_unless_linear is not None:
             raise ParameterError(
                 f"{{release}} is not allowed with {{law}} {self.law}, which has its own"
             )
@@ -287,12 +300,11 @@ class Contact:
         ('force', 0.8)
         """
         engine = engine_named(name)
-        law = self.law
         rule = str(engine.release(self.release))
         is_hertz = self.reduced_modulus is not None or self.youngs_modulus is not None
         if is_hertz and Tsuji.name not in engine.laws:
             raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
-        if law not in (None, SpringDamper.name, *engine.laws, *engine.laws.values()):
+        law = engine.laws.get(str(self.law), self.law)
+        if self.law_unless_linear is not None and law not in engine.laws.values():
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")
-        law = engine.laws.get(str(law), law)
         return replace(self, release=rule, law=law, **self._measured())

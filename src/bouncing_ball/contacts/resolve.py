@@ -17,7 +17,6 @@ import numpy as np
 from bouncing_ball.contacts.contact import STIFF, Contact
 from bouncing_ball.contacts.hertz import hertz, reduced_modulus
 from bouncing_ball.contacts.loss import loss, omega_of_time, same_omega
-from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.contacts.quantities import given, single
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import TableMotion
@@ -103,16 +102,14 @@ def law_type(contact: Contact) -> type[ContactLaw] | None:
     >>> law_type(Contact(law="hunt-crossley", contact_time="1 ms")).name
     'hunt-crossley'
     """
-    if contact.law is None:
-        return None
     name = str(contact.law)
     if name.casefold() in ("hertz", "hertzian"):
         raise ParameterError(
             f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or give "
             "{radius} and {reduced_modulus} in place of {law}"
         )
-    kind = law_named(name)
-    if kind is SpringDamper:
+    kind = contact.law_unless_linear
+    if kind is None:
         return None
     for other in _NOT_OF_A_LAW:
         if getattr(contact, other) is not None:

@@ -12,15 +12,23 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
+from bouncing_ball.datasets.kinds import Kind
 from bouncing_ball.drawing.branches import over_amplitude
 from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
 from bouncing_ball.drawing.style import COLOURS, LINES, TABLE, Look
 
-KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided", "aloft")
-"""The kinds of motion in the order of their colours."""
-# Motions that do not repeat have pale colours, because they fill their bands.
-_HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9", "#000000"), strict=True))
+# The colours of the kinds of motion, in the order of the legend. Motions that do not repeat have
+# pale colours, because they fill their bands.
+_HUES = {
+    Kind.ORBIT: COLOURS[0],
+    Kind.SUBHARMONIC: COLOURS[1],
+    Kind.LOCKED: COLOURS[2],
+    Kind.PERMANENT_CONTACT: COLOURS[3],
+    Kind.CHAOTIC: "#9a9a9a",
+    Kind.UNDECIDED: "#d9b8d9",
+    Kind.ALOFT: "#000000",
+}
 # Basins are areas, coloured in order of their shares with light and dark colours in turn.
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
 
@@ -93,7 +101,7 @@ def _orbit_title(data: xr.Dataset) -> str:
 def _kinds_legend(figure: Figure, found: set[str]) -> None:
     marks = [
         Line2D([], [], color=_HUES[kind], marker="o", markersize=3.5, linestyle="none", label=kind)
-        for kind in KINDS
+        for kind in _HUES
         if kind in found
     ]
     legend_below(figure, marks, ncols=len(marks))
@@ -105,10 +113,10 @@ def orbit_diagram(data: xr.Dataset) -> Figure:
     lam = np.broadcast_to(data.amplitude.values[:, np.newaxis, np.newaxis], data.impact_phase.shape)
     units = {"impact_phase": np.pi, "impact_speed": 1.0}
     for axes, (name, unit) in zip(panels, units.items(), strict=True):
-        for kind in reversed(KINDS):
+        for kind in reversed(_HUES):
             here = (data.kind == kind).values
             if here.any():
-                fills = kind in ("chaotic", "undecided")
+                fills = kind in (Kind.CHAOTIC, Kind.UNDECIDED)
                 look = {"marker": ","} if fills else {"marker": "o", "markersize": 0.9, "mew": 0}
                 x = lam[here].ravel()
                 y = data[name].values[here].ravel() / unit
@@ -142,7 +150,7 @@ def _over_argument(data: xr.Dataset, name: str, label: str, error: str | None = 
         (along,) = data.dims
         place = data[along].values
         argument = symbol(str(along))
-    for kind in KINDS:
+    for kind in _HUES:
         here = (rows.kind == kind).values & np.isfinite(rows[name].values)
         if here.any():
             bar = None if error is None else rows[error].values[here]

@@ -126,8 +126,7 @@ def _add_up(dynamics: Dynamics, impact: Impact, impacts: np.ndarray, total: np.n
             return
         along, across, growth = _grown(*leg.jacobian().apply(along, across))
         flights = np.where(leg.departure.settling > 0, np.inf, 1.0)
-        height, work = over_leg(leg)
-        passed = leg.passed
+        passed, height, work = over_leg(leg)
         total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, growth])
 
 
@@ -141,18 +140,19 @@ def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return along / length, across / length, np.log(length)
 
 
-def over_leg(leg: Leg) -> tuple[np.ndarray, np.ndarray]:
-    """∫ z dτ and the work from one impact to the next, or from one instant to the next in the
-    corrected model.
+def over_leg(leg: Leg) -> np.ndarray:
+    """Time, ∫ z dτ and work from one impact to the next, shape (3, balls); the latter two from one
+    instant to the next in the corrected model.
     """
     after, passed = leg.fly()
     lam = leg.dynamics.amplitude
     impact = leg.impact
     departure = leg.departure
     if impact.known is not None:
-        return _over_instants(lam, impact.known, departure, after.known, passed)
+        integrals = _over_instants(lam, impact.known, departure, after.known, passed)
+        return np.array([passed, *integrals])
     flight = departure.flight
-    return over_steps(
+    integrals = over_steps(
         leg.dynamics.contact,
         lam,
         departure.duration,
@@ -161,6 +161,7 @@ def over_leg(leg: Leg) -> tuple[np.ndarray, np.ndarray]:
         rate=np.array([impact.velocity, flight.velocity]),
         flown=passed - departure.duration,
     )
+    return np.array([passed, *integrals])
 
 
 def _over_instants(

@@ -182,9 +182,8 @@ def advance(
         departure = leg.departure
         if np.any(departure.status):
             return leg.impact, np.full_like(sums, np.nan)
-        impact, passed = leg.fly()
-        height, work = over_leg(leg)
-        sums += np.array([passed, height, work])
+        impact, _ = leg.fly()
+        sums += over_leg(leg)
         if dynamics.forgets:
             faster = impact.velocity * (1 + apart * departure.sticks)
             leg.after = impact = impact._replace(velocity=faster)

@@ -271,7 +271,7 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
     allowed = f"in ({lowest}, 1], the range of the {rule} release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
     # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
-    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)
+    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)[()]
 
 
 def _cosine(beta: np.ndarray) -> np.ndarray:
@@ -335,4 +335,4 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     if not over.any():
         return found
     large = np.where(over, zeta, 1.0)
-    return np.where(over, np.exp(-large * rule.overdamped_duration(large)), found)
+    return np.where(over, np.exp(-large * rule.overdamped_duration(large)), found)[()]

@@ -58,6 +58,10 @@ class Lagged(NamedTuple):
     free: Any = None
     free_rate: Any = None
 
+    def derivatives(self, ended: np.ndarray) -> Derivatives:
+        """y as a search for its zero takes it, which may stop for the functions marked."""
+        return Derivatives._make((*self.values, *self.bounds, ended))
+
 
 class Above(NamedTuple):
     """The times at which a ball passes the table's highest point, z = Λ; equal if it does not."""
@@ -253,7 +257,7 @@ class Rise(Motion):
     def __call__(self, time: np.ndarray) -> Derivatives:
         at = self.flight.lagged(time, 0.0)
         _, rate, second, _ = at.values
-        return Derivatives(*at.values, *at.bounds)._replace(ended=(rate <= 0) & (second <= 0))
+        return at.derivatives(ended=(rate <= 0) & (second <= 0))
 
 
 class Unloaded(Motion):

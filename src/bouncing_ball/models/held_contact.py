@@ -190,7 +190,7 @@ class HeldMotion(Motion):
         at = self.flight.lagged(time, self.lag)
         above = self._free_level(at) + self.most
         slack = ROUNDING * np.abs(self.rest)
-        return Derivatives(*at.values, *at.bounds)._replace(ended=above <= slack)
+        return at.derivatives(ended=above <= slack)
 
     def _free_level(self, at: Any) -> np.ndarray:
         """b/Q + R, which with S is a bound of y."""

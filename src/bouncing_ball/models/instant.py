@@ -61,7 +61,7 @@ def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) ->
     """
     v = np.asarray(speed, dtype=float)
     r = np.asarray(restitution, dtype=float)
-    none = np.zeros_like(v)
+    none = np.zeros_like(v)[()]
     return Instant(
         delay=none,
         restitution=r + none,

@@ -30,7 +30,7 @@ from bouncing_ball.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_flow import flow as linear_flow
-from bouncing_ball.models.oscillator import table_response
+from bouncing_ball.models.oscillator import steady_response, table_response
 from bouncing_ball.models.resumption import ResumingDynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import (
@@ -122,12 +122,10 @@ class ClosedFormMotion(ContactMotion):
 
     def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
         super().__init__(contact, amplitude, displacement, velocity, x, y)
-        detuning = contact.detuning
-        loss = contact.loss
-        gamma = contact.off_resonance
         # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
-        in_phase = (detuning + self.lag * loss) / gamma
-        quadrature = (self.lag * detuning - loss) / gamma
+        in_phase, quadrature = steady_response(
+            _ONE, self.lag, contact.detuning, contact.loss, contact.off_resonance
+        )
         self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
         self.sine = in_phase * x - quadrature * y
         self.cosine = in_phase * y + quadrature * x

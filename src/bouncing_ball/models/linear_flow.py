@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.oscillator import responses
+from bouncing_ball.models.oscillator import responses, steady_response
 
 
 class ContactFlow(NamedTuple):
@@ -117,12 +117,12 @@ def integrals(
     omega = np.asarray(frequency_ratio, dtype=float)
     stiffness = omega**2
     loss = 2 * np.asarray(damping_ratio) * omega
-    # The right-hand sides of the equations for I and J, which are then solved for I.
+    # The right-hand sides of the equations for I and J: a forcing whose steady response is J + iI.
     of_rate = change_in_contact(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
     of_level = change_in_contact(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
     of_level = of_level + np.square(amplitude) * duration / 2
     s = stiffness - 1
-    integral_of_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
+    _, integral_of_rate = steady_response(of_level, of_rate, s, loss, s * s + loss * loss)
     integral_of_gap = -(change_in_contact(w_rate + rate + loss * gap) + duration) / stiffness
     height = integral_of_gap - change_in_contact(w_rate)
     work = change_in_contact(gap * w + w * w / 2) - integral_of_rate

@@ -24,7 +24,7 @@ All quantities are dimensionless; all functions broadcast.
 """
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -166,6 +166,21 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     )
 
 
+def steady_response(real: Any, imaginary: Any, detuning: Any, loss: Any, gamma: Any) -> tuple:
+    """The parts of (a + ib)/p(i): the steady response, divided by e^{is}, to a forcing a + ib.
+
+    Parameters
+    ----------
+    real, imaginary : array_like
+        a and b.
+    detuning, loss, gamma : array_like
+        ϖ² - 1 and 2ζϖ, the parts of p(i), and γ, the sum of their squares.
+    """
+    in_phase = (real * detuning + imaginary * loss) / gamma
+    quadrature = (imaginary * detuning - real * loss) / gamma
+    return in_phase, quadrature
+
+
 def table_response(
     time: np.ndarray,
     frequency_ratio: np.ndarray | float,
@@ -188,8 +203,8 @@ def table_response(
     square = time * time
     delicate = gamma * square * square < _SQUARED
     with np.errstate(divide="ignore", invalid="ignore"):
-        in_phase = np.asarray((real * detuning + imaginary * loss) / gamma)
-        quadrature = np.asarray((imaginary * detuning - real * loss) / gamma)
+        found = steady_response(real, imaginary, detuning, loss, gamma)
+    in_phase, quadrature = map(np.asarray, found)
     if delicate.any():
         some = _where(delicate, in_phase.shape, time, frequency_ratio, damping_ratio)
         at = np.broadcast_to(delicate, in_phase.shape)

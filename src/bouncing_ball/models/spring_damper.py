@@ -248,7 +248,7 @@ class SpringDamper(OscillatorLaw):
     @cached_property
     def release_sine(self) -> np.ndarray:
         """sin α = κϖ/2: ζ for the force release, 0 at the table's level."""
-        return self.release.sine(self.damping_ratio)
+        return self.release.sine(self.damping_ratio)[()]
 
     @cached_property
     def lag(self) -> np.ndarray:
@@ -302,7 +302,7 @@ class SpringDamper(OscillatorLaw):
             return found
         alone = 0.0 if self.release.is_linear else np.pi / 2
         large = self.release.overdamped_duration(np.where(over, zeta, 1.0)) + alone
-        return np.where(over, large / self.frequency_ratio, found)
+        return np.where(over, large / self.frequency_ratio, found)[()]
 
     def flow(
         self,
@@ -412,7 +412,7 @@ class SpringDamper(OscillatorLaw):
         if not self.release.is_linear:
             each = np.vectorize(approach_threshold, otypes=[float])
             found = each(self.frequency_ratio, self.damping_ratio)
-            return found if np.all(np.isfinite(found)) else None
+            return found[()] if np.all(np.isfinite(found)) else None
         return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
 
     @classmethod

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from bouncing_ball.datasets.arguments import (
     FAMILY,
     AmplitudeOfOrbit,
     AmplitudeOfOrbitAxis,
-    Family,
     FamilyAxis,
     SideName,
     checked,
@@ -108,7 +107,9 @@ release='displacement')
 
 
 @suggesting
-def orbits(ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit) -> list[Orbit]:
+def orbits(
+    ball: Ball, n: Annotated[int, FAMILY] = 1, *, amplitude: AmplitudeOfOrbit
+) -> list[Orbit]:
     """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
 
     They are all of them if a closed form of the branch is known, as for ``spring_damper``. For a

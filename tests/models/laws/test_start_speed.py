@@ -8,6 +8,7 @@ from side_by_side import VELOCITY, checked_deviations
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.laws.collocation import contacts, integrals_of_force
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 
@@ -107,3 +108,15 @@ def test_refusals():
     # Lankarani and Nikravesh have c < 3/4.
     with pytest.raises(ModelError, match="too small"):
         law_of_impact(LankaraniNikravesh, 0.3, 0.1, 3.0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_contact_without_a_start_leaves_the_others_of_its_row_as_they_are(kind):
+    law = kind(100.0, 0.8)
+    alone = float(contacts(law, 1.0).duration)
+    assert contacts(law, [1.0, -1.0, np.nan]).duration == pytest.approx(
+        [alone, np.nan, np.nan], rel=1e-14, nan_ok=True
+    )
+    of_both = integrals_of_force(law, [alone, 0.0], 0.0, 1.0, 0.0, 1.0)
+    assert of_both[:, 0] == pytest.approx(integrals_of_force(law, alone, 0.0, 1.0, 0.0, 1.0))
+    assert of_both[:, 1].tolist() == [0.0, 0.0]

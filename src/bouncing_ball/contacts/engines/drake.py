@@ -150,11 +150,10 @@ class HuntCrossleyDrake(Drake):
         """The law that is written, with the stiffness per unit of mass."""
         return LinearHuntCrossley(self._law_in_si["stiffness"] / mass, self._law_in_si["damping"])
 
-    def _retuned(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
-        if at.retuned is None:
-            return None
-        law = {**self._law_in_si, "damping": twelve_digits(at.retuned)}
-        return HuntCrossleyDrake(law, at.restitution), contact
+    def _retuned(
+        self, contact: Physical, damping: float, restitution: float
+    ) -> tuple[Engine, Physical]:
+        return HuntCrossleyDrake({**self._law_in_si, "damping": damping}, restitution), contact
 
     def _softer(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
         if at.stiffest is None or at.stiffest_contact_time is None:

@@ -259,20 +259,21 @@ class Engine(ABC):
         found = self._at(contact, rule, at)
         if at.is_within:
             return found
+        tuned = None
+        if at.retuned is not None:
+            tuned = self._retuned(contact, twelve_digits(at.retuned), at.restitution)
         return replace(
             found,
             instant=self.instant(at.restitution),
-            retuned=self._at_same_step(self._retuned(contact, at), rule, at, contact),
+            retuned=self._at_same_step(tuned, rule, at, contact),
             softer=self._at_same_step(self._softer(contact, at), rule, at),
         )
 
-    def _retuned(self, contact: Physical, at: AtStep) -> tuple["Engine", Physical] | None:
-        """The engine and the contact with the damping that restores the mean r; None if there is
-        none.
-        """
-        if at.retuned is None:
-            return None
-        return self, Physical(contact.mass, contact.stiffness, twelve_digits(at.retuned))
+    def _retuned(
+        self, contact: Physical, damping: float, restitution: float
+    ) -> tuple["Engine", Physical]:
+        """The engine and the contact with the damping that restores the mean r at a step."""
+        return self, contact._replace(damping=damping)
 
     def _softer(self, contact: Physical, at: AtStep) -> tuple["Engine", Physical] | None:
         """The engine and the stiffest contact that the step resolves; None if none was found."""
@@ -338,7 +339,8 @@ class Engine(ABC):
         """What a contact that is written for the engine does with a time step in s, in place of the
         one that was asked for.
         """
-        return at_step(self.name, self.scheme, contact, release, time_step, error, asked)
+        given = self.name, self.scheme, contact, release
+        return at_step(*given, time_step=time_step, error=error, asked=asked)
 
     def at_step_of(
         self,

@@ -27,15 +27,15 @@ import scipy
 
 from bouncing_ball.contacts.engines.impacts import (
     FEWEST,
+    bisected,
     fewest_steps,
     has_stable_steps,
     impacts_in_steps,
 )
-from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.engines.physical import Physical, free_duration
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, restitution_coefficient
 
 # Velocities below this part of that of the impact are those of a ball that does not leave.
 _STAYS = 1e-6
@@ -248,9 +248,8 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     error has a tooth in each step: of 84 cases single teeth above exceeded the error in ten, by a
     sixth at most.
     """
-    contact = SpringDamper(1.0, zeta, release)
-    duration = float(contact.free_duration)
-    exact = float(contact.restitution)
+    duration = free_duration(zeta, release)
+    exact = float(restitution_coefficient(zeta, release))
 
     def sides(steps: float) -> Iterator[float]:
         """The errors at this number of steps and just above it.
@@ -260,8 +259,8 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
         for side in (steps, steps * (1 + _ASIDE)):
             yield spread_in_steps(scheme, zeta, release, duration / side).error(exact)
 
-    def exceeds(steps: float) -> bool:
-        return any(found > error for found in sides(steps))
+    def is_within(steps: float) -> bool:
+        return not any(found > error for found in sides(steps))
 
     sampled = fewest_steps(scheme, zeta, release, error)
     good = sampled * (1 + _MARGIN)
@@ -273,19 +272,13 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     least = max(FEWEST, sampled * (1 - _MARGIN))
     bad = None
     for steps in np.linspace(good, least, _TRIED)[1:].tolist():
-        if exceeds(steps):
+        if not is_within(steps):
             bad = steps
             break
         good = steps
     if bad is None:
         return good
-    while good - bad > _FINE * good:
-        middle = (good + bad) / 2
-        if exceeds(middle):
-            bad = middle
-        else:
-            good = middle
-    return good * (1 + _ASIDE)
+    return bisected(is_within, good, bad, _FINE * good) * (1 + _ASIDE)
 
 
 def stiffest_contact(
@@ -300,7 +293,7 @@ def stiffest_contact(
     ('4550.6 N/m', True)
     """
     fewest = _fewest(scheme, round(zeta, _DIGITS), release, error)
-    omega = float(SpringDamper(1.0, zeta, release).free_duration) / (fewest * time_step)
+    omega = free_duration(zeta, release) / (fewest * time_step)
     return Physical(mass, mass * omega**2, 2 * zeta * mass * omega), fewest
 
 

@@ -4,16 +4,17 @@ Because r depends on the instant within a step at which the ball meets the wall,
 many such instants.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.engines.physical import free_duration
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.engines.steps import LinearStep, patience, until_outside
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, restitution_coefficient
 
 # Times from meeting the wall to the first step that begins in contact, in steps.
 _FRACTIONS = np.linspace(1e-9, 1.0, 33)
@@ -33,7 +34,7 @@ def restitution_in_steps(
     scheme: Scheme,
     damping_ratio: float,
     release: Release,
-    steps: int,
+    steps: float,
     fraction: ArrayLike = _FRACTIONS,
 ) -> np.ndarray:
     """Restitution of free impacts computed with N time steps in the duration of the contact.
@@ -45,7 +46,7 @@ def restitution_in_steps(
         ζ, below 1 with the displacement release.
     release : Release
         The rule that ends the contact.
-    steps : int
+    steps : float
         N, the number of steps in a contact.
     fraction : array_like
         Time, in steps and in (0, 1], from meeting the wall to the first step that begins in
@@ -75,7 +76,7 @@ def restitution_in_steps(
     """
     if steps < FEWEST:
         raise ModelError(f"{steps} steps in a contact are too few: use at least {FEWEST}")
-    duration = float(SpringDamper(1.0, float(damping_ratio), release).free_duration)
+    duration = free_duration(float(damping_ratio), release)
     return impacts_in_steps(scheme, damping_ratio, release, duration / steps, fraction)
 
 
@@ -93,7 +94,7 @@ def impacts_in_steps(
 
     Examples
     --------
-    >>> h = float(SpringDamper(1.0, 0.1, "force").free_duration) / 50
+    >>> h = free_duration(0.1, Release.FORCE) / 50
     >>> many = impacts_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, h)
     >>> bool(np.all(many == restitution_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 50)))
     True
@@ -103,7 +104,7 @@ def impacts_in_steps(
     >>> bool(impacts_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 5.0).max() > 20)
     True
     """
-    duration = _duration(float(damping_ratio), release)
+    duration = free_duration(float(damping_ratio), release)
     linear = _linear_step(scheme, float(damping_ratio), release, float(step))
     start = np.asarray(fraction, dtype=float).ravel()
     state = np.stack([-step * start, -np.ones_like(start)])
@@ -164,12 +165,6 @@ def _linear_step(scheme: Scheme, damping_ratio: float, release: Release, size: f
     return LinearStep.of(scheme, 1.0, 2 * damping_ratio, release, size)
 
 
-@lru_cache(maxsize=4)
-def _duration(damping_ratio: float, release: Release) -> float:
-    """The duration of a free impact, in units of 1/ω."""
-    return float(SpringDamper(1.0, damping_ratio, release).free_duration)
-
-
 def has_stable_steps(scheme: Scheme, damping_ratio: float, step: float) -> bool:
     """Whether the steps h = ωΔt of a lasting contact do not grow: no eigenvalue of a step above 1.
 
@@ -184,7 +179,7 @@ def has_stable_steps(scheme: Scheme, damping_ratio: float, step: float) -> bool:
     return bool(np.abs(np.linalg.eigvals(linear.matrix)).max() <= 1 + _ROUNDING)
 
 
-def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: int) -> float:
+def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: float) -> float:
     """The largest |r_N - r| of a contact with N steps, over the instants of contact in a step.
 
     Raises
@@ -198,7 +193,7 @@ def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps
     0.0025
     """
     computed = restitution_in_steps(scheme, damping_ratio, release, steps)
-    exact = float(SpringDamper(1.0, float(damping_ratio), release).restitution)
+    exact = float(restitution_coefficient(damping_ratio, release))
     return float(np.max(np.abs(computed - exact)))
 
 
@@ -248,14 +243,20 @@ def fewest_steps(scheme: Scheme, damping_ratio: float, release: Release, error: 
     good = float(steps_for(scheme, damping_ratio, release, error))
     if good in (FEWEST, _ASYMPTOTIC) or good > _ASYMPTOTIC:
         return good
-    contact = SpringDamper(1.0, float(damping_ratio), release)
-    duration = float(contact.free_duration)
-    exact = float(contact.restitution)
-    bad = good - 1
-    while good - bad > _FINE:
+
+    def is_within(number: float) -> bool:
+        return error_in_steps(scheme, damping_ratio, release, number) <= error
+
+    return bisected(is_within, good, good - 1, _FINE)
+
+
+def bisected(is_within: Callable[[float], bool], good: float, bad: float, fine: float) -> float:
+    """The least number that is within an error, up to ``fine``, between one that is and one that is
+    not.
+    """
+    while good - bad > fine:
         middle = (good + bad) / 2
-        computed = impacts_in_steps(scheme, damping_ratio, release, duration / middle)
-        if np.max(np.abs(computed - exact)) <= error:
+        if is_within(middle):
             good = middle
         else:
             bad = middle

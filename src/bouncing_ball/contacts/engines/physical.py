@@ -1,6 +1,7 @@
 """A ball and its linear contact with a wall, in SI units."""
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 from bouncing_ball.models.damping import Release, restitution_coefficient
@@ -49,5 +50,17 @@ class Physical(NamedTuple):
         ModelError
             If ζ ≥ 1 with the displacement release.
         """
-        contact = SpringDamper(1.0, self.damping_ratio, release)
-        return float(contact.free_duration) / self.angular_frequency
+        return free_duration(self.damping_ratio, release) / self.angular_frequency
+
+
+# The searches for a number of steps ask for it again and again.
+@lru_cache(maxsize=4)
+def free_duration(damping_ratio: float, release: Release) -> float:
+    """The duration of a free impact, in units of 1/ω.
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1 with the displacement release.
+    """
+    return float(SpringDamper(1.0, damping_ratio, release).free_duration)

@@ -149,7 +149,7 @@ class OscillatorLaw(ContactLaw):
     @cached_property
     def decay_rate(self) -> np.ndarray:
         """ζϖ, the rate at which free oscillations decay."""
-        return np.asarray(self.damping_ratio * self.frequency_ratio, dtype=float)
+        return np.multiply(self.damping_ratio, self.frequency_ratio, dtype=float)
 
     @cached_property
     def loss(self) -> np.ndarray:

@@ -96,7 +96,7 @@ def computed(law: ForceLaw, speed: ArrayLike) -> Instant:
         delay=delay,
         restitution=r,
         load=load,
-        duration=end.duration,
+        duration=end.duration[()],
         d_restitution=(-by_speed - r) / v,
     )
 

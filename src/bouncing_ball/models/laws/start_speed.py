@@ -164,7 +164,8 @@ class DampedByStart(ContactLaw):
         >>> LankaraniNikravesh(100.0, 0.5).started(2.0)
         StartedContact(stiffness=100, damping=0.28125, speed=2)
         """
-        v = np.maximum(np.asarray(speed, dtype=float), _SLOWEST)
+        # A contact without a speed, which is NaN, gives NaN whatever its law is.
+        v = np.fmax(np.asarray(speed, dtype=float), _SLOWEST)
         return StartedContact(self.stiffness, self.factor / v, v)
 
     @classmethod

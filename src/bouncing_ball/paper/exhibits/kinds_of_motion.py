@@ -78,43 +78,6 @@ def is_back(sequence: ImpactSequence, impacts: np.ndarray) -> np.ndarray:
     return np.maximum(np.abs(turn), np.abs(change)) <= _ROUNDING
 
 
-def _stickings(model: RestitutionModel, amplitude: np.ndarray, path: np.ndarray) -> np.ndarray:
-    """After how many of the impacts on their paths the balls stick, shape (balls,)."""
-    _, phase, velocity = path
-    known = np.isfinite(phase)
-    of_ball = np.broadcast_to(amplitude, known.shape)
-    once = model.simulate(of_ball[known], phase[known], velocity[known], 1)
-    sticks = np.zeros(known.shape, dtype=bool)
-    sticks[known] = once.contact_duration[0] > 0
-    return sticks.sum(axis=0)
-
-
-def _settling(found: Motions) -> np.ndarray:
-    """Impacts after which a deviation of a ball from its repeating motion is a rounding error.
-
-    It shrinks as exp(λ t) in t periods of the table, where λ is the exponent of the motion.
-    """
-    periods = np.log(_ROUNDING) / found.exponent
-    return found.followed + found.impacts * np.ceil(periods / found.periods + 1).astype(int)
-
-
-def _repeating(
-    model: RestitutionModel,
-    found: Motions,
-    start: tuple[np.ndarray, float, np.ndarray],
-    most: int,
-) -> np.ndarray:
-    """Which balls are back in their states up to rounding, within a number of impacts."""
-    returns = np.flatnonzero(found.impacts > 0)
-    repeats = np.zeros(found.impacts.size, dtype=bool)
-    if returns.size:
-        amplitude, phase, velocity = start
-        impacts = min(int(_settling(found[returns]).max()), most)
-        sequence = model.simulate(amplitude[returns], phase, velocity[returns], impacts + 1)
-        repeats[returns] = is_back(sequence, found.impacts[returns])
-    return repeats
-
-
 def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
     """Whether the motion of each ball repeats, and how fast its neighbours separate from it.
 
@@ -132,17 +95,16 @@ def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
     model = RestitutionModel(parameters.restitution)
     velocity = amplitude * np.cos(parameters.phase) - parameters.impact_speed
     start = amplitude, parameters.phase, velocity
-    path = np.full((3, parameters.impacts, amplitude.size), np.nan)
-    found = final_motions(model, *start, impacts=parameters.impacts, path=path)
+    found = final_motions(model, *start, impacts=parameters.impacts)
     _require_bouncing(found, amplitude)
-    stickings = _stickings(model, amplitude, path)
-    repeats = _repeating(model, found, start, parameters.impacts)
-    wanders = (found.impacts == 0) & (stickings == 0)
+    sequence = model.simulate(*start, parameters.impacts + 1)
+    repeats = (found.impacts > 0) & is_back(sequence, found.impacts)
+    wanders = (found.impacts == 0) & (found.times_stuck == 0)
     return described(
         {
             "impacts": ("amplitude", np.where(repeats, found.impacts, 0)),
             "periods": ("amplitude", np.where(repeats, found.periods, 0)),
-            "stickings": ("amplitude", stickings),
+            "stickings": ("amplitude", found.times_stuck),
             "lyapunov_exponent": ("amplitude", np.where(wanders, found.exponent, np.nan)),
             "lyapunov_error": ("amplitude", np.where(wanders, found.exponent_error, np.nan)),
         },

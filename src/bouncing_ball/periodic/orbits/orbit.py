@@ -21,6 +21,7 @@ from bouncing_ball.numerics.arrays import blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits import stability
 from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.highest import about_highest
 from bouncing_ball.periodic.orbits.impacts import Impacts
 from bouncing_ball.periodic.orbits.legs import time_to_section
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
@@ -42,11 +43,10 @@ OBSERVABLES = (
     "max_height",
 )
 """The seven observables of an orbit, with their names in datasets and on the command line."""
-# The highest point of a contact is searched among this many samples. New samples are then taken
-# between the neighbours of the highest sample. The last steps are 16⁻⁵ of the first, and the error
-# of the height is of the order of the square of the last step.
+# The highest point of a contact is searched in so many rounds of so many samples. The last steps
+# are 16⁻⁵ of the first, and the error of the height is of the order of the square of the last step.
 _SAMPLES = 33
-_REFINEMENTS = 6
+_ROUNDS = 6
 _EPS = np.finfo(float).eps
 # Number of orbits whose samples or legs are in memory at the same time.
 _BLOCK = 1024
@@ -149,7 +149,7 @@ class Orbit(Impacts):
             gap, _ = self._in_contact(since)
             return gap + self._table_height(self.phases + since)
 
-        return self._top(height, self.durations)
+        return _top(height, self.durations)
 
     def _flight_top(self) -> np.ndarray:
         """Greatest height in flight."""
@@ -158,22 +158,7 @@ class Orbit(Impacts):
             gap, _ = self._flight_motion(since)
             return gap + self._table_height(self.phases + self.durations + since)
 
-        return self._top(height, self._flights)
-
-    def _top(self, height_at: Callable[[np.ndarray], np.ndarray], lasts: np.ndarray) -> np.ndarray:
-        """The greatest height within parts of the orbit of these durations, from samples that are
-        refined around the highest sample.
-        """
-        steps = np.arange(_SAMPLES).reshape(-1, *(1,) * (len(self.shape) + 1))
-        low = 0.0 * lasts
-        step = lasts / (_SAMPLES - 1)
-        for _ in range(_REFINEMENTS):
-            height = height_at(low + step * steps)
-            highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
-            # Refine from one step before the highest sample to one step after it, in the contact.
-            low = low + step * np.clip(highest - 1, 0, _SAMPLES - 3)
-            step = 2 * step / (_SAMPLES - 1)
-        return np.max(height, axis=(0, -1))
+        return _top(height, self._flights)
 
     def _in_contact(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times since the starts of all contacts, shape (..., orbits, k)."""
@@ -426,6 +411,12 @@ class Orbit(Impacts):
         of_impacts = np.max(np.abs(np.broadcast_arrays(turned, longer, faster)), axis=(0, -1))
         larger = np.abs(np.asarray(self.amplitude) - other.amplitude)
         return self._single(np.maximum(of_impacts, larger))
+
+
+def _top(height: Callable[[np.ndarray], np.ndarray], lasts: np.ndarray) -> np.ndarray:
+    """The greatest height over all impacts, within parts of orbits that have these durations."""
+    heights, *_ = about_highest(height, 0.0 * lasts, lasts, _SAMPLES, _ROUNDS)
+    return np.max(heights, axis=(0, -1))
 
 
 def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Orbit:

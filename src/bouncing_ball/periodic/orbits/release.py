@@ -10,6 +10,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from bouncing_ball.periodic.orbits.highest import about_highest
 from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
@@ -20,7 +21,6 @@ _SAMPLES_OF_CONTACT = np.union1d(np.linspace(0, 1, 160)[1:], np.geomspace(1e-6, 
 # parabola through the last three samples, 1e-4 of the first bracket apart, has an error of the
 # fourth order of this distance.
 _ROUNDS, _SAMPLES = 2, 201
-_SHARES = np.linspace(0, 1, _SAMPLES)[:, np.newaxis]
 # The height where there is no maximum, and thus no event near.
 _FAR = -1.0
 
@@ -111,14 +111,9 @@ def _highest(contacts: _Contacts) -> _Tops:
     top = np.where(is_top, inner, -np.inf).argmax(axis=0)
     left = share[top] * contacts.duration
     right = share[top + 2] * contacts.duration
-    rows = np.arange(top.size)
-    for _ in range(_ROUNDS):
-        time = left + (right - left) * _SHARES
-        value = contacts.height(time)
-        best = np.clip(value.argmax(axis=0), 1, _SAMPLES - 2)
-        left = time[best - 1, rows]
-        right = time[best + 1, rows]
-    before, middle, after = (value[best + j, rows] for j in (-1, 0, 1))
+    _, (before, middle, after), left, right = about_highest(
+        contacts.height, left, right, _SAMPLES, _ROUNDS
+    )
     slope = (after - before) / 2
     bend = before - 2 * middle + after
     height = middle - slope * slope / (2 * bend)

@@ -188,7 +188,7 @@ def curve_through(
         first, second = windows.values()
         return Curve(equations, sticking_curve(equations, guess, (first, second), most), kind)
     problem = CurveProblem(equations, _kept(condition_of(equations, kind)))
-    limits = _limits(equations, windows)
+    limits = limits_of(equations, *windows.values())
     first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
         places = orbit_of_point(equations, first).parameters.items()
@@ -232,7 +232,7 @@ def _explained_end(
     # The tangents of a curve also turn where the differences of its condition fail, which is no
     # corner of the map.
     stuck = end._replace(kind=EndKind.SHORTEST_STEP)
-    found = explained(equations, stuck, points, tests, _limits(equations, ranges))
+    found = explained(equations, stuck, points, tests, limits_of(equations, *ranges.values()))
     if found.stuck:
         found = accumulation(equations, found, points, ranges, CURVE_STEPS.creep)
     if found.stuck:
@@ -263,14 +263,6 @@ def _ranges(equations: OrbitEquations, windows: dict[str, Window | None]) -> dic
             low = max(low, window.low)
             high = min(high, window.high)
         found[name] = Window(low, high)
-    return found
-
-
-def _limits(equations: OrbitEquations, ranges: dict[str, Window]) -> list[Event]:
-    """The ends of the ranges of both parameters, as terminal events."""
-    found = []
-    for j, (name, within) in enumerate(ranges.items()):
-        found += limits_of(name, within, equations.size + j)
     return found
 
 

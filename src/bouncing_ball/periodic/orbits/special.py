@@ -21,7 +21,7 @@ Which of them end a branch is said in :mod:`~bouncing_ball.periodic.orbits.ends`
 """
 
 from enum import StrEnum
-from typing import Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 
@@ -46,6 +46,9 @@ class Coordinates(Problem, Protocol):
     @property
     def equations(self) -> OrbitEquations:
         """The equations in their own unknowns."""
+
+    def take(self, which: Any) -> Self:
+        """The equations of some orbits of a row; those of a single orbit are its own."""
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The unknowns of :attr:`equations` at y."""

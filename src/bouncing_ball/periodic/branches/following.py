@@ -304,11 +304,14 @@ def branch_from(
                 branch = whole
                 break
             near *= _CLOSER
-            left = most - len(branch.points) + 1
-            last = branch.points[-1]
-            ahead = branch.tangents[-1]
             further = _up_to_equal_turns(
-                equations, last, within, near=near, towards=ahead, control=control, most=left
+                equations,
+                branch.points[-1],
+                within,
+                near=near,
+                towards=branch.tangents[-1],
+                control=control,
+                most=most - len(branch.points) + 1,
             )
             branch = _joined(branch, further)
         return Followed(equations, _up_to_limit(equations, branch, within))

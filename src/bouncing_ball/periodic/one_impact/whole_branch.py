@@ -171,52 +171,12 @@ def branches_through(
     >>> round(found.first("saddle-node").amplitude, 4)
     0.2547
     """
-    rows = np.flatnonzero(starts.exists)
-    missing = np.flatnonzero(~starts.exists)
-    found: dict[int, Followed | NoBranch] = {}
-    if missing.size:
-        found |= _reasons(starts[missing], missing.tolist(), amplitude_max)
-    if rows.size:
-        followed = _to_both_sides(starts[rows], amplitude_max, largest_step, ends)
-        found |= dict(zip(rows.tolist(), followed, strict=True))
-    return [found[k] for k in range(starts.size)]
-
-
-def _reasons(
-    missing: Orbit, rows: list[int], amplitude_max: float
-) -> dict[int, Followed | NoBranch]:
-    """Why there are no orbits to start from, by their rows."""
-    lowest = _lowest(missing.model, missing.n)
-    why: dict[int, Followed | NoBranch] = {}
-    for k, row in enumerate(rows):
-        orbit = missing[k]
-        none = f"no {orbit.n}-T orbit up to Λ = {amplitude_max:g} for {orbit.model.label}"
-        above = lowest[k] >= amplitude_max
-        rest = (
-            f": the branch begins at Λ = {lowest[k]:.6g}" if above else " was found to start from"
-        )
-        why[row] = NoOrbitError(none + rest)
-    return why
-
-
-def _lowest(model: Model, n: ArrayLike) -> np.ndarray:
-    """Λ at the saddle-nodes of families, or 0 without one, as a row."""
-    fold = np.atleast_1d(n_t.saddle_node(model, n).amplitude)
-    return np.where(fold > 0, fold, 0.0)
-
-
-def _to_both_sides(
-    starts: Orbit, amplitude_max: float, largest_step: float, ends: Collection[Bifurcation]
-) -> list[Followed | NoBranch]:
-    """The branches through orbits that exist, with errors in place of those that are not followed
-    to their ends.
-    """
+    problem = PaperUnknowns.of(starts)
 
     def events(equations: OrbitEquations) -> list[Event]:
         met = [*passed_by(equations), *ends_of_one_impact(equations)]
         return [replace(each, terminal=each.terminal or each.name in ends) for each in met]
 
-    problem = PaperUnknowns.of(starts)
     found = branches_through_points(
         problem,
         list(problem.point(starts)),
@@ -224,7 +184,25 @@ def _to_both_sides(
         Window(LOWEST, amplitude_max),
         control=StepControl(largest=largest_step),
     )
-    return [_up_to_its_ends(each) for each in found]
+    return [
+        _up_to_its_ends(each) if starts.exists[k] else _no_start(starts[k], amplitude_max)
+        for k, each in enumerate(found)
+    ]
+
+
+def _no_start(missing: Orbit, amplitude_max: float) -> NoOrbitError:
+    """Why there is no orbit to start from."""
+    none = f"no {missing.n}-T orbit up to Λ = {amplitude_max:g} for {missing.model.label}"
+    lowest = float(_lowest(missing.model, missing.n)[0])
+    if lowest >= amplitude_max:
+        return NoOrbitError(f"{none}: the branch begins at Λ = {lowest:.6g}")
+    return NoOrbitError(f"{none} was found to start from")
+
+
+def _lowest(model: Model, n: ArrayLike) -> np.ndarray:
+    """Λ at the saddle-nodes of families, or 0 without one, as a row."""
+    fold = np.atleast_1d(n_t.saddle_node(model, n).amplitude)
+    return np.where(fold > 0, fold, 0.0)
 
 
 def _up_to_its_ends(found: Followed | ContinuationError) -> Followed | ContinuationError:

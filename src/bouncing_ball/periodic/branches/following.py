@@ -1,4 +1,9 @@
-"""A branch of periodic orbits, followed along a parameter from one orbit to a value or an end."""
+"""A branch of periodic orbits, followed along a parameter from one orbit to a value or an end.
+
+Every branch along one parameter is followed by :func:`branches_through_points`, which is given the
+events on it and the range of the parameter. :func:`branch_from` follows any orbit, and whole
+branches and searches of n-T orbits are in :mod:`bouncing_ball.periodic.one_impact`.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -166,8 +171,6 @@ def branches_through_points(
 ) -> list[Followed | ContinuationError]:
     """The branches through orbits, side by side, each to both sides of its orbit or to one.
 
-    Every branch of orbits along a parameter is followed here.
-
     Parameters
     ----------
     problem : Coordinates
@@ -325,8 +328,9 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     last = branch.points[-1]
     ends = np.arcsinh(np.array(within))
     at = ends[np.argmin(np.abs(ends - last[-1]))]
-    # The end has the name of its event unless the steps became too short.
-    if branch.end.event or not abs(at - last[-1]) < AT_BOUND:
+    # An end at an event has the name of the event, and one that only lies next to a limit has none.
+    located = branch.end.event or not branch.end.finished
+    if located or not abs(at - last[-1]) < AT_BOUND:
         return branch
     # Rounding of sinh must not lead out of the range.
     while not within.low <= np.sinh(at) <= within.high:
@@ -433,5 +437,5 @@ def _up_to_halving(equations: OrbitEquations, branch: Branch) -> Branch | None:
         tangents=np.concatenate([branch.tangents, [along / np.linalg.norm(along)]]),
         special=(*branch.special, special),
         start=branch.start,
-        end=End(reason_at(kind_here)),
+        end=End(reason_at(kind_here), event=kind_here),
     )

@@ -1,8 +1,7 @@
 """The highest point within a contact, which touches the release where this grazes.
 
 A contact ends where δ + κ δ′ rises through 0, and before this it is negative. Where its highest
-local maximum touches 0 the contact opens. Because the derivative with respect to the time vanishes
-at a maximum, the gradient of the maximum is that at the fixed time of the maximum.
+local maximum touches 0 the contact opens.
 """
 
 from collections.abc import Callable

@@ -152,7 +152,11 @@ def release_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
 
 
 def release_condition(equations: OrbitEquations, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The margin and its gradient, of the leading shape and of the shape of y."""
+    """The margin and its gradient, of the leading shape and of the shape of y.
+
+    Because the derivative with respect to the time vanishes at a maximum, the gradient is that at
+    the fixed time of the maximum.
+    """
     compared = equations.compared(y, everywhere=True)
     legs = compared.legs
     shape = legs.duration.shape

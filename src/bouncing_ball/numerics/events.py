@@ -95,26 +95,50 @@ def locate(
     settings: NewtonSettings = _PATIENT,
     *,
     values: tuple[float, float] | None = None,
+    tangents: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> SpecialPoint | None:
     """The zero of an event between two points of the branch, each of shape (N + 1,).
 
     Newton's method on the extended system starts from the secant estimate. The result is None if
     the method does not converge, or converges outside the bracket, because a step of the
     continuation was too long or because there is no zero. ``values`` are those of the test function
-    at the two points, if they are known.
+    and ``tangents`` those of the branch at the two points, if they are known. With tangents the
+    estimate lies on a cubic through the two points, and not on their chord.
     """
     if event.is_sign:
         last = domain_limits(problem, lambda y: event.function(y) > 0, np.stack([left, right]))
         return SpecialPoint(event.name, last[0])
     before, after = values or (float(event.function(point)) for point in (left, right))
     chord = right - left
-    guess = left + before / (before - after) * chord
+    share = before / (before - after)
+    guess = left + share * chord
+    if tangents is not None:
+        guess += _bend(share, chord, tangents)
     condition = event.condition or vanishing(event.function)
     found = newton(problem, guess, condition, settings)
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None
     return SpecialPoint(event.name, found.point)
+
+
+def _bend(
+    share: float, chord: np.ndarray, tangents: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
+    """The distance of a branch from a share of its chord, by the cubic with these unit tangents at
+    the ends of the chord (Hermite).
+
+    Examples
+    --------
+    The parabola (s, s²/1000) between s = 0 and s = 1, whose tangents have almost equal lengths:
+
+    >>> tangents = np.array([1.0, 0.0]), np.array([1.0, 2e-3])
+    >>> _bend(0.5, np.array([1.0, 1e-3]), tangents).round(9).tolist()
+    [0.0, -0.00025]
+    """
+    length = np.linalg.norm(chord)
+    begins, ends = (length * tangent - chord for tangent in tangents)
+    return share * (1 - share) * ((1 - share) * begins - share * ends)
 
 
 class Change(NamedTuple):
@@ -145,9 +169,15 @@ class Passage(NamedTuple):
 
 
 def locate_all(
-    problem: Problem, changes: Sequence[Change], left: np.ndarray, right: np.ndarray
+    problem: Problem,
+    changes: Sequence[Change],
+    left: np.ndarray,
+    right: np.ndarray,
+    tangents: tuple[np.ndarray, np.ndarray],
 ) -> Passage:
-    """The zeros of several events between two points of the branch, in order along the chord."""
+    """The zeros of several events between two points of the branch with these tangents, in order
+    along the chord.
+    """
     located = []
     missed = None
     last = right
@@ -156,7 +186,8 @@ def locate_all(
         there = after if last is right else float(event.function(last))
         if (before >= 0) == (there >= 0):
             continue
-        special = locate(problem, event, left, last, values=(before, there))
+        known = tangents if last is right else None
+        special = locate(problem, event, left, last, values=(before, there), tangents=known)
         if special is None:
             missed = event
             continue

@@ -226,7 +226,8 @@ class Way:
         changed = changes_of_sign(events, state.values, attempt.values)
         if not changed:
             return reached, None
-        passage = locate_all(problem, changed, state.point, attempt.point)
+        tangents = state.tangent, attempt.tangent
+        passage = locate_all(problem, changed, state.point, attempt.point, tangents)
         if passage.missed is not None:
             # The step may have left the domain in which the test function is defined.
             event = passage.missed

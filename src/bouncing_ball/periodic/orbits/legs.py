@@ -58,13 +58,20 @@ class Legs:
         shape = self.duration.shape[1:]
         if self.dynamics is None:
             return Legs.unknown(shape)
+        dynamics = self.dynamics
         flat = self.impact, self.departure, self.landing
+        if len(self.duration) > 1:
+            dynamics, *flat = dynamics.kept(slice(math.prod(shape)), *flat)
+        impact, departure, landing = flat
         return Legs(
-            self.residual[0],
-            self.duration[0],
-            self.velocity[0],
-            self.acceleration[0],
-            *self.dynamics.kept(slice(math.prod(shape)), *flat),
+            residual=self.residual[0],
+            duration=self.duration[0],
+            velocity=self.velocity[0],
+            acceleration=self.acceleration[0],
+            dynamics=dynamics,
+            impact=impact,
+            departure=departure,
+            landing=landing,
         )
 
     @cached_property
@@ -193,7 +200,15 @@ def landed(
     of_section, slope = dynamics.section_lag(velocity)
     height = gap + (lag + of_section) * velocity
     rate = velocity + (lag + slope) * acceleration
-    return Landing(time, height, velocity, rate, acceleration, -height / rate, lag)
+    return Landing(
+        time=time,
+        height=height,
+        velocity=velocity,
+        rate=rate,
+        acceleration=acceleration,
+        late=-height / rate,
+        lag=lag,
+    )
 
 
 def arrived(

@@ -12,7 +12,7 @@ from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.orbits.release import release_condition, release_margin
+from bouncing_ball.periodic.orbits.special import release_condition, release_margin
 
 
 def long_contact(ratio, excess):

@@ -136,7 +136,7 @@ def ensemble(
     rng = np.random.default_rng(checked_number("seed", seed, SEED))
     start = np.full(number, first[0]), np.full(number, first[1])
     dynamics, phases, relative, _ = model.dynamics(np.full(number, lam)).first_impacts(*start)
-    rows = _followed(dynamics, dynamics.start(phases, relative), scatter, most, rng)
+    rows = _impacts_of_balls(dynamics, dynamics.start(phases, relative), scatter, most, rng)
     given = {"amplitude": lam, "noise": scatter.deviation, "balls": number, "seed": seed}
     labels = {"phase": first[0], "velocity": first[1]}
     attributes = {**model.parameters, **given, **labels}
@@ -187,7 +187,7 @@ class _Rows(NamedTuple):
     loss: np.ndarray
 
 
-def _followed(
+def _impacts_of_balls(
     dynamics: Dynamics,
     impact: Impact,
     scatter: _Scatter,

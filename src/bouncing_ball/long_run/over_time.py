@@ -186,7 +186,7 @@ def history(
     count = checked_number("samples", samples, SAMPLES)
     time = instants(length, count, grid.size)
     since = np.broadcast_to(time, (grid.size, time.size))
-    return _labelled_history(grid, time, _followed(first.model(ball, grid), first, since))
+    return _labelled_history(grid, time, _at_times(first.model(ball, grid), first, since))
 
 
 @suggesting
@@ -294,7 +294,7 @@ def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:
     before = -falling if place.is_paper else place.level(phi + falling, lam)[0] - landing.rate
     first = FirstImpacts(lam, phi + falling, before)
     since = time - falling[:, np.newaxis]
-    found = _followed(first.model(ball, grid), first, since)
+    found = _at_times(first.model(ball, grid), first, since)
     above = since < 0
     w_rate, w = place.level(first.phase[:, np.newaxis] + since, lam[:, np.newaxis])
     if place.is_paper:
@@ -315,7 +315,7 @@ def place_of(ball: Ball) -> Setting:
     return getattr(ball, "place", PAPER)
 
 
-def _followed(model: Any, starts: FirstImpacts, time: np.ndarray) -> dict[str, np.ndarray]:
+def _at_times(model: Any, starts: FirstImpacts, time: np.ndarray) -> dict[str, np.ndarray]:
     """The variables of a history for balls at times (ball, sample) since their first
     impacts.
     """

@@ -82,10 +82,10 @@ def reference_orbits(parameters: References) -> xr.Dataset:
     omega = parameters.frequency_ratio.grid()
     parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(LINEAR)]
     orbits = xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in LINEAR])
-    return describe(orbits.merge(_followed()), variables=VARIABLES)
+    return describe(orbits.merge(_motions()), variables=VARIABLES)
 
 
-def _followed() -> xr.Dataset:
+def _motions() -> xr.Dataset:
     """The balls, and the motions on which they end, over (model, motion)."""
     r, omega, lam, phase, velocity = _BALLS
     restitution = RestitutionModel(r)

@@ -44,7 +44,7 @@ from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.release import release_condition
+from bouncing_ball.periodic.orbits.special import release_condition
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400

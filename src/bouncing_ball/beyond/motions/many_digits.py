@@ -118,7 +118,7 @@ class ManyDigits(NamedTuple):
                 ctx.prec = bits
                 ball = self._lifted() if start is None else self._thrown(*start)
                 try:
-                    return self._followed(ball, impacts, bits)
+                    return self._stop_within(ball, impacts, bits)
                 except _TooFewBitsError:
                     bits *= 2
         except _GrazesError:
@@ -127,7 +127,7 @@ class ManyDigits(NamedTuple):
             ctx.prec = before
         return None
 
-    def _followed(self, ball: _Ball, impacts: int, bits: int) -> Stop | None:
+    def _stop_within(self, ball: _Ball, impacts: int, bits: int) -> Stop | None:
         for count in range(1, impacts + 1):
             ball = self._next(ball)
             settles = self._settling(ball)

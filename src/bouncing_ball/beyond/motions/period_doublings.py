@@ -80,12 +80,12 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     found = np.full((doublings, orbit.size, 3), np.nan)
     if existing.size:
         row = orbit.in_a_row().take(existing)
-        found[:, existing] = _followed(row, doublings)
+        found[:, existing] = _at_doublings(row, doublings)
     phase, velocity, amplitude = np.moveaxis(found, -1, 0).reshape(3, doublings, *orbit.shape)
     return Cascade(amplitude, reduce_angle(phase), velocity)
 
 
-def _followed(row: Orbit, doublings: int) -> np.ndarray:
+def _at_doublings(row: Orbit, doublings: int) -> np.ndarray:
     """φ, δ′ and Λ at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
     equations = row.problem(LAMBDA)
     y = row.point(equations)

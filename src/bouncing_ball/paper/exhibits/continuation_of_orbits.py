@@ -149,7 +149,7 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
 
 def _branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
     """The dataset of :func:`orbit_branches`, also if no branch can be followed."""
-    branches, others = _followed(parameters, release, continuation)
+    branches, others = _first_and_second(parameters, release, continuation)
     zeta = float(damping_ratio(parameters.restitution))
     data = _labelled(branches, parameters).assign(damping_ratio=zeta)
     data = describe(data, variables=_VARIABLES)
@@ -177,7 +177,7 @@ def _in_turn_of_others(long: xr.Dataset) -> xr.Dataset:
     return long.assign({name: long[name] - turns for name in phases})
 
 
-def _followed(
+def _first_and_second(
     parameters: Domains, release: Release, continuation: Continuation
 ) -> tuple[list[Followed | NoBranch], list[Followed | NoBranch]]:
     """The branch of each contact, from the unstable to the stable side, and the one that begins at

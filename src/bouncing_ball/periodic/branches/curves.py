@@ -22,7 +22,6 @@ equations alone. The cusp is therefore a zero of the derivative of g in the dire
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import lru_cache
 
 import numpy as np
 
@@ -53,8 +52,7 @@ from bouncing_ball.periodic.orbits.ends import (
 from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.release import release_condition
-from bouncing_ball.periodic.orbits.special import Special, flight_margin
+from bouncing_ball.periodic.orbits.special import Special, passed_by
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CURVE_STEPS = replace(STEPS, creep=1e-3)
@@ -72,8 +70,6 @@ _ANOTHER = 1e-3
 # The coefficient of doublings is computed at every so many points of a curve: it takes about as
 # long as a point, and changes slowly.
 _STRIDE = 4
-# Number of points at which the condition of a curve is known at the same time.
-_KEPT = 4
 _INFLECTION = "where the flight touches the table, its minimum merges with a maximum"
 
 
@@ -94,27 +90,11 @@ def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
     ParameterError
         If there is no curve of such orbits.
     """
-    if str(kind) in list(map(str, Bifurcation)):
-        bifurcation = Bifurcation(str(kind))
-        return lambda y: equations.bifurcation(bifurcation, y)
-    if kind is Special.GRAZING_RELEASE:
-        return lambda y: release_condition(equations, y)
-    if kind is not Special.GRAZING_FLIGHT:
-        known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, Special.GRAZING_FLIGHT])
-        raise ParameterError(f"{{}} is not one of {known}", repr(str(kind)))
-    return vanishing(lambda y: flight_margin(equations, y))
-
-
-def _kept(condition: Condition) -> Condition:
-    """The same condition, of which the last values are kept: the residual and the Jacobian of a
-    step of Newton's method need it at the same points.
-    """
-
-    @lru_cache(maxsize=_KEPT)
-    def at(shape: tuple[int, ...], entries: bytes) -> tuple[np.ndarray, np.ndarray]:
-        return condition(np.frombuffer(entries).reshape(shape))
-
-    return lambda y: at(y.shape, y.tobytes())
+    events = {each.name: each for each in passed_by(equations)}
+    if kind not in events:
+        raise ParameterError(f"{{}} is not one of {', '.join(events)}", repr(str(kind)))
+    event = events[kind]
+    return event.condition or vanishing(event.function)
 
 
 @dataclass(frozen=True)
@@ -187,8 +167,8 @@ def curve_through(
     if kind is Special.STICKING:
         first, second = windows.values()
         return Curve(equations, sticking_curve(equations, guess, (first, second), most), kind)
-    problem = CurveProblem(equations, _kept(condition_of(equations, kind)))
-    limits = _limits(equations, windows)
+    problem = CurveProblem(equations, condition_of(equations, kind))
+    limits = limits_of(equations, *windows.values())
     first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
         places = orbit_of_point(equations, first).parameters.items()
@@ -232,7 +212,7 @@ def _explained_end(
     # The tangents of a curve also turn where the differences of its condition fail, which is no
     # corner of the map.
     stuck = end._replace(kind=EndKind.SHORTEST_STEP)
-    found = explained(equations, stuck, points, tests, _limits(equations, ranges))
+    found = explained(equations, stuck, points, tests, limits_of(equations, *ranges.values()))
     if found.stuck:
         found = accumulation(equations, found, points, ranges, CURVE_STEPS.creep)
     if found.stuck:
@@ -263,14 +243,6 @@ def _ranges(equations: OrbitEquations, windows: dict[str, Window | None]) -> dic
             low = max(low, window.low)
             high = min(high, window.high)
         found[name] = Window(low, high)
-    return found
-
-
-def _limits(equations: OrbitEquations, ranges: dict[str, Window]) -> list[Event]:
-    """The ends of the ranges of both parameters, as terminal events."""
-    found = []
-    for j, (name, within) in enumerate(ranges.items()):
-        found += limits_of(name, within, equations.size + j)
     return found
 
 

@@ -1,20 +1,25 @@
-"""A branch of periodic orbits, followed along a parameter from one orbit to a value or an end."""
+"""A branch of periodic orbits, followed along a parameter from one orbit to a value or an end.
 
-from collections.abc import Iterator
+Every branch along one parameter is followed by :func:`branches_through_points`, which is given the
+events on it and the range of the parameter. :func:`branch_from` follows any orbit, and whole
+branches and searches of n-T orbits are in :mod:`bouncing_ball.periodic.one_impact`.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
-from bouncing_ball.numerics.continuation import continue_branch
+from bouncing_ball.numerics.continuation import continue_all_both_ways, continue_branches
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.ends import (
     AT_BOUND,
@@ -154,6 +159,64 @@ class Followed(Orbits):
     kinds = Special
 
 
+def branches_through_points(
+    problem: Coordinates,
+    points: Sequence[np.ndarray],
+    events: Callable[[OrbitEquations], list[Event]],
+    within: Window,
+    *,
+    towards: Sequence[np.ndarray] = (),
+    control: StepControl = STEPS,
+    most: int = 2000,
+) -> list[Followed | ContinuationError]:
+    """The branches through orbits, side by side, each to both sides of its orbit or to one.
+
+    Parameters
+    ----------
+    problem : Coordinates
+        The equations of a row of orbits, one for each branch, or of a single orbit for all of them,
+        in the unknowns in whose space the steps are measured.
+    points : sequence of ndarray, shape (N + 1,)
+        The orbits, or approximations to them.
+    events : callable
+        The events along a branch of these equations, in their own unknowns.
+    within : Window
+        The range of the parameter in which the branches are followed.
+    towards : sequence of ndarray, shape (N + 1,), optional
+        A direction for each branch, which is followed to this side only.
+    control : StepControl
+    most : int
+        Number of points to one side after which a branch is left unfinished.
+
+    Returns
+    -------
+    list of Followed or ContinuationError
+        Each branch with its special orbits and the reasons for its ends, or the error of
+        :func:`.continue_branches` in its place.
+    """
+
+    def tested(which: Any) -> WithEvents:
+        part = problem.take(which)
+        tests = [*events(part.equations), *limits_of(part.equations, within)]
+        return WithEvents(part, [part.event(each) for each in tests])
+
+    if towards:
+        found = continue_branches(tested, points, towards, control, most)
+    else:
+        found = continue_all_both_ways(tested, points, control, most)
+    return [_explained(problem.take(k), branch, within) for k, branch in enumerate(found)]
+
+
+def _explained(
+    problem: Coordinates, branch: Branch | ContinuationError, within: Window
+) -> Followed | ContinuationError:
+    """A branch with the reasons for its ends, or the error in its place."""
+    if isinstance(branch, ContinuationError):
+        return branch
+    limits = limits_of(problem.equations, within)
+    return Followed(problem, with_explained_ends(problem, branch, limits))
+
+
 def point_near(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
     """The point of the orbit at the parameters of an approximate one.
 
@@ -231,11 +294,10 @@ def branch_from(
     if towards is None:
         towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
     within = range_ahead(equations, here, to)
-    limits = limits_of(along, within, equations.size)
     near = min(_NEAR, float(turns_apart(equations, here)) / 2)
     with np.errstate(all="ignore"):
-        branch = _followed(
-            equations, here, limits, near=near, towards=towards, control=control, most=most
+        branch = _up_to_equal_turns(
+            equations, here, within, near=near, towards=towards, control=control, most=most
         )
         for _ in range(_TRIES):
             if branch.end.event != _HALVES:
@@ -245,15 +307,17 @@ def branch_from(
                 branch = whole
                 break
             near *= _CLOSER
-            left = most - len(branch.points) + 1
-            last = branch.points[-1]
-            ahead = branch.tangents[-1]
-            further = _followed(
-                equations, last, limits, near=near, towards=ahead, control=control, most=left
+            further = _up_to_equal_turns(
+                equations,
+                branch.points[-1],
+                within,
+                near=near,
+                towards=branch.tangents[-1],
+                control=control,
+                most=most - len(branch.points) + 1,
             )
             branch = _joined(branch, further)
-        branch = _up_to_limit(equations, branch, within)
-        return Followed(equations, with_explained_ends(equations, branch, limits))
+        return Followed(equations, _up_to_limit(equations, branch, within))
 
 
 def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> Branch:
@@ -264,7 +328,9 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     last = branch.points[-1]
     ends = np.arcsinh(np.array(within))
     at = ends[np.argmin(np.abs(ends - last[-1]))]
-    if not branch.end.stuck or not abs(at - last[-1]) < AT_BOUND:
+    # An end at an event has the name of the event, and one that only lies next to a limit has none.
+    located = branch.end.event or not branch.end.finished
+    if located or not abs(at - last[-1]) < AT_BOUND:
         return branch
     # Rounding of sinh must not lead out of the range.
     while not within.low <= np.sinh(at) <= within.high:
@@ -290,10 +356,10 @@ def _joined(branch: Branch, further: Branch) -> Branch:
     )
 
 
-def _followed(
+def _up_to_equal_turns(
     equations: OrbitEquations,
     start: np.ndarray,
-    limits: list[Event],
+    within: Window,
     *,
     near: float,
     towards: np.ndarray,
@@ -309,19 +375,19 @@ def _followed(
     # does, the branch is cut off there.
     initial = min(control.initial, near * np.sqrt(2 * equations.impacts) / 2)
     equal_turns = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
-    at_rest = flights_vanish(equations, start)
-    try:
-        branch = continue_branch(
-            equations,
-            start,
-            towards=towards,
-            events=[*events_along(equations), equal_turns, *at_rest, *limits],
-            control=replace(control, initial=initial),
-            max_points=most,
-        )
-    except ContinuationError as error:
-        raise NoOrbitError(str(error)) from None
-    return _cut_off(equations, branch)
+    events = [*events_along(equations), equal_turns, *flights_vanish(equations, start)]
+    (found,) = branches_through_points(
+        equations,
+        [start],
+        lambda _: events,
+        within,
+        towards=[towards],
+        control=replace(control, initial=initial),
+        most=most,
+    )
+    if isinstance(found, ContinuationError):
+        raise NoOrbitError(str(found))
+    return _cut_off(equations, found.branch)
 
 
 def _cut_off(equations: OrbitEquations, branch: Branch) -> Branch:
@@ -371,5 +437,5 @@ def _up_to_halving(equations: OrbitEquations, branch: Branch) -> Branch | None:
         tangents=np.concatenate([branch.tangents, [along / np.linalg.norm(along)]]),
         special=(*branch.special, special),
         start=branch.start,
-        end=End(reason_at(kind_here)),
+        end=End(reason_at(kind_here), event=kind_here),
     )

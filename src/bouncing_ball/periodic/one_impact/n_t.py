@@ -3,9 +3,8 @@
 They follow from the closed form of the model's branch if there is one
 (:mod:`~bouncing_ball.periodic.one_impact.closed_forms`), and otherwise from a search that starts
 from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.start`). On another table, beside
-a drag or a spring, they are zeros of an equation for the phase
-(:mod:`~bouncing_ball.periodic.one_impact.other_settings`), or are found from such zeros
-(:mod:`~bouncing_ball.periodic.one_impact.contact_orbits`). A branch of n-T orbits begins at one of
+a drag or a spring, they are zeros of an equation for the phase, or are found from such zeros
+(:mod:`~bouncing_ball.periodic.one_impact.other_settings`). A branch of n-T orbits begins at one of
 these orbits, and :func:`orbits_of` alone decides how it is found.
 """
 
@@ -26,9 +25,8 @@ from bouncing_ball.periodic.one_impact.closed_forms import (
     RestitutionLine,
     SpringDamperBranch,
 )
-from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
-from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
+from bouncing_ball.periodic.one_impact.other_settings import OrbitsOfContact, OrbitsOfRigidBall
 from bouncing_ball.periodic.one_impact.start import SearchedOrbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Side
@@ -59,7 +57,7 @@ def orbits_of(model: Model) -> OrbitsOfModel:
 
 @orbits_of.register
 def _(model: RestitutionModel) -> OrbitsOfModel:
-    return RestitutionLine(model) if model.setting.is_paper else OtherOrbits(model)
+    return RestitutionLine(model) if model.setting.is_paper else OrbitsOfRigidBall(model)
 
 
 @orbits_of.register

@@ -1,7 +1,7 @@
-r"""The n-T orbits of the restitution model on another table, with drag or on a spring.
+r"""The n-T orbits on another table, with drag or on a spring, for one ball after the other.
 
-With δ = p - W of :mod:`bouncing_ball.models.suspension` and T = 2πn, a flight that returns to the
-height W(φ) after the time T leaves with ``p′ = (q W - b) G/g`` and arrives with
+**Rigid balls.** With δ = p - W of :mod:`bouncing_ball.models.suspension` and T = 2πn, a flight that
+returns to the height W(φ) after the time T leaves with ``p′ = (q W - b) G/g`` and arrives with
 ``p′ = -(q W - b) (g - G g′/g)``, where g, g′ and G are the free responses at T. The impact
 ``v⁺ = -r v⁻`` therefore is ::
 
@@ -10,8 +10,16 @@ height W(φ) after the time T leaves with ``p′ = (q W - b) G/g`` and arrives w
 With W = Λ U this is one equation for the phase, ``P(φ) = q C U - (1 + r) U′ = b C/Λ``, whose zeros
 over one period are bracketed and found. The extrema of P are saddle-nodes. For gravity alone it is
 w′ = nπ (1 - r)/(1 + r) (Eq. 6).
+
+**Contacts of finite duration.** No closed form is known. Newton's method on the equations of the
+model starts from the orbits of the rigid ball in the same setting, whose r is that of the model's
+impact: with the delay t_c and the duration D of its signature, the contact starts at ψ - t_c,
+earlier than the instant at ψ, and lasts for D. Where these starts lead to no orbit, and for all
+orbits at one Λ, further starts are at even phases. Such a search may miss an orbit;
+:func:`bouncing_ball.orbit_of_motion` and :func:`bouncing_ball.follow` find others.
 """
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -19,18 +27,92 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import ModelError
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.suspension import free_responses
 from bouncing_ball.models.waveform import Waveform, turned
-from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOneByOne
+from bouncing_ball.numerics.corrector import NewtonSettings, solve
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
+from bouncing_ball.periodic.one_impact.start import restitution_speed
 from bouncing_ball.periodic.orbits.impacts import check_index
-from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # Samples of the equation in one period of the highest harmonic, between which its zeros are found.
 _SAMPLES = 64
+_SETTINGS = NewtonSettings(max_iterations=25, longest=0.5)
+# Starts of Newton's method in one period of the highest harmonic of the table.
+_STARTS = 8
+# Orbits whose phases and velocities differ by less than this are one.
+_SAME = 1e-6
+_NO_LIMITS = (
+    "the period doublings of limits are those of a table that moves as a sine, with free flight: "
+    "use follow(orbit(…)) for another table or flight"
+)
 
 
-class OtherOrbits(OrbitsOneByOne):
+class OrbitsOneByOne(OrbitsOfModel):
+    """The n-T orbits of balls in another setting than that of the paper, for one ball after the
+    other.
+    """
+
+    @abstractmethod
+    def rows(self, model: Any, n: int, amplitude: float) -> Iterator[Orbit]:
+        """The orbits of a single model at one Λ that a first search finds, in a row; then those of
+        each further search, together with those before.
+        """
+
+    @abstractmethod
+    def rank(self, row: Orbit) -> np.ndarray:
+        """A number for each orbit of a row: of several on a side the first of the highest number is
+        chosen.
+        """
+
+    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
+        """The n-T orbits at Λ on one side of the saddle-node; NaN where none was found."""
+        check_index(n)
+        shape = np.broadcast_shapes(np.shape(n), np.shape(amplitude), self.model.shape)
+        index = np.broadcast_to(n, shape)
+        lam = np.broadcast_to(np.asarray(amplitude, dtype=float), shape)
+        columns = np.full((3, *shape), np.nan)
+        models = self.model.flat(shape)
+        for k, place in enumerate(np.ndindex(shape)):
+            if not lam[place] > 0:
+                continue
+            rows = self.rows(models.take(k), int(index[place]), float(lam[place]))
+            columns[(slice(None), *place)] = self._first_on(side, rows)
+        phase, duration, velocity = columns
+        return Orbit.of(self.model, index, lam, phase, duration, velocity)
+
+    def _first_on(self, side: Side, rows: Iterator[Orbit]) -> tuple[float, float, float]:
+        """φ, D and z′_i of the orbit chosen on a side in the first row that has one; NaN if there
+        is none.
+        """
+        for row in rows:
+            if not row.size:
+                continue
+            on_stable_side = Bifurcation.SADDLE_NODE.test(*row.trace_and_determinant()) > 0
+            here = np.flatnonzero(on_stable_side == (side is Side.STABLE))
+            if here.size:
+                k = here[np.argmax(np.atleast_1d(self.rank(row))[here])]
+                return row.phase[k], row.contact_duration[k], row.impact_velocity[k]
+        return np.nan, np.nan, np.nan
+
+    def orbits(self, n: int, amplitude: float) -> Orbit:
+        """The n-T orbits of a single model at one Λ, in a row, in order of contact duration."""
+        check_index(n)
+        *_, found = self.rows(self.model, n, amplitude)
+        return found[np.argsort(found.contact_duration, kind="stable")]
+
+    def period_doubling(self, n: ArrayLike) -> Orbit:
+        """Raise an error: period doublings are found by :func:`bouncing_ball.follow`."""
+        raise ModelError(_NO_LIMITS)
+
+
+class OrbitsOfRigidBall(OrbitsOneByOne):
     """The n-T orbits of rigid balls in another setting than that of the paper.
 
     If several are on a side, as may be with several harmonics, the first one that is stable is
@@ -150,3 +232,88 @@ def _lowest(model: RestitutionModel, n: int) -> tuple[float, float, float]:
         return np.nan, np.nan, np.nan
     _, velocity = family.arriving(1 / highest, phase)
     return 1 / highest, phase, float(velocity)
+
+
+class OrbitsOfContact(OrbitsOneByOne):
+    """The n-T orbits of balls on contacts in another setting than that of the paper.
+
+    If several are on a side, the first admissible one that is stable is chosen, and otherwise the
+    first admissible or the first one.
+    """
+
+    def rows(self, model: Model, n: int, amplitude: float) -> Iterator[Orbit]:
+        """The orbits to which Newton's method leads from those of the rigid ball, and then also
+        from starts at even phases, of which only orbits that a ball follows are taken.
+        """
+        speed, instant = restitution_speed(n, model)
+        rigid = OrbitsOfRigidBall(RestitutionModel(float(instant.restitution), model.place))
+        near = rigid.orbits(n, amplitude)
+        first = _solved(model, n, amplitude, near.phase, near.impact_velocity, instant)
+        yield _distinct(model, n, amplitude, [first])
+        count = _STARTS * int(model.place.waveform.orders[-1])
+        phase = 2 * np.pi * (np.arange(count) + 0.5) / count - np.pi
+        start = amplitude * model.place.waveform.velocity(phase) - float(speed)
+        more = _solved(model, n, amplitude, phase, start, instant)
+        followed = np.flatnonzero(more.is_admissible()) if more.size else slice(None)
+        yield _distinct(model, n, amplitude, [first, more[followed]])
+
+    def rank(self, row: Orbit) -> np.ndarray:
+        """Admissible orbits come first, and stable ones among them."""
+        return 2 * row.is_admissible() + row.is_stable()
+
+    def saddle_node(self, n: ArrayLike) -> Orbit:
+        """No orbit: saddle-nodes are found by :func:`bouncing_ball.follow`."""
+        return Orbit.of(self.model, n, np.nan, np.nan)
+
+
+def _solved(
+    model: Model,
+    n: int,
+    amplitude: float,
+    phase: np.ndarray,
+    velocity: np.ndarray,
+    instant: Instant,
+) -> Orbit:
+    """The orbits near instants with these phases and velocities of the ball before them, in a
+    row.
+    """
+    delay = float(instant.delay)
+    # In the time t_c before the instant the ball falls faster by t_c.
+    guess = Orbit.of(
+        model,
+        n,
+        np.full(phase.shape, amplitude),
+        phase - delay,
+        float(instant.duration),
+        velocity + delay,
+    )
+    if not guess.size:
+        return guess
+    problem = guess.problem()
+    with np.errstate(all="ignore"):
+        found = solve(problem.equations_at, guess.point(problem), _SETTINGS)
+    good = np.flatnonzero(found.converged & np.isfinite(found.point).all(axis=-1))
+    if not good.size:
+        return guess[good]
+    orbit = orbit_of_point(problem.take(good), found.point[good])
+    lands = (orbit.contact_duration > 0) & (orbit.flight_time > 0)
+    lands &= orbit.relative_impact_velocity < 0
+    return orbit[np.flatnonzero(lands)]
+
+
+def _distinct(model: Model, n: int, amplitude: float, rows: list[Orbit]) -> Orbit:
+    """The orbits of several rows as one row in which each stands once."""
+    names = ("phase", "contact_duration", "impact_velocity")
+    columns = [np.concatenate([getattr(row, name) for row in rows]) for name in names]
+    kept: list[int] = []
+    for k in range(columns[0].size):
+        apart = (
+            np.abs(reduce_angle(columns[0][j] - columns[0][k]))
+            + np.abs(columns[2][j] - columns[2][k])
+            for j in kept
+        )
+        if all(distance > _SAME for distance in apart):
+            kept.append(k)
+    phase, duration, velocity = (column[kept] for column in columns)
+    lam = np.full(len(kept), amplitude)
+    return Orbit.of(model, n, lam, phase, duration, velocity)

@@ -17,22 +17,14 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.continuation import continue_branch, continue_branches
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.numerics.steps import StepControl, WithEvents
+from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball.periodic.branches.following import branches_through_points
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel, in_order
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
-from bouncing_ball.periodic.orbits.ends import (
-    ENDS,
-    AtMargin,
-    Window,
-    ends_of_one_impact,
-    limit,
-    limits_of,
-    with_explained_ends,
-)
+from bouncing_ball.periodic.orbits.ends import ENDS, AtMargin, Window, ends_of_one_impact
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
@@ -186,20 +178,23 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     problem = fold.problem(LAMBDA)
     start = fold.point(problem)
     ahead = tangent(problem.jacobian(start), np.ones_like(start))
-    events = [
-        *ends_of_one_impact(problem),
-        limit(LAMBDA, amplitude, sign=-1.0, column=problem.size),
-        limit(LAMBDA, LOWEST, sign=1.0, column=problem.size),
-    ]
-    tested = WithEvents(problem, events)
-    branches = continue_branches(lambda _: tested, [start, start], [ahead, -ahead], _STEPS, _POINTS)
-    for branch in branches:
-        if isinstance(branch, ContinuationError) or len(branch.points) < 2:
+    ways = branches_through_points(
+        problem,
+        [start, start],
+        ends_of_one_impact,
+        Window(LOWEST, amplitude),
+        towards=[ahead, -ahead],
+        control=_STEPS,
+        most=_POINTS,
+    )
+    for way in ways:
+        if isinstance(way, ContinuationError) or len(way) < 2:
             continue
-        test = Bifurcation.SADDLE_NODE.test(*problem.trace_and_determinant(branch.points[1]))
-        here = abs(branch.points[-1, -1] - np.arcsinh(amplitude)) <= _EXTENDED.tolerance
+        points = way.branch.points
+        test = Bifurcation.SADDLE_NODE.test(*problem.trace_and_determinant(points[1]))
+        here = abs(points[-1, -1] - np.arcsinh(amplitude)) <= _EXTENDED.tolerance
         if here and (test > 0) == (side is Side.STABLE):
-            return branch.points[-1]
+            return points[-1]
     return np.nan
 
 
@@ -233,20 +228,19 @@ def special_on_branch(
     if np.any(np.isnan(y)):
         return ()
     most = max(farther * amplitude, farther, _ABOVE * float(above[0]))
-    here = float(np.arcsinh(amplitude))
-    events = (
-        *bifurcations(problem),
-        *ends_of_one_impact(problem),
-        Event(_HERE, lambda y: y[..., -1] - here),
-        *limits_of(LAMBDA, Window(LOWEST, most), problem.size),
+    here = Event(_HERE, lambda y: y[..., -1] - np.arcsinh(amplitude))
+    (found,) = branches_through_points(
+        problem,
+        [y],
+        lambda one: [*bifurcations(one), *ends_of_one_impact(one), here],
+        Window(LOWEST, most),
+        towards=[-np.eye(y.size)[-1]],
+        control=_STEPS,
+        most=_POINTS,
     )
-    try:
-        branch = continue_branch(
-            problem, y, increasing=False, events=events, control=_STEPS, max_points=_POINTS
-        )
-    except ContinuationError:
+    if isinstance(found, ContinuationError):
         return ()
-    branch = with_explained_ends(problem, branch)
+    branch = found.branch
     # If the continuation failed, there may be further events beyond, and the list would be
     # incomplete.
     ends = branch.end.finished or branch.end.event in [*ENDS, *AtMargin]

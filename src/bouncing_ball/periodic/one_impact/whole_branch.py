@@ -9,7 +9,6 @@ its end says which event it is; such an end is not finished (:class:`~.numerics.
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,21 +16,16 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.setting import require_paper
-from bouncing_ball.numerics.branch import Branch, ContinuationError, EndKind
-from bouncing_ball.numerics.continuation import continue_all_both_ways
+from bouncing_ball.numerics.branch import ContinuationError, EndKind
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.periodic.branches.following import Followed
+from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball.periodic.branches.following import Followed, branches_through_points
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
-from bouncing_ball.periodic.orbits.ends import (
-    Window,
-    ends_of_one_impact,
-    limits_of,
-    with_explained_ends,
-)
+from bouncing_ball.periodic.orbits.balls import LOWEST
+from bouncing_ball.periodic.orbits.ends import Window, ends_of_one_impact
 from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import passed_by
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -177,32 +171,32 @@ def branches_through(
     >>> round(found.first("saddle-node").amplitude, 4)
     0.2547
     """
-    rows = np.flatnonzero(starts.exists)
-    missing = np.flatnonzero(~starts.exists)
-    found: dict[int, Followed | NoBranch] = {}
-    if missing.size:
-        found |= _reasons(starts[missing], missing.tolist(), amplitude_max)
-    if rows.size:
-        followed = _followed(starts[rows], amplitude_max, largest_step, ends)
-        found |= dict(zip(rows.tolist(), followed, strict=True))
-    return [found[k] for k in range(starts.size)]
+    problem = PaperUnknowns.of(starts)
+
+    def events(equations: OrbitEquations) -> list[Event]:
+        met = [*passed_by(equations), *ends_of_one_impact(equations)]
+        return [replace(each, terminal=each.terminal or each.name in ends) for each in met]
+
+    found = branches_through_points(
+        problem,
+        list(problem.point(starts)),
+        events,
+        Window(LOWEST, amplitude_max),
+        control=StepControl(largest=largest_step),
+    )
+    return [
+        _up_to_its_ends(each) if starts.exists[k] else _no_start(starts[k], amplitude_max)
+        for k, each in enumerate(found)
+    ]
 
 
-def _reasons(
-    missing: Orbit, rows: list[int], amplitude_max: float
-) -> dict[int, Followed | NoBranch]:
-    """Why there are no orbits to start from, by their rows."""
-    lowest = _lowest(missing.model, missing.n)
-    why: dict[int, Followed | NoBranch] = {}
-    for k, row in enumerate(rows):
-        orbit = missing[k]
-        none = f"no {orbit.n}-T orbit up to Λ = {amplitude_max:g} for {orbit.model.label}"
-        above = lowest[k] >= amplitude_max
-        rest = (
-            f": the branch begins at Λ = {lowest[k]:.6g}" if above else " was found to start from"
-        )
-        why[row] = NoOrbitError(none + rest)
-    return why
+def _no_start(missing: Orbit, amplitude_max: float) -> NoOrbitError:
+    """Why there is no orbit to start from."""
+    none = f"no {missing.n}-T orbit up to Λ = {amplitude_max:g} for {missing.model.label}"
+    lowest = float(_lowest(missing.model, missing.n)[0])
+    if lowest >= amplitude_max:
+        return NoOrbitError(f"{none}: the branch begins at Λ = {lowest:.6g}")
+    return NoOrbitError(f"{none} was found to start from")
 
 
 def _lowest(model: Model, n: ArrayLike) -> np.ndarray:
@@ -211,30 +205,13 @@ def _lowest(model: Model, n: ArrayLike) -> np.ndarray:
     return np.where(fold > 0, fold, 0.0)
 
 
-def _followed(
-    starts: Orbit, amplitude_max: float, largest_step: float, ends: Collection[Bifurcation]
-) -> list[Followed | NoBranch]:
-    """The branches through orbits that exist."""
-    problem = PaperUnknowns.of(starts)
-
-    def rows_of(which: Any) -> WithEvents:
-        part = problem.take(which)
-        return WithEvents(part, _events(part, amplitude_max, ends))
-
-    points = list(problem.point(starts))
-    control = StepControl(largest=largest_step)
-    branches = continue_all_both_ways(rows_of, points, control)
-    return [_checked(problem.take(k), branch) for k, branch in enumerate(branches)]
-
-
-def _checked(problem: PaperUnknowns, branch: Branch | ContinuationError) -> Followed | NoBranch:
-    """A branch with the reasons for its ends, or an error if it is not followed to its ends."""
-    if isinstance(branch, ContinuationError):
-        return branch
-    for end in (branch.start, branch.end):
-        if end.kind is EndKind.POINTS:
-            return ContinuationError(f"the branch is not followed to its end: {end}")
-    return Followed(problem, with_explained_ends(problem, branch))
+def _up_to_its_ends(found: Followed | ContinuationError) -> Followed | ContinuationError:
+    """A branch, or an error if it is not followed to its ends."""
+    if isinstance(found, Followed):
+        for end in (found.branch.start, found.branch.end):
+            if end.kind is EndKind.POINTS:
+                return ContinuationError(f"the branch is not followed to its end: {end}")
+    return found
 
 
 def _default_top(model: Model, n: int) -> float:
@@ -261,19 +238,3 @@ def _starts(
     orbits = n_t.orbit(of_rows, n[:, np.newaxis], amplitude)
     first = np.argmax(orbits.exists, axis=-1)
     return orbits[np.arange(n.size), first]
-
-
-def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -> list[Event]:
-    """The bifurcations and grazing orbits, of which those in ``ends`` are terminal, the ends of the
-    domain in which orbits exist, and the bounds of Λ.
-    """
-    equations = problem.equations
-    of_orbits = [
-        *passed_by(equations),
-        *ends_of_one_impact(equations),
-        *limits_of(LAMBDA, Window(LOWEST, top), equations.size),
-    ]
-    return [
-        replace(problem.event(event), terminal=event.terminal or event.name in ends)
-        for event in of_orbits
-    ]

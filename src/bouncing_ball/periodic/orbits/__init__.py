@@ -4,11 +4,11 @@ In reading order:
 
 ``balls``         balls whose parameters are known by name, so that any of them can vary
 ``legs``          one leg of an orbit: a contact, and the flight after it
+``release``       the highest point within a contact, which touches the release where it grazes
 ``beside``        the legs at points and beside them, and the derivatives that follow
 ``products``      the monodromy of an orbit as a product of the matrices of its legs
 ``stability``     the linear stability of a fixed point of a planar map
 ``problem``       the equations of an orbit with k impacts in m periods of the table
-``release``       the grazing of a release
 ``lost_release``  where a contact no longer opens
 ``halves``        orbits that repeat after half their period
 ``special``       all special orbits, and the functions that vanish there

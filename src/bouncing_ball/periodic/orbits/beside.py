@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from bouncing_ball.periodic.orbits.legs import Legs
+from bouncing_ball.periodic.orbits.release import Tops, tops_of
 
 # Where the second difference of the height or the velocity of a leg is larger than this and than
 # half of the first one, it has no derivative but a jump. A jump that is not noticed spoils a
@@ -91,6 +92,11 @@ class LegsBeside:
             row[..., 2 * contact] = -by_phase[..., contact]
             row[..., 2 * contact + 1] = -by_velocity[..., contact]
             row[..., 2 * k + contact] = 1
+
+    @cached_property
+    def tops(self) -> Tops:
+        """The highest points within the contacts at the points y."""
+        return tops_of(self.legs, self.legs.duration.shape[1:])
 
     def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The values at the two points of a pair, of values of the legs."""

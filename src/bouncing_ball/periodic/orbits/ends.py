@@ -192,16 +192,17 @@ def bound_in_words(name: str, bound: float) -> str:
     return f"{name.replace('_', ' ')} = {bound:g}"
 
 
-def limits_of(name: str, within: Window, column: int) -> list[Event]:
-    """The ends of a branch at the finite ends of the range of a parameter, an entry of y."""
+def limits_of(equations: OrbitEquations, *ranges: Window) -> list[Event]:
+    """The ends of a branch or a curve at the finite ends of the ranges of its parameters."""
     found = []
-    for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
-        if np.isfinite(bound):
-            found.append(limit(name, bound, sign, column))
+    for j, (name, within) in enumerate(zip(equations.along, ranges, strict=True)):
+        for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
+            if np.isfinite(bound):
+                found.append(_limit(name, bound, sign, equations.size + j))
     return found
 
 
-def limit(name: str, bound: float, sign: float, column: int) -> Event:
+def _limit(name: str, bound: float, sign: float, column: int) -> Event:
     """The end of a branch where a parameter, an entry of y, reaches a bound: from above if the sign
     is positive, otherwise from below.
     """

@@ -136,6 +136,17 @@ class Legs:
         return np.reshape(factor, self.duration.shape)
 
     @cached_property
+    def lowest(self) -> np.ndarray:
+        """The smallest local minimum of δ in each flight, 1 where there is none."""
+        if self.departure is None:
+            return self.duration
+        duration = np.where(np.isfinite(self.duration.ravel()), self.departure.duration, np.nan)
+        with np.errstate(all="ignore"):
+            _, passed = self.after
+            height = self.departure.flight.lowest(passed - duration)
+        return height.reshape(self.duration.shape)
+
+    @cached_property
     def duration_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of the durations by θ and by v, for a model that continues its contacts."""
         if self.dynamics is None:

@@ -255,8 +255,10 @@ class OrbitEquations:
         return replace(self, balls=self.at(y), along=()), y[..., : self.size]
 
     def take(self, which: Any) -> Self:
-        """The problem of some orbits of a row."""
+        """The problem of some orbits of a row; that of a single orbit is its own."""
         turns = np.asarray(self.turns)
+        if turns.ndim == 1 and self._one_ball:
+            return self
         return replace(
             self,
             balls=self.balls.take(which),

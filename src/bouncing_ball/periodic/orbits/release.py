@@ -1,8 +1,7 @@
-"""The grazing of a release: the highest point within a contact, and how it depends on the orbit.
+"""The highest point within a contact, which touches the release where this grazes.
 
 A contact ends where δ + κ δ′ rises through 0, and before this it is negative. Where its highest
-local maximum touches 0 the contact opens. Because the derivative with respect to the time vanishes
-at a maximum, the gradient of the maximum is that at the fixed time of the maximum.
+local maximum touches 0 the contact opens.
 """
 
 from collections.abc import Callable
@@ -12,7 +11,6 @@ import numpy as np
 
 from bouncing_ball.periodic.orbits.highest import about_highest
 from bouncing_ball.periodic.orbits.legs import Legs
-from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 # Samples of a contact: evenly, and in geometric progression from this fraction of the duration on,
 # because the oscillations after an impact decay.
@@ -25,36 +23,13 @@ _ROUNDS, _SAMPLES = 2, 201
 _FAR = -1.0
 
 
-class _Tops(NamedTuple):
+class Tops(NamedTuple):
     """The largest local maximum within each contact and its time since the start of the contact,
     shape (..., k); -1 and NaN if there is none.
     """
 
     height: np.ndarray
     time: np.ndarray
-
-
-def release_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
-    """Minus the largest local maximum of δ + κ δ′ within the contacts of each orbit, of the leading
-    shape of y; 1 where there is none, where impacts are instants, and for laws without a κ.
-    """
-    return -_tops(equations.legs(y), (*y.shape[:-1], equations.impacts)).height.max(axis=-1)
-
-
-def release_condition(equations: OrbitEquations, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The margin and its gradient, of the leading shape and of the shape of y."""
-    legs = equations.compared(y, everywhere=True).legs
-    shape = legs.duration.shape
-    # The first of the points is y.
-    tops = _tops(legs, shape[1:])
-    # Only the contact with the largest maximum counts.
-    counts = np.arange(equations.impacts) == tops.height.argmax(axis=-1)[..., np.newaxis]
-    which = np.flatnonzero(np.broadcast_to(counts, shape))
-    time = np.broadcast_to(tops.time, shape).ravel()[which]
-    height = np.zeros(shape)
-    height.ravel()[which] = _heights(legs, which, time)
-    change = height[2::2] - height[1::2]
-    return -tops.height.max(axis=-1), equations.gradient(y, change)
 
 
 class _Contacts(NamedTuple):
@@ -73,7 +48,7 @@ class _Contacts(NamedTuple):
         return None if height is None else cls(height, legs.duration.ravel()[which])
 
 
-def _heights(legs: Legs, which: np.ndarray, time: np.ndarray) -> np.ndarray:
+def heights_within(legs: Legs, which: np.ndarray, time: np.ndarray) -> np.ndarray:
     """δ + κ δ′ at a time in each of the contacts with these indices, NaN if it is not known."""
     found = np.full(which.shape, np.nan)
     known = np.isfinite(legs.duration.ravel()[which]) & np.isfinite(time)
@@ -83,7 +58,7 @@ def _heights(legs: Legs, which: np.ndarray, time: np.ndarray) -> np.ndarray:
     return found
 
 
-def _tops(legs: Legs, shape: tuple[int, ...]) -> _Tops:
+def tops_of(legs: Legs, shape: tuple[int, ...]) -> Tops:
     """The largest local maximum of δ + κ δ′ within each of the first contacts, which have this
     shape, and its time.
     """
@@ -96,10 +71,10 @@ def _tops(legs: Legs, shape: tuple[int, ...]) -> _Tops:
         with np.errstate(all="ignore"):
             found = _highest(contacts)
         height.ravel()[known], at.ravel()[known] = found
-    return _Tops(height, at)
+    return Tops(height, at)
 
 
-def _highest(contacts: _Contacts) -> _Tops:
+def _highest(contacts: _Contacts) -> Tops:
     """The largest local maximum within each contact of a row, all of finite duration."""
     share = _SAMPLES_OF_CONTACT
     value = contacts.height(share[:, np.newaxis] * contacts.duration)
@@ -107,7 +82,7 @@ def _highest(contacts: _Contacts) -> _Tops:
     is_top = (inner > value[:-2]) & (inner >= value[2:])
     found = is_top.any(axis=0)
     if not found.any():
-        return _Tops(np.full(found.shape, _FAR), np.full(found.shape, np.nan))
+        return Tops(np.full(found.shape, _FAR), np.full(found.shape, np.nan))
     top = np.where(is_top, inner, -np.inf).argmax(axis=0)
     left = share[top] * contacts.duration
     right = share[top + 2] * contacts.duration
@@ -118,4 +93,4 @@ def _highest(contacts: _Contacts) -> _Tops:
     bend = before - 2 * middle + after
     height = middle - slope * slope / (2 * bend)
     at = (left + right) / 2 - slope / bend * (right - left) / 2
-    return _Tops(np.where(found, height, _FAR), np.where(found, at, np.nan))
+    return Tops(np.where(found, height, _FAR), np.where(found, at, np.nan))

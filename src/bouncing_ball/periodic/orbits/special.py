@@ -21,7 +21,7 @@ Which of them end a branch is said in :mod:`~bouncing_ball.periodic.orbits.ends`
 """
 
 from enum import StrEnum
-from typing import Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 
@@ -31,7 +31,7 @@ from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.lost_release import rise_of_release
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.release import release_condition, release_margin
+from bouncing_ball.periodic.orbits.release import heights_within
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # The value of a function where there is no minimum or maximum, and thus no event near.
@@ -46,6 +46,9 @@ class Coordinates(Problem, Protocol):
     @property
     def equations(self) -> OrbitEquations:
         """The equations in their own unknowns."""
+
+    def take(self, which: Any) -> Self:
+        """The equations of some orbits of a row; those of a single orbit are its own."""
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The unknowns of :attr:`equations` at y."""
@@ -87,15 +90,7 @@ def flight_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The smallest local minimum of δ in flight over the legs of each orbit, of the leading shape
     of y; 1 where there is none.
     """
-    legs = equations.legs(y)
-    if legs.departure is None:
-        return np.full(y.shape[:-1], np.nan)
-    flight = legs.departure.flight
-    duration = np.where(np.isfinite(legs.duration.ravel()), legs.departure.duration, np.nan)
-    with np.errstate(all="ignore"):
-        _, passed = legs.after
-        lowest = flight.lowest(passed - duration)
-    return lowest.reshape(legs.duration.shape).min(axis=-1)
+    return equations.legs(y).lowest.min(axis=-1)
 
 
 def impact_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
@@ -147,6 +142,33 @@ def opening_rate(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     # The bounces before a rest on the table become arbitrarily slow.
     rests = legs.departure.sticks.reshape(closing.shape).any(axis=-1)
     return np.where(rests, _FAR, lowest)
+
+
+def release_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
+    """Minus the largest local maximum of δ + κ δ′ within the contacts of each orbit, of the leading
+    shape of y; 1 where there is none, where impacts are instants, and for laws without a κ.
+    """
+    return -equations.compared(y).tops.height.max(axis=-1)
+
+
+def release_condition(equations: OrbitEquations, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The margin and its gradient, of the leading shape and of the shape of y.
+
+    Because the derivative with respect to the time vanishes at a maximum, the gradient is that at
+    the fixed time of the maximum.
+    """
+    compared = equations.compared(y, everywhere=True)
+    legs = compared.legs
+    shape = legs.duration.shape
+    tops = compared.tops
+    # Only the contact with the largest maximum counts.
+    counts = np.arange(equations.impacts) == tops.height.argmax(axis=-1)[..., np.newaxis]
+    which = np.flatnonzero(np.broadcast_to(counts, shape))
+    time = np.broadcast_to(tops.time, shape).ravel()[which]
+    height = np.zeros(shape)
+    height.ravel()[which] = heights_within(legs, which, time)
+    change = height[2::2] - height[1::2]
+    return -tops.height.max(axis=-1), equations.gradient(y, change)
 
 
 def bifurcations(equations: OrbitEquations) -> list[Event]:

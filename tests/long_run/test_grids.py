@@ -147,3 +147,15 @@ def test_the_command_line_says_the_same(capsys, tmp_path, monkeypatch):
     with pytest.raises(SystemExit):
         main("diagram --restitution 0.5 --amplitude 2 1".split())
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_an_orbit_of_a_ball_by_its_free_impact_has_the_law_at_the_speed_of_the_first_impact():
+    start = {"amplitude": 1.6, "phase": 0.3, "velocity": -3.0}
+    ball = bb.contact_law("hunt-crossley", restitution=0.5, duration=0.2)
+    # The free impact of the law of the orbit, at this speed.
+    speed = 1.6 * np.cos(0.3) + 3.0
+    found = bb.orbit_of_motion(ball, **start)
+    free = found.model.signature(speed)
+    assert (float(free.restitution), float(free.duration)) == pytest.approx((0.5, 0.2), abs=1e-12)
+    motion = bb.motion_of(ball, **start)
+    assert (found.impacts, found.periods) == (motion.impacts.item(), motion.periods.item())

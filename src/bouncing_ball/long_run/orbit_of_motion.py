@@ -13,9 +13,10 @@ from bouncing_ball.datasets.arguments import (
     Start,
     checked_number,
 )
-from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball.long_run.destination import IMPACTS, final_motions
-from bouncing_ball.models.ball import Ball, a_single_ball
+from bouncing_ball.long_run.over_time import first_impacts
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -34,7 +35,8 @@ def orbit_of_motion(
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
 
-    The parameters are those of :func:`bouncing_ball.motion_of`, for a single ball.
+    The parameters are those of :func:`bouncing_ball.motion_of`, for a single ball. A ball that is
+    given by r and D of a free impact has the law with these at the speed of the first impact.
 
     Raises
     ------
@@ -63,8 +65,10 @@ def orbit_of_motion(
     phi = checked_number("phase", phase, START)
     before = checked_number("velocity", velocity, START)
     most = checked_number("impacts", impacts, FOLLOWED)
-    model = a_single_ball(ball)
-    return of_motion(model, lam, phi, before, most)
+    grid, first = first_impacts(ball, lam, phi, before)
+    for name in grid.coords:
+        raise ParameterError(f"{{{name}}} must be a single number here")
+    return of_motion(first.model(ball, grid), lam, phi, before, most)
 
 
 def of_motion(

@@ -34,7 +34,7 @@ WEAK = 200 ** (1 - 13 / 24) * 5 ** (13 / 24)
 # Simulations of several contacts take as long as those of the slowest one, so that contacts of one
 # speed are computed at once; each group is computed when a test asks for it.
 STIFF = (0.3, 0.65, 0.85), (31.6, 100.0, 200.0), 3
-WEAKLY_DAMPED = (0.95,), (WEAK, 100.0, 200.0), 3
+WEAKLY_DAMPED = (0.95,), (WEAK, 100.0, 200.0), 2
 COMPLIANT = (0.85,), (6.3, 12.0), 2
 
 
@@ -123,7 +123,7 @@ def missed(exact, amplitude, touch, *impacts):
     return [*found, *exact.state(touch, *start)]
 
 
-@pytest.mark.parametrize(("r", "ratio", "k"), [(0.3, 100.0, 2), (0.65, 31.6, 3), (0.95, 100.0, 3)])
+@pytest.mark.parametrize(("r", "ratio", "k"), [(0.3, 100.0, 2), (0.65, 31.6, 3), (0.95, 100.0, 2)])
 def test_an_opening_is_that_of_its_equations_in_sixty_digits(r, ratio, k):
     """By equations of their own: the touch is a time with δ = δ′ = 0 there, and an unknown."""
     zeta = damping_ratio(r)

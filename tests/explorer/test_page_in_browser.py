@@ -333,7 +333,7 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, sho
         assert state["snippet"] == settings["snippet"]
 
 
-def test_each_verdict_has_the_shares_of_starts_beside_it(seen, answered):
+def test_each_verdict_has_the_shares_of_starts_beside_it(seen, answered, short_motions):
     few, some, wide, tie, approach = seen["counted"]
     for state in (few, some, wide, tie, approach):
         said = answered(state["command"])

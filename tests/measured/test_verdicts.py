@@ -40,7 +40,7 @@ def sample(law, noise, count, known):
     [
         ("linear", True),
         ("linear", False),
-        ("kuwabara-kono", True),
+        pytest.param("kuwabara-kono", True, marks=pytest.mark.long),
         pytest.param("kuwabara-kono", False, marks=pytest.mark.long),
     ],
 )

@@ -191,7 +191,7 @@ def test_a_curve_of_doublings_of_long_contacts_ends_where_the_release_is_lost(nu
     assert all("release without speed" in str(reason) for reason in found.end_reason.values)
 
 
-@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize("number", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_all_generalized_doublings_of_a_curve_are_found_from_either_side(number):
     """The coefficient of the normal form changes its sign there, and nowhere else."""
     found = curve_of_a_doubling(number)

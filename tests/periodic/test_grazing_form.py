@@ -109,7 +109,10 @@ def test_the_branch_with_one_impact_more_begins_at_the_grazing():
     "ball",
     [
         bouncing_ball.spring_damper(restitution=R, frequency_ratio=20.0),
-        bouncing_ball.contact_law("hunt-crossley", stiffness=1e4, damping=0.1),
+        pytest.param(
+            bouncing_ball.contact_law("hunt-crossley", stiffness=1e4, damping=0.1),
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_a_contact_that_lasts_has_no_square_root(ball):

@@ -70,10 +70,11 @@ def test_orbits_and_multipliers_in_forty_digits(case):
         assert abs(mp.det(matrix) - one.determinant()) < 1e-12
 
 
-# Drag is that of the orbits above, and has its bifurcations weekly.
+# The orbits above have the drag and the spring, and weekly their bifurcations.
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "case", [pytest.param(x, marks=pytest.mark.long if x == "drag" else ()) for x in CASES]
+    "case",
+    [pytest.param(x, marks=pytest.mark.long if x in ("drag", "spring") else ()) for x in CASES],
 )
 def test_bifurcations_in_forty_digits(case):
     ball, exact, amplitude = ball_of(case)

@@ -214,13 +214,14 @@ def passes_through(found, y):
     problem = found.problem
     points = found.branch.points
     direction = np.linalg.svd(problem.jacobian(y))[2][-1]
-    normal = plane(direction, y)
     side = (points - y) @ direction
     crossing = np.flatnonzero((side[1:] >= 0) != (side[:-1] >= 0))
     chord = points[crossing + 1] - points[crossing]
     share = side[crossing] / (side[crossing] - side[crossing + 1])
+    guess = points[crossing] + share[:, np.newaxis] * chord
+    normal = plane(direction, np.broadcast_to(y, guess.shape))
     with np.errstate(all="ignore"):
-        there = newton(problem, points[crossing] + share[:, np.newaxis] * chord, normal)
+        there = newton(problem, guess, normal)
     gap = np.linalg.norm(there.point - y, axis=-1)
     # Near a fold or where an impact is slow, rounding is enlarged.
     return bool(np.any(there.converged & (gap < 1e-9)))

@@ -47,32 +47,26 @@ def without_extras(code):
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def test_calls_and_command_line_work_without_the_extras():
+def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they_need():
     assert {"matplotlib", "snakemake", "yaml"} <= {*ABSENT}
-    done = without_extras(
-        "import bouncing_ball\nfrom bouncing_ball.cli.main import main\n"
-        "names = [name for name in bouncing_ball.__all__ if getattr(bouncing_ball, name)]\n"
-        f"for command in {COMMANDS!r}: main([*command, '--json'])\nprint(names)"
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    *answers, names = done.stdout.splitlines()
-    assert all(json.loads(answer) for answer in answers) and len(answers) == len(COMMANDS)
-    assert names == str(bouncing_ball.__all__)
-
-
-def test_what_is_not_installed_is_said_in_one_line():
     needs = {
         "pipeline": (["diff", ".", "."], ["explain", "fig08.png"]),
         "plot": ([*DESIGN, "--plot", "page.png"],),
     }
     commands = [command for each in needs.values() for command in each]
     done = without_extras(
-        "from bouncing_ball.cli.main import main\n"
+        "import bouncing_ball\nfrom bouncing_ball.cli.main import main\n"
+        "names = [name for name in bouncing_ball.__all__ if getattr(bouncing_ball, name)]\n"
+        f"for command in {COMMANDS!r}: main([*command, '--json'])\nprint(names)\n"
         f"for command in {commands!r}:\n"
         "    try: main(command)\n"
         "    except SystemExit as end: print(end.code)"
     )
-    assert done.stdout.split() == ["2"] * len(commands)
+    assert done.returncode == 0
+    *answers, names = done.stdout.splitlines()[: len(COMMANDS) + 1]
+    assert all(json.loads(answer) for answer in answers) and len(answers) == len(COMMANDS)
+    assert names == str(bouncing_ball.__all__)
+    assert done.stdout.splitlines()[len(COMMANDS) + 1 :] == ["2"] * len(commands)
     said = [
         rf"bouncing-ball: \w+ is not installed: install the extra '{extra}', "
         rf'for example pip install "\.\[{extra}\]"\n'

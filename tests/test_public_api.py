@@ -422,7 +422,7 @@ def test_a_table_at_rest_is_allowed():
     assert bouncing_ball.simulate(RIGID, amplitude=[0.0, 1e-12], impacts=3).time.shape == (2, 3)
 
 
-@pytest.mark.parametrize("amplitude_max", [400.0, 1e4])
+@pytest.mark.parametrize("amplitude_max", [pytest.param(400.0, marks=pytest.mark.long), 1e4])
 def test_a_branch_is_followed_to_large_amplitudes(amplitude_max):
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
     found = bouncing_ball.branch(ball, amplitude_max=amplitude_max, points=20)

@@ -26,7 +26,7 @@ from bouncing_ball.measured.curves import CURVES
 from bouncing_ball.periodic.orbits.special import Special
 
 # Random calls of each function, of all functions in the long test.
-SOME = 12
+SOME = 8
 MANY = 90
 
 

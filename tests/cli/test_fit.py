@@ -37,7 +37,8 @@ def test_the_second_command_is_the_contact_of_the_first(outcome):
     assert "solref" in out
 
 
-@pytest.mark.parametrize("name", ["croquet", "viscous_drop"])
+# A ball, and weekly a drop.
+@pytest.mark.parametrize("name", ["croquet", pytest.param("viscous_drop", marks=pytest.mark.long)])
 def test_the_contact_of_the_law_is_the_law_that_was_fitted(outcome, name):
     """e(v) of the written contact is that of the fit: it has the same parameters."""
     answer = json.loads(outcome("fit", name, "--mass", "2 g", "--json")[1])

@@ -41,12 +41,23 @@ def without_changes(monkeypatch):
 
 
 @pytest.fixture
+def few_impacts(monkeypatch):
+    """An answer that follows the ball for fewer impacts, after which these motions are known."""
+    monkeypatch.setattr("bouncing_ball.contacts.ends._IMPACTS", 200)
+
+
+def with_few_starts(patch):
+    patch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+    patch.setattr("bouncing_ball.contacts.starts._IMPACTS", 100)
+
+
+@pytest.fixture
 def few_starts(monkeypatch):
-    """An answer with nine other starts, where their shares are not asserted.
+    """An answer with nine other starts and few impacts, where their shares are not asserted.
 
     ``test_the_headline_is_about_the_motion_on_which_most_balls_end`` has all of them.
     """
-    monkeypatch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+    with_few_starts(monkeypatch)
 
 
 # A contact whose mean height is known to half a percent with 256 balls, and to less with 4096: the
@@ -59,7 +70,7 @@ ON_THE_EDGE |= {"stiffness": "1e7 N/m", "tolerance": 0.2465}
 def on_the_edge():
     """The answer of the usual 4096 balls with the changes, about which two tests ask."""
     with pytest.MonkeyPatch.context() as few:
-        few.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+        with_few_starts(few)
         return assessed(**ON_THE_EDGE)
 
 
@@ -99,7 +110,11 @@ def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
         (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
     ],
 )
-def test_the_headline_says_what_the_ball_does(amplitude, kind, says, without_changes, few_starts):
+def test_the_headline_says_what_the_ball_does(
+    amplitude, kind, says, without_changes, few_starts, few_impacts, monkeypatch
+):
+    # Where balls come to an orbit, they need more impacts to be known on it.
+    monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 300 if kind == "orbit" else 100)
     found = assessed(**UNIT, acceleration=amplitude, stiffness=5000.0, tolerance="20 %")
     assert found.motion.kind == kind and says in found.headline
     assert found.headline != found.verdict
@@ -157,7 +172,9 @@ def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(
             assert [x.value for x in shown] == pytest.approx(once.tolist(), rel=1e-9)
 
 
-def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table(few_starts):
+def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table(
+    few_starts, few_impacts
+):
     found = assessed(**UNIT | {"n": 7, "stiffness": 1e5}, acceleration=2.0, tolerance="20 %")
     assert found.motion.kind == "orbit" and found.motion.laid not in (None, "permanent contact")
     assert found.verdict.endswith(", and is not judged.") and "; a ball laid" in found.verdict
@@ -387,7 +404,7 @@ def test_an_impedance_is_changed_as_itself():
     assert stiffer["frequency_ratio"] / before["frequency_ratio"] == pytest.approx(1.0005, abs=5e-5)
 
 
-def test_the_headline_is_about_the_motion_on_which_most_balls_end(without_changes):
+def test_the_headline_is_about_the_motion_on_which_most_balls_end(without_changes, few_impacts):
     """The 5-T orbit is stable, and attracts less than one start in a hundred."""
     given = {"mass": "50 g", "frequency": "25 Hz", "acceleration": "2 g", "stiffness": 1e6}
     found = assessed(**given, restitution=0.8, balls=256)
@@ -402,7 +419,7 @@ def test_the_headline_is_about_the_motion_on_which_most_balls_end(without_change
 
 
 def test_a_larger_sample_decides_what_a_smaller_one_leaves_open(
-    on_the_edge, without_changes, few_starts
+    on_the_edge, without_changes, few_starts, few_impacts
 ):
     small = assessed(**ON_THE_EDGE, balls=256)
     assert "not decided" in small.verdict and small.motion.balls == 256

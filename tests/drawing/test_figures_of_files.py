@@ -131,7 +131,7 @@ def test_threads_that_draw_leave_the_settings_of_the_user(tmp_path):
     """Each draws the same figure at the same time, and changes the settings while it draws."""
     data = opened("fig05")
     before = dict(plt.rcParams)
-    with ThreadPoolExecutor(4) as pool:
-        list(pool.map(lambda k: data.plot(tmp_path / f"{k}.svg"), range(4)))
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda k: data.plot(tmp_path / f"{k}.svg"), range(2)))
     assert dict(plt.rcParams) == before
     assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 1

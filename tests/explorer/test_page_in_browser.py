@@ -35,7 +35,7 @@ from bouncing_ball.pipeline.configuration import typed
 pytestmark = pytest.mark.slow
 
 REFERENCES = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 50}, "seed": 31}
-STATES = 40
+STATES = 24
 
 # The page that looks at the page: what it sees is JSON in its element "seen".
 OBSERVER = Path(__file__).with_name("observer.html").read_text(encoding="utf-8")
@@ -333,7 +333,7 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, sho
         assert state["snippet"] == settings["snippet"]
 
 
-def test_each_verdict_has_the_shares_of_starts_beside_it(seen, answered):
+def test_each_verdict_has_the_shares_of_starts_beside_it(seen, answered, short_motions):
     few, some, wide, tie, approach = seen["counted"]
     for state in (few, some, wide, tie, approach):
         said = answered(state["command"])

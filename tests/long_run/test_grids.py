@@ -129,18 +129,18 @@ def test_the_command_line_says_the_same(capsys, tmp_path, monkeypatch):
     answer = json.loads(capsys.readouterr().out)
     assert (answer["kind"], answer["periods"], answer["impacts"]) == ("locked", 8, 11)
     picture = tmp_path / "found.png"
-    wanted = "diagram --restitution 0.5 --amplitude 1 2 --points 5 --impacts 300 --json"
+    wanted = "diagram --restitution 0.5 --amplitude 1 2 --points 3 --impacts 300 --json"
     wanted += f" --plot {picture}"
     main(wanted.split())
     rows = json.loads(capsys.readouterr().out)["diagram"]
-    assert [row["amplitude"] for row in rows] == [1.0, 1.25, 1.5, 1.75, 2.0]
+    assert [row["amplitude"] for row in rows] == [1.0, 1.5, 2.0]
     assert all(sum(x["share"] for x in row["motions"]) == pytest.approx(1) for row in rows)
     assert picture.exists()
     wanted = "motion --law tsuji --set stiffness=900 --set damping=0.4 --amplitude 1"
-    main(f"{wanted} --impacts 100 --json".split())
+    main(f"{wanted} --impacts 30 --json".split())
     answer = json.loads(capsys.readouterr().out)
     ball = bb.contact_law("tsuji", stiffness=900.0, damping=0.4)
-    assert answer["kind"] == bb.motion_of(ball, amplitude=1.0, impacts=100).kind
+    assert answer["kind"] == bb.motion_of(ball, amplitude=1.0, impacts=30).kind
     # Without losses neither motion repeats within so few impacts, nor is it known to be chaotic.
     main("diagram --restitution 1 --amplitude 1 1.2 --points 2 --impacts 60".split())
     assert "undecided (100%, because it has neither repeated nor" in capsys.readouterr().out

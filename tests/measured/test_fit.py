@@ -120,8 +120,8 @@ OFTEN = [("tsuji", True), ("tsuji", False), ("kuwabara-kono", False)]
 @pytest.mark.slow
 @pytest.mark.parametrize(("law", "known"), OFTEN)
 def test_intervals_hold_the_parameter_of_simulated_experiments(law, known):
-    low, high = binomial_limits(100)
-    assert low <= covered(law, known, 100) <= high
+    low, high = binomial_limits(60)
+    assert low <= covered(law, known, 60) <= high
 
 
 @pytest.mark.long

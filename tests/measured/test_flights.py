@@ -180,7 +180,7 @@ def held(law, count, seed=50):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["tsuji", "kuwabara-kono"])
+@pytest.mark.parametrize("law", ["tsuji", pytest.param("kuwabara-kono", marks=pytest.mark.long)])
 def test_intervals_hold_what_several_recordings_heard(law):
     # Exact intervals hold it fewer than 87 times of 100 with a probability of 5e-4.
     assert 87 <= held(law, 100)

@@ -123,7 +123,9 @@ def test_the_linear_model_refuses_it_in_one_line(refusal):
         spring_damper(frequency_ratio=10.0, restitution=0.9, release="approach")
 
 
-@pytest.mark.parametrize(("omega", "zeta"), [(0.6, 0.3), (3.3, 0.1), (7.0, 0.9), (20.0, 0.1)])
+@pytest.mark.parametrize(("omega", "zeta"), [
+    (0.6, 0.3), (3.3, 0.1), (7.0, 0.9), pytest.param(20.0, 0.1, marks=pytest.mark.long),
+])  # fmt: skip
 def test_the_threshold_of_permanent_contact_is_that_of_an_integration(omega, zeta):
     def motion(time, state):
         y, rate = state

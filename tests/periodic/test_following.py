@@ -133,7 +133,10 @@ def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_graze
     assert max(map(abs, m)) == 0.0
 
 
-@pytest.mark.parametrize(("amplitude", "impacts", "periods"), [(2.2, 17, 11), (2.5, 18, 9)])
+@pytest.mark.parametrize(
+    ("amplitude", "impacts", "periods"),
+    [(2.2, 17, 11), pytest.param(2.5, 18, 9, marks=pytest.mark.long)],
+)
 def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
     amplitude, impacts, periods
 ):

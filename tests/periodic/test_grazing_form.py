@@ -109,7 +109,10 @@ def test_the_branch_with_one_impact_more_begins_at_the_grazing():
     "ball",
     [
         bouncing_ball.spring_damper(restitution=R, frequency_ratio=20.0),
-        bouncing_ball.contact_law("hunt-crossley", stiffness=1e4, damping=0.1),
+        pytest.param(
+            bouncing_ball.contact_law("hunt-crossley", stiffness=1e4, damping=0.1),
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_a_contact_that_lasts_has_no_square_root(ball):
@@ -143,8 +146,8 @@ def test_a_contact_that_lasts_has_no_square_root(ball):
     ("restitution", "ratio", "n", "start"),
     [
         (0.3741033749511521, 26.900080270186287, 2, 3.4),
-        (0.387, 48.6, 3, 5.0),
-        # The same with less loss, weekly.
+        # On stiffer contacts, and with less loss, weekly.
+        pytest.param(0.387, 48.6, 3, 5.0, marks=pytest.mark.long),
         pytest.param(0.787, 68.4, 3, 5.0, marks=pytest.mark.long),
     ],
 )

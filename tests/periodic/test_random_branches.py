@@ -31,7 +31,7 @@ PARTS = [(200, 480413), (50, 480414), (50, 480415)]
 
 @pytest.mark.parametrize(
     "count, seed, kinds",
-    [(5, 8, ELSEWHERE[1:18:4]), *(pytest.param(*x, ELSEWHERE, marks=LONG) for x in PARTS)],
+    [(3, 8, ELSEWHERE[1:18:8]), *(pytest.param(*x, ELSEWHERE, marks=LONG) for x in PARTS)],
 )
 def test_the_ends_of_random_branches_elsewhere_are_right_or_named(count, seed, kinds):
     """The second sample of 300: tables of several harmonics or of samples, drag and springs."""

@@ -76,8 +76,9 @@ def test_by_default_a_branch_is_followed_to_its_end():
     assert [each.name for each in special].count(Bifurcation.SADDLE_NODE) == 1
 
 
-@pytest.mark.parametrize("release", ["displacement", "force"])
-@pytest.mark.parametrize(("restitution", "ratio"), [(0.65, 3.0), (0.85, 10.0)])
+@pytest.mark.parametrize(
+    ("restitution", "ratio", "release"), [(0.65, 3.0, "displacement"), (0.85, 10.0, "force")]
+)
 def test_the_end_of_a_branch_at_a_lost_release_is_that_of_its_closed_form(
     restitution, ratio, release
 ):

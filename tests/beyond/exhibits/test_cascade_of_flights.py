@@ -72,6 +72,8 @@ def test_a_ball_leaves_the_orbit_of_one_period_on_compliant_contacts_only(withou
     assert final_motions(SpringDamperModel(law), lam, 1.7, -0.2).periods.tolist() == [1, 2]
 
 
+# As above, on a contact where balls need most impacts.
+@pytest.mark.long
 def test_a_ball_that_comes_slowly_to_an_orbit_of_one_period_does_not_leave_it(without_openings):
     """At E = 10.33 it is not known to be on the orbit within the impacts that suffice elsewhere."""
     given = {"restitution": [0.95], "frequency_ratio": {"min": 36.88, "max": 100, "samples": 2}}

@@ -123,7 +123,9 @@ def test_the_stiffest_contact_is_within_the_error_where_the_error_jumps(restitut
 
 
 @pytest.mark.parametrize("scheme", Scheme)
-@pytest.mark.parametrize("steps", [1.6, 3.3, 7.7, 41.0])
+@pytest.mark.parametrize(
+    "steps", [1.6, 7.7, *(pytest.param(x, marks=pytest.mark.long) for x in (3.3, 41.0))]
+)
 def test_the_range_of_r_at_a_coarse_step_is_that_of_a_million_instants(scheme, steps):
     """r is linear between jumps, so that samples miss at most their distance times its slope."""
     zeta = 0.0335

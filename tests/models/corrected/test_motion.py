@@ -145,7 +145,7 @@ class Falling(NamedTuple):
     ("contact", "count"),
     [
         (SpringDamper.from_restitution, 300),
-        (lambda r, ratio: HuntCrossley(ratio**2.5, (1 - r) / 3), 50),
+        (lambda r, ratio: HuntCrossley(ratio**2.5, (1 - r) / 3), 25),
     ],
     ids=["linear", "Hunt-Crossley"],
 )

@@ -45,7 +45,7 @@ def test_a_contact_without_the_orbit_is_refused_with_the_next_that_has_it(kind, 
     assert not any(has(0.1 + 0.06 * k) for k in range(10))
 
 
-@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("release", ["displacement", pytest.param("force", marks=pytest.mark.long)])
 def test_a_figure_of_branches_needs_one_contact_that_has_orbits(release):
     line = mistake(Domains, release, [0.1, 0.2])
     assert "[0.1, 0.2] must be the ϖ of a contact with a 1-T orbit" in line

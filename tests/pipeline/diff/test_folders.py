@@ -201,8 +201,9 @@ def test_generated_names_and_last_digits_of_a_drawing_may_differ(pair):
     assert pair.artifact("fig05").outcome is Outcome.IDENTICAL
 
 
-@pytest.mark.parametrize("side", ["record", "new"])
-@pytest.mark.parametrize("text", ["{", "[1", "7", "[[1]]"])
+@pytest.mark.parametrize(
+    ("side", "text"), [("record", "{"), ("new", "[1"), ("record", "7"), ("new", "[[1]]")]
+)
 def test_a_damaged_provenance_is_named_and_the_rest_is_compared(pair, side, text):
     path = getattr(pair, side) / "figures" / "fig05.nc"
     write_dataset(pair.dataset("fig05").assign_attrs(provenance_versions=text), path)

@@ -48,7 +48,8 @@ map: its function gives it for that map, and by default that of the exact return
 (Eq. 23) is searched on the motion of Eq. 12 as the class ``ClosedFormMotion`` of the linear contact
 writes it.
 
-Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The paper solves Eqs. 21-26 by
+Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
+Eqs. 21-26, are written out in ``periodic.one_impact.paper_unknowns``. The paper solves them by
 continuation; at a given duration of the contact they are linear, so that the library also has
 their solutions in closed form. The force release, at which the contact force vanishes, is a variant
 of the paper's release (Eq. 23) and costs one symbol, κ.

@@ -50,5 +50,7 @@ def test_a_chosen_law_is_assessed_and_written():
 
 def test_a_chosen_contact_is_written_with_its_stiffness():
     chosen = choose_contact(TABLE, Contact(mass="20 g", restitution=0.85))
+    assert repr(chosen).startswith("Choice(n=1, verdict='A simulation needs a contact of at least")
+    assert "14.89 MN/m" in repr(chosen) and len(repr(chosen)) < 300
     written = write_contact(chosen.contact, EngineSetup(engine="lammps"))
     assert written.parameters["kn"] == pytest.approx(chosen.stiffness, rel=1.01e-6)

@@ -29,7 +29,7 @@ from bouncing_ball.periodic.one_impact import n_t
 _STIFFER = 1 + 1e-6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Choice:
     """The most compliant contact whose restitution model is within a tolerance, in SI units.
 
@@ -48,6 +48,10 @@ class Choice:
     n: int
     needed: Needed
     case: ResolvedContact
+
+    def __repr__(self) -> str:
+        """The family and the contact with its units, in a sentence."""
+        return f"Choice(n={self.n}, verdict={self.verdict!r})"
 
     @classmethod
     def of(cls, case: ResolvedContact, n: int, needed: Needed) -> "Choice":

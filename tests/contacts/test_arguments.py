@@ -16,7 +16,7 @@ BALL = bouncing_ball.rigid(restitution=0.5)
 
 
 @pytest.mark.parametrize(("call", "arguments", "words"), [
-    ("assess_contact", (CONTACT, TABLE), "table = Contact is not a Table"),
+    ("assess_contact", (CONTACT, TABLE), "table = Contact(mass=0.02, stiffness=10000000.0, rest"),
     ("assess_contact", (TABLE, CONTACT, 0.05), "question = 0.05 is not a Question"),
     ("assess_contact", (TABLE, CONTACT, 0), "question = 0 is not a Question"),
     ("assess_contact", (TABLE, BALL), "is not a Contact"),

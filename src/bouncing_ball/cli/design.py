@@ -16,7 +16,7 @@ from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment, LargestTimeStep, assess
 from bouncing_ball.contacts.choose import choose
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, description_of
+from bouncing_ball.contacts.describe import Description, describe_contact, description_of
 from bouncing_ball.contacts.drops import drop_at_rest
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.quantities import quantities
@@ -111,9 +111,7 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         read |= _quantities_of(table)
         found, engine = _on_table(contact, table, question, setup)
     else:
-        found, engine = _at_rest(
-            contact, TableMotion.at_rest(si.get("gravity")), setup, si.get("speed")
-        )
+        found, engine = _at_rest(contact, si.get("gravity"), setup, si.get("speed"))
     dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
     at_step = None if engine is None else engine.at_step
     other = None
@@ -188,12 +186,12 @@ def _on_table(
 
 
 def _at_rest(
-    contact: Contact, table: TableMotion, setup: EngineSetup | None, speed: float | None
+    contact: Contact, gravity: float | None, setup: EngineSetup | None, speed: float | None
 ) -> tuple[Description, EngineSettings | None]:
     """The contact without a table, and what to write into an engine."""
     if setup is None:
-        return description_of(resolve(contact, table, speed=speed)), None
-    found = description_of(resolve_for(contact, setup, table, speed))
+        return describe_contact(contact, gravity, speed), None
+    found = description_of(resolve_for(contact, setup, TableMotion.at_rest(gravity), speed))
     return found, settings_for(found.case, setup)
 
 

@@ -146,7 +146,7 @@ class Assessment:
         """The judgement in words, or the contact that was chosen."""
         if self.chosen is None:
             law = None if self.case.is_linear else self.case.law.name
-            found = said_of_orbit(self.on_orbit, self.case.linear, law)
+            found = said_of_orbit(self.on_orbit, self.case.contact.linear, law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         if self.on_motion is not None:
@@ -264,7 +264,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     one = _judged(found, choice, None if question.n is not None else ends)
     is_rare = question.n is None and one.attracts and ends.of_orbit(one.n) < FEW
     if choice is None:
-        need = needed(question.quantity, question.tolerance, case.linear, one.n, amplitude)
+        need = needed(question.quantity, question.tolerance, contact.linear, one.n, amplitude)
     else:
         need = choice.needed
     signature = case.instant(one.n)

@@ -23,12 +23,18 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 
+# The error falls as 1/ϖ or faster. A stiffness that is larger by a millionth therefore has it
+# within the tolerance by half a millionth of this at least: more than the rounding errors of
+# heights, 1e-15, for tolerances down to 1e-8.
+_STIFFER = 1 + 1e-6
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Choice:
     """The most compliant contact whose restitution model is within a tolerance, in SI units.
 
-    ``n`` is the family of the orbit, and ``needed`` the ϖ that the tolerance needs.
+    ``n`` is the family of the orbit, and ``needed`` the ϖ that the tolerance needs. As an argument
+    of other calls it is ``contact``.
     """
 
     mass: float
@@ -42,6 +48,10 @@ class Choice:
     n: int
     needed: Needed
     case: ResolvedContact
+
+    def __repr__(self) -> str:
+        """The family and the contact with its units, in a sentence."""
+        return f"Choice(n={self.n}, verdict={self.verdict!r})"
 
     @classmethod
     def of(cls, case: ResolvedContact, n: int, needed: Needed) -> "Choice":
@@ -59,6 +69,18 @@ class Choice:
             needed=needed,
             case=case,
         )
+
+    @property
+    def contact(self) -> Contact:
+        """The contact that was given, with the stiffness that was chosen, or for another law the
+        contact time, to be assessed or written.
+
+        The error at ``stiffness`` is the tolerance up to rounding errors, which may be on either
+        side of it. Here the stiffness is larger by a millionth, so that the error is within.
+        """
+        if self.case.is_linear:
+            return replace(self.case.given, stiffness=self.stiffness * _STIFFER)
+        return replace(self.case.given, contact_time=self.contact_time)
 
     @property
     def verdict(self) -> str:
@@ -97,11 +119,16 @@ def choose_contact(table: Table, contact: Contact, question: Question | None = N
 
     Examples
     --------
-    >>> found = choose_contact(
-    ...     Table(frequency="50 Hz", acceleration="1 g"), Contact(mass="20 g", restitution=0.65)
-    ... )
+    >>> table = Table(frequency="50 Hz", acceleration="1 g")
+    >>> found = choose_contact(table, Contact(mass="20 g", restitution=0.65))
     >>> f"{found.stiffness:.4g} N/m, {found.contact_time:.3g} s", round(found.frequency_ratio, 2)
     ('1.36e+07 N/m, 0.000122 s', 83.0)
+
+    It is assessed, or written for an engine, as ``found.contact``:
+
+    >>> from bouncing_ball.contacts.assess import assess_contact
+    >>> assess_contact(table, found.contact).is_good_enough
+    True
     """
     asked = Question() if question is None else question
     of = {"table": (table, Table), "contact": (contact, Contact), "question": (asked, Question)}

@@ -23,6 +23,7 @@ from bouncing_ball.contacts.quantities import (
     YoungsModulus,
     convert,
     given,
+    text_of_given,
 )
 from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball.models.damping import Release
@@ -69,7 +70,7 @@ def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 @suggesting
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Contact:
     """A ball and its contact with a table, by any parameters that determine them.
 
@@ -141,8 +142,8 @@ class Contact:
     Examples
     --------
     >>> contact = Contact(mass="20 g", stiffness="1e4 kN/m", restitution="85 %")
-    >>> contact.mass, contact.stiffness, contact.restitution
-    (0.02, 10000000.0, 0.85)
+    >>> contact
+    Contact(mass=0.02, stiffness=10000000.0, restitution=0.85)
     """
 
     mass: Mass = None
@@ -166,6 +167,8 @@ class Contact:
     solref: str | Sequence[float] | None = None
     solimp: str | Sequence[float] | None = None
     parameters: Mapping[str, float] | None = None
+
+    __repr__ = text_of_given
 
     def __post_init__(self) -> None:
         convert(self)

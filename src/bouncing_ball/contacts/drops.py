@@ -63,7 +63,7 @@ def drop_at_rest(case: ResolvedContact, speed: Speed) -> Dropped:
     (0.2039, 0.6615, 0.6297)
     """
     law = case.law
-    unit = case.table.length / case.table.time
+    unit = case.unit_speed
     length = case.table.length
     first, half, tenth = rises(law, np.array([1.0, 0.5, 0.1]) * speed / unit)
     # Each bounce arrives with the speed of its rise.

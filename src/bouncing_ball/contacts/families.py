@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy import error_law, errors
 from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
 from bouncing_ball.contacts.needed import finite
 from bouncing_ball.contacts.rebounds import greatest_loads
@@ -185,8 +185,8 @@ def families(
     n = np.array(asked)
     lam = case.table.amplitude
     exact, *simple = case.models.values()
-    of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD) for model in simple]
     near = np.ones(n.shape, dtype=bool)
+    of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD, near) for model in simple]
     if not case.is_linear:
         near = can_carry(case.law, n, lam)
         if case.contact.frequency_ratio > _STIFF:
@@ -241,22 +241,20 @@ def _in_model(
     n: np.ndarray,
     amplitude: float,
     permanent_contact: float,
-    near: np.ndarray | None = None,
+    near: np.ndarray,
 ) -> tuple[Orbit, list[np.ndarray]]:
     """The n-T orbits of one model and the values of all quantities, in the order of Quantity.
 
     Families that are not ``near`` Λ have neither orbits nor bifurcations in the result.
     """
-    node = np.full(n.shape, np.nan)
-    doubling = np.full(n.shape, np.nan)
-    which = np.ones(n.shape, dtype=bool) if near is None else near
-    if which.any():
-        node[which] = n_t.saddle_node(model, n[which]).amplitude
-        doubling[which] = n_t.period_doubling(model, n[which]).amplitude
+    bifurcations = np.full((2, *n.shape), np.nan)
+    if near.any():
+        both = Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING
+        bifurcations[:, near] = errors.values(model, n[near], amplitude, both)
     # Below its saddle-node a model has no orbit, so that none is searched for.
-    orbit = n_t.orbit(model, n, np.where((amplitude < node) | ~which, np.nan, amplitude))
+    orbit = n_t.orbit(model, n, np.where((amplitude < bifurcations[0]) | ~near, np.nan, amplitude))
     of_orbits = [getattr(orbit, quantity) for quantity in OF_ORBITS]
-    return orbit, [*of_orbits, node, doubling, np.full(n.shape, permanent_contact)]
+    return orbit, [*of_orbits, *bifurcations, np.full(n.shape, permanent_contact)]
 
 
 def _no_orbit(

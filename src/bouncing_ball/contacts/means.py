@@ -147,7 +147,7 @@ def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     """
     speed = _impact_speed(case, end)
     if not case.is_linear and not _is_of_impact(case.law, speed):
-        linear = replace(case, law=case.linear, beside=None)
+        linear = replace(case, law=case.contact.linear, beside=None)
         return {NO_CHANGE: linear} | _changed(linear, end)
     found = {"r -0.1 %": _with(case, speed, restitution=1 - _CHANGE)}
     if float(case.contact.restitution) * (1 + _CHANGE) <= 1:

@@ -26,7 +26,7 @@ def chart_and_motion(design: Assessment) -> xr.Dataset:
     (model, time); and ``gap`` (model, since). Values are NaN where there is no orbit or threshold.
     """
     table = design.case.table
-    rule = design.case.linear.release
+    rule = design.case.contact.linear.release
     # The smallest r is that at which Λ is the saddle-node, unless the r of the contact is smaller.
     half = design.n * np.pi
     lam = table.amplitude

@@ -112,6 +112,19 @@ def given(data: Any) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value is not None}
 
 
+def text_of_given(data: Any) -> str:
+    """A dataclass as Python shows it, with the fields that are given only.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.contact import Contact
+    >>> Contact(mass="2 g", restitution=1)
+    Contact(mass=0.002, restitution=1.0)
+    """
+    named = (f"{name}={value!r}" for name, value in given(data).items())
+    return f"{type(data).__name__}({', '.join(named)})"
+
+
 def single(data: Mapping[str, Any], names: Sequence[str], what: str, give: str = "") -> str:
     """Name of the single one of these parameters that is given.
 

@@ -75,7 +75,7 @@ class ResolvedContact:
         "mass": "mass",
         "table": "table",
         "contact": "contact",
-        "law": "law_unless_linear",
+        "law": "integrated_law",
     }
 
     mass: float
@@ -116,7 +116,7 @@ class ResolvedContact:
         return self.law
 
     @property
-    def law_unless_linear(self) -> ContactLaw | None:
+    def integrated_law(self) -> ContactLaw | None:
         """The law that is integrated in time; None for a linear contact."""
         return None if self.is_linear else self.law
 
@@ -178,11 +178,6 @@ class ResolvedContact:
             found = slowed(self.law, _FAST * rest(self.law) * self.omega * self.table.time)
             unit = self.unit_speed
         return None if found is None else found * unit
-
-    @property
-    def linear(self) -> SpringDamper:
-        """The linear contact with the r and the duration of the exact one."""
-        return self.contact.linear
 
     @property
     def unit_speed(self) -> float:

@@ -49,7 +49,7 @@ map: its function gives it for that map, and by default that of the exact return
 writes it.
 
 Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
-Eqs. 21-26, are written out in ``periodic.one_impact.paper_unknowns``. The paper solves them by
+Eqs. 21-26, are written out where they are in the unknowns of the paper. The paper solves them by
 continuation; at a given duration of the contact they are linear, so that the library also has
 their solutions in closed form. The force release, at which the contact force vanishes, is a variant
 of the paper's release (Eq. 23) and costs one symbol, κ.

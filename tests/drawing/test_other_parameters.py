@@ -204,7 +204,8 @@ def test_the_cascade_under_the_other_release(other, accepted):
 
 
 def test_numbers_and_verdicts_follow_the_data(record, recorded, texts, accepted):
-    moved = {name: data.copy(deep=True) for name, data in record.items()}
+    changed = ("fig14", "table1", "formulas")
+    moved = record | {name: record[name].copy(deep=True) for name in changed}
     moved["fig14"]["error_threshold"].values[...] = 77.77
     # One last printed digit of one entry, and one formula that is wrong.
     moved["table1"]["computed"].values[0, 0, 0] += 1e-5

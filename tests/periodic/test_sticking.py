@@ -84,8 +84,8 @@ def ended(along, amplitude, restitution, to):
 CASES = [
     ("amplitude", 1.3744, 0.4847, 2.4),
     ("amplitude", 2.4643, 0.5577, 1.1),
-    ("restitution", 1.3744, 0.4847, 0.9),
     ("restitution", 3.4664, 0.2341, 0.9),
+    ("restitution", 1.3744, 0.4847, 0.9),
 ]
 
 

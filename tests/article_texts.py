@@ -71,6 +71,19 @@ def record(recorded):
     return {name: data for name, data in recorded.items() if name not in DERIVED}
 
 
+# Those that were made, each with its dataset, so that no other one gets the same id.
+KNOWN: dict = {}
+
+
+def tables_of(name, data):
+    """The table of a dataset in all formats, made once of a dataset that several texts share."""
+    if (name, id(data)) not in KNOWN:
+        table = TABLES[name](data)
+        made = {form.__name__: form(*table) for form in (to_csv, to_markdown)}
+        KNOWN[name, id(data)] = data, made
+    return KNOWN[name, id(data)][1]
+
+
 def all_texts(data, verdicts=None):
     """All tables in all formats, the articles and the supplement.
 
@@ -78,11 +91,9 @@ def all_texts(data, verdicts=None):
     """
     data = {**data, "claims": claims(data)}
     data["ext_verdicts"] = certified_verdicts(data) if verdicts is None else verdicts
-    made = {}
-    for name, draw in TABLES.items():
-        table = draw(data[name])
-        for form in (to_csv, to_markdown):
-            made[name, form.__name__] = form(*table)
+    made = {
+        (name, form): text for name in TABLES for form, text in tables_of(name, data[name]).items()
+    }
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     other = [path for path in (ROOT / "config").glob("*.nc") if path.stem not in data]
     data |= {path.stem: read_dataset(path) for path in other}

@@ -1,5 +1,6 @@
 """The dataset of an artifact draws its figure, in the axes, size and fonts that a user asks for."""
 
+import functools
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -21,6 +22,7 @@ PARAMETERS = {"n", "restitution", "amplitude", "frequency_ratio"}
 ACCEPTED = sorted(each.name for each in ARTIFACTS.values() if each.drawing and each.accepted)
 
 
+@functools.cache
 def opened(name):
     """The dataset of an artifact, from its file in the record, or from the accepted one."""
     artifact = ARTIFACTS[name]

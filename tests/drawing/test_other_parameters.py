@@ -36,7 +36,6 @@ OTHERS = [
     ("fig06", {"cases": cases((0.655, 1.001), (0.65, 1.0005), (0.123456, 2.54321))}),
     ("fig07", {"frequency_ratio": 1.5}),
     ("fig08", {"frequency_ratio": [2.5e5, 100.0, 20.0, 10.0, 5.0, 3.0, 2.0], "points": 21}),
-    ("fig09", {"frequency_ratio": [10.0, 0.3, 0.2], "points": 21}),
     ("fig10", {"amplitude": [0.52, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1], "frequency_ratio": SPAN}),
     ("fig11", {"restitution": 0.2}),
     (
@@ -54,6 +53,8 @@ FURTHER = [
     ("fig07", {"frequency_ratio": 1000.0}),
     ("fig07", {"n": 5, "amplitude": 1.5}),
     ("fig08", {"frequency_ratio": [1e4, 20.0, 10.0, 2.0], "points": 61}),
+    # Drawn by the function of fig08.
+    ("fig09", {"frequency_ratio": [10.0, 0.3, 0.2], "points": 21}),
     ("fig11", {"frequency_ratio": {"min": 0.1, "max": 0.5, "samples": 31}}),
     ("fig13", {"amplitude": [1.0, 0.75], "frequency_ratio": SPAN}),
     ("fig14", {"tolerance": 1e-4, "frequency_ratio": SPAN}),
@@ -204,7 +205,8 @@ def test_the_cascade_under_the_other_release(other, accepted):
 
 
 def test_numbers_and_verdicts_follow_the_data(record, recorded, texts, accepted):
-    moved = {name: data.copy(deep=True) for name, data in record.items()}
+    changed = ("fig14", "table1", "formulas")
+    moved = record | {name: record[name].copy(deep=True) for name in changed}
     moved["fig14"]["error_threshold"].values[...] = 77.77
     # One last printed digit of one entry, and one formula that is wrong.
     moved["table1"]["computed"].values[0, 0, 0] += 1e-5

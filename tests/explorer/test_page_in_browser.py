@@ -35,7 +35,7 @@ from bouncing_ball.pipeline.configuration import typed
 pytestmark = pytest.mark.slow
 
 REFERENCES = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 50}, "seed": 31}
-STATES = 24
+STATES = 12
 
 # The page that looks at the page: what it sees is JSON in its element "seen".
 OBSERVER = Path(__file__).with_name("observer.html").read_text(encoding="utf-8")
@@ -294,7 +294,12 @@ def agree(page, expected, **bounds):
     assert found == pytest.approx(expected, **bounds)
 
 
-CASES = [pytest.param(k, id="-".join(case)) for k, case in enumerate(GIVEN)]
+# Each engine and each release once; weekly both releases of every engine.
+SELDOM = (("stiffness", "lammps", "force"), ("stiffness", "liggghts", "force"))
+CASES = [
+    pytest.param(k, id="-".join(case), marks=pytest.mark.long if case in SELDOM else ())
+    for k, case in enumerate(GIVEN)
+]
 
 
 @pytest.mark.parametrize("case", CASES)

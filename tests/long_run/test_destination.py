@@ -314,7 +314,7 @@ def test_a_verdict_says_how_long_the_ball_was_followed():
 
 def test_chaos_on_a_contact_may_stick_again_and_again_but_not_after_an_instant():
     """A contact that lasts long shrinks deviations by a finite factor, an instant forgets."""
-    lam = np.linspace(2.8, 4.0, 30)
+    lam = np.linspace(2.8, 4.0, 15)
     stiff = final_motions(SpringDamperModel(contact(0.7, 100.0)), lam, 1.0, -5.0, impacts=600)
     assert (stiff.times_stuck[stiff.kind == "chaotic"] > 2).any()
     rigid = final_motions(RestitutionModel(0.7), lam, 1.0, -5.0, impacts=600)

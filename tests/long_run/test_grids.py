@@ -124,7 +124,7 @@ def test_every_answer_draws_itself(given, tmp_path):
 
 def test_the_command_line_says_the_same(capsys, tmp_path, monkeypatch):
     # Shares of other starts are not asserted here.
-    monkeypatch.setattr("bouncing_ball.cli.long_run._OTHER_STARTS", 3)
+    monkeypatch.setattr("bouncing_ball.cli.long_run._OTHER_STARTS", 2)
     main("motion --restitution 0.6 --amplitude 3 --frequency-ratio 80 --json".split())
     answer = json.loads(capsys.readouterr().out)
     assert (answer["kind"], answer["periods"], answer["impacts"]) == ("locked", 8, 11)

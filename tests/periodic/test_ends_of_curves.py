@@ -260,7 +260,9 @@ def test_a_branch_does_not_list_the_saddle_node_at_which_it_starts(name):
         assert place == pytest.approx(ends.period_doubling.amplitude, abs=1e-10)
 
 
-@pytest.mark.parametrize(("restitution", "ratio"), [(0.85, 2.0), (0.3, 1.5)])
+@pytest.mark.parametrize(
+    ("restitution", "ratio"), [(0.85, 2.0), pytest.param(0.3, 1.5, marks=pytest.mark.long)]
+)
 def test_branch_and_follow_name_permanent_contact_in_the_same_words(restitution, ratio):
     ball = bouncing_ball.spring_damper(restitution=restitution, frequency_ratio=ratio)
     whole = bouncing_ball.branch(ball)

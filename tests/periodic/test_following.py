@@ -114,7 +114,7 @@ def test_a_motion_starts_the_continuation_of_the_orbit_on_which_it_ends():
 
 def test_a_chaotic_motion_is_on_no_orbit(refusal):
     with refusal(NoOrbitError, "ends on no orbit that could be followed: it is chaotic"):
-        of_motion(balls("restitution", 2.0, restitution=0.85).model, 2.0, 1.0, -3.0)
+        of_motion(balls("restitution", 2.0, restitution=0.85).model, 2.0, 1.0, -3.0, 300)
 
 
 def test_a_contact_law_is_followed_along_its_stiffness():

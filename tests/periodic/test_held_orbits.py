@@ -179,10 +179,10 @@ def test_grazing_flights_are_where_the_simulation_changes(case):
 @pytest.mark.slow
 def test_basins_and_diagrams_are_those_of_the_motions():
     ball, _, amplitude = ball_of("drag")
-    shares = bouncing_ball.basins(ball, amplitude=amplitude, starts=3, impacts=100)
+    shares = bouncing_ball.basins(ball, amplitude=amplitude, starts=2, impacts=60)
     assert abs(float(shares.share.sum()) - 1) < 1e-12
     lam = [0.9 * amplitude, amplitude]
-    diagram = bouncing_ball.orbit_diagram(ball, amplitude=lam, starts=2, impacts=150)
+    diagram = bouncing_ball.orbit_diagram(ball, amplitude=lam, starts=1, impacts=100)
     checked = 0
     for k, each in enumerate(lam):
         one = bouncing_ball.orbit(ball, amplitude=each)

@@ -91,6 +91,11 @@ def test_a_study_that_fails_is_listed_and_all_else_is_made_and_compared(recorded
     reason = "restitution_model_study/fig02: no orbit"
     *_, failed, waiting = done.stderr.splitlines()
     assert done.returncode == 1 and failed == f"not made: fig02 ({reason})"
+    # Before them, where its log is, which alone has the sources.
+    log = "results/logs/stages/fig02.log"
+    said = done.stdout + done.stderr
+    assert f"{reason} (details in {log})" in said and "src/bouncing_ball" not in said
+    assert "src/bouncing_ball" in (recorded.path / log).read_text(encoding="utf-8")
     # Snakemake gives them in an order of its own.
     waiting = waiting.removeprefix("not made: ").removesuffix(" (needs fig02)").split(", ")
     assert {"claims", "paper", "tally"} <= {*waiting}

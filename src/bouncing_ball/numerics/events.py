@@ -122,9 +122,11 @@ def locate(
     return SpecialPoint(event.name, found.point)
 
 
-def _bend(share: float, chord: np.ndarray, tangents: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+def _bend(
+    share: float, chord: np.ndarray, tangents: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:  # Hermite's cubic
     """The distance of a branch from a share of its chord, by the cubic with these unit tangents at
-    the ends of the chord (Hermite).
+    the ends of the chord.
 
     Examples
     --------

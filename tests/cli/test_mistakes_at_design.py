@@ -64,6 +64,10 @@ BALL TABLE --release Force
     argument --release: invalid choice: 'Force' (choose from 'displacement', 'force', 'approach');
 BALL TABLE --law Hertz
     --law Hertz has no damper: Hertz's spring with a damper is --law tsuji, or give --radius and
+BALL TABLE --law Hertz --release force
+    --law Hertz has no damper: Hertz's spring with a damper is --law tsuji, or give --radius and
+BALL TABLE --law hertz --engine lammps
+    --law hertz has no damper: Hertz's spring with a damper is --law tsuji, or give --radius and
 --mass "20 g" TABLE --contact-time "1 ms" --restitution 0.8 --law Tsuji
     unknown contact law 'Tsuji': one of hunt-crossley, hunt-crossley-linear, tsuji,
 --mass "20 g" TABLE --radius "5 mm" --restitution 0.8

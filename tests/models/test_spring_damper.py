@@ -105,9 +105,12 @@ def in_many_digits(contact, amplitude, velocity, phase, time):
         u, phi, s = map(mpmath.mpf, (velocity, phase, time))
         damped = omega * mpmath.sqrt(1 - zeta**2)
         gamma = (omega**2 - 1) ** 2 + (2 * zeta * omega) ** 2
-        in_phase, quadrature = (omega**2 - 1) / gamma, -2 * zeta * omega / gamma
-        x, y = lam * mpmath.cos(phi), lam * mpmath.sin(phi)
-        sine, cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
+        in_phase = (omega**2 - 1) / gamma
+        quadrature = -2 * zeta * omega / gamma
+        x = lam * mpmath.cos(phi)
+        y = lam * mpmath.sin(phi)
+        sine = in_phase * x - quadrature * y
+        cosine = in_phase * y + quadrature * x
         a = 1 / omega**2 - cosine
         b = (u - sine + zeta * omega * a) / damped
         free = a * mpmath.cos(damped * s) + b * mpmath.sin(damped * s)
@@ -127,7 +130,9 @@ def test_next_to_the_undamped_resonance_a_motion_has_all_its_digits(detuning, ze
     rng = np.random.default_rng(1)
     contact = SpringDamper(1 + detuning, zeta)
     for _ in range(20):
-        lam, velocity, phase = rng.uniform(0.3, 3), -rng.uniform(0.1, 3), rng.uniform(-3, 3)
+        lam = rng.uniform(0.3, 3)
+        velocity = -rng.uniform(0.1, 3)
+        phase = rng.uniform(-3, 3)
         dynamics = SpringDamperModel(contact).dynamics(np.array([lam]))
         impact = dynamics.start(np.array([phase]), np.array([velocity]))
         inside = dynamics.release_function(impact, dynamics.depart(impact))

@@ -150,7 +150,7 @@ def choose(
     plain = contact.by_stiffness_and_loss(written)
     if plain.is_stiff:
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
-    if plain.law_unless_linear is not None:
+    if plain.law_unless_spring_damper is not None:
         return _of_law(contact, table, question, written)
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)

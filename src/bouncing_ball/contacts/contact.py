@@ -192,7 +192,7 @@ class Contact:
             raise ParameterError("{rebound_height} and {drop_height} are needed together")
 
     @property
-    def law_unless_linear(self) -> type[ContactLaw] | None:
+    def law_unless_spring_damper(self) -> type[ContactLaw] | None:
         """The class of the contact law; None for a spring and a damper, named or not.
 
         Raises
@@ -200,6 +200,12 @@ class Contact:
         ModelError
             If there is no such law.
         """
+        name = str(self.law)
+        if name.casefold() in ("hertz", "hertzian"):
+            raise ParameterError(
+                f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or "
+                "give {radius} and {reduced_modulus} in place of {law}"
+            )
         kind = SpringDamper if self.law is None else law_named(self.law)
         return None if kind is SpringDamper else kind
 
@@ -212,7 +218,7 @@ class Contact:
         ModelError
             If there is no such rule, or no such law.
         """
-        law = self.law_unless_linear or SpringDamper
+        law = self.law_unless_spring_damper or SpringDamper
         return Release.of(self.release or law.release)
 
     @property
@@ -258,7 +264,7 @@ class Contact:
         >>> found.stiffness, found.damping, found.release
         (100.0, 2.0, 'force')
         """
-        if self.release is not None and self.law_unless_linear is not None:
+        if self.release is not None and self.law_unless_spring_damper is not None:
             raise ParameterError(
                 f"{{release}} is not allowed with {{law}} {self.law}, which has its own"
             )
@@ -308,6 +314,6 @@ class Contact:
         if is_hertz and Tsuji.name not in engine.laws:
             raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
         law = engine.laws.get(str(self.law), self.law)
-        if self.law_unless_linear is not None and law not in engine.laws.values():
+        if self.law_unless_spring_damper is not None and law not in engine.laws.values():
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")
         return replace(self, release=rule, law=law, **self._measured())

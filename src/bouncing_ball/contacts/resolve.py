@@ -102,22 +102,18 @@ def law_type(contact: Contact) -> type[ContactLaw] | None:
     >>> law_type(Contact(law="hunt-crossley", contact_time="1 ms")).name
     'hunt-crossley'
     """
-    name = str(contact.law)
-    if name.casefold() in ("hertz", "hertzian"):
-        raise ParameterError(
-            f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or give "
-            "{radius} and {reduced_modulus} in place of {law}"
-        )
-    kind = contact.law_unless_linear
+    kind = contact.law_unless_spring_damper
     if kind is None:
         return None
     for other in _NOT_OF_A_LAW:
         if getattr(contact, other) is not None:
             instead = "give {contact_time} and {restitution}"
-            raise ParameterError(f"{{{other}}} is not allowed with {{law}} {name}: {instead}")
+            raise ParameterError(
+                f"{{{other}}} is not allowed with {{law}} {contact.law}: {instead}"
+            )
     if contact.contact_time is None:
         raise ParameterError(
-            f"{{law}} {name} needs {{contact_time}}, the duration of a free impact"
+            f"{{law}} {contact.law} needs {{contact_time}}, the duration of a free impact"
         )
     return kind
 

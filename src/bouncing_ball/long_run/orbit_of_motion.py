@@ -66,7 +66,8 @@ def orbit_of_motion(
     before = checked_number("velocity", velocity, START)
     most = checked_number("impacts", impacts, FOLLOWED)
     grid, first = first_impacts(ball, lam, phi, before)
-    for name in grid.coords:
+    if grid.shape:
+        name = next(iter(grid.coords))
         raise ParameterError(f"{{{name}}} must be a single number here")
     return of_motion(first.model(ball, grid), lam, phi, before, most)
 

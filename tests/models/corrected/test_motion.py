@@ -132,7 +132,8 @@ class Falling(NamedTuple):
 
     def missing(self, t):
         """δ + h(v) after a time t, and its rounding error."""
-        lam, phase = self.amplitude, self.phase
+        lam = self.amplitude
+        phase = self.phase
         speed = self.speed + t + lam * (np.cos(phase + t) - np.cos(phase))
         delay = self.delay(speed)
         falls = (lam * np.cos(phase) - self.speed) * t - t * t / 2
@@ -153,9 +154,11 @@ def test_the_instant_after_a_slow_landing_is_the_first(contact, count):
     """At the instant δ + h is 0 up to rounding, and before it positive."""
     rng = np.random.default_rng(8)
     for _ in range(count):
-        r, ratio = rng.uniform(0.05, 1.0), np.exp(rng.uniform(np.log(2.2), np.log(200.0)))
+        r = rng.uniform(0.05, 1.0)
+        ratio = np.exp(rng.uniform(np.log(2.2), np.log(200.0)))
         model = CorrectedModel.of_contact(contact(r, ratio))
-        lam, phase = rng.uniform(0.0, 4.0), rng.uniform(-np.pi, np.pi)
+        lam = rng.uniform(0.0, 4.0)
+        phase = rng.uniform(-np.pi, np.pi)
         delay = float(model.signature(1.0).delay)
         speed = delay * np.exp(rng.uniform(np.log(1e-3), np.log(4 * (1 + lam))))
         descent = model.dynamics(np.array([lam]))._descent

@@ -4,6 +4,7 @@ In reading order:
 
 ``balls``         balls whose parameters are known by name, so that any of them can vary
 ``legs``          one leg of an orbit: a contact, and the flight after it
+``highest``       the highest points of motions, from samples that close in on them
 ``release``       the highest point within a contact, which touches the release where it grazes
 ``beside``        the legs at points and beside them, and the derivatives that follow
 ``products``      the monodromy of an orbit as a product of the matrices of its legs

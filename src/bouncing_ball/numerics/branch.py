@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, plane
-from bouncing_ball.numerics.events import SpecialPoint
+from bouncing_ball.numerics.events import SpecialPoint, bend
 
 _TINY = np.finfo(float).tiny
 
@@ -101,7 +101,7 @@ def _between(
     before = width * tangents[k] - chord
     after = width * tangents[k + 1] - chord
     rest = 1 - s
-    at = points[k] + s * chord + s * rest * (rest * before - s * after)
+    at = points[k] + s * chord + bend(s, before, after)
     slope = chord + rest * (rest - 2 * s) * before - s * (2 * rest - s) * after
     return at, slope / np.linalg.norm(slope, axis=-1, keepdims=True)
 

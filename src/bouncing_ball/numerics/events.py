@@ -8,7 +8,7 @@ alone, so that its limits on the branch are located by bisection.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,9 @@ _DIFFERENCE = 6e-6
 _PATIENT = NewtonSettings(max_iterations=20)
 # Rounding may move a zero at an end of the bracket outside, by at most this part of the bracket.
 _SLACK = 1e-6
+# A defect of this size is a hundred roundings. A test function that is as small before and after a
+# step may have it at its zero as well.
+_DEFECT = 1e-13
 # A chord is divided at these shares, at points that are computed together, which costs hardly more
 # than one point does; and the largest number of such divisions.
 _SHARES = np.linspace(0.0, 1.0, 17)[1:-1, np.newaxis]
@@ -100,10 +103,10 @@ def locate(
     """The zero of an event between two points of the branch, each of shape (N + 1,).
 
     Newton's method on the extended system starts from the secant estimate. The result is None if
-    the method does not converge, or converges outside the bracket, because a step of the
-    continuation was too long or because there is no zero. ``values`` are those of the test function
-    and ``tangents`` those of the branch at the two points, if they are known. With tangents the
-    estimate lies on a cubic through the two points, and not on their chord.
+    the method does not converge, or converges outside the bracket or to no zero, because a step of
+    the continuation was too long or because there is none. ``values`` are those of the test
+    function and ``tangents`` those of the branch at the two points, if they are known. With
+    tangents the estimate lies on a cubic through the two points, and not on their chord.
     """
     if event.is_sign:
         last = domain_limits(problem, lambda y: event.function(y) > 0, np.stack([left, right]))
@@ -113,31 +116,38 @@ def locate(
     share = before / (before - after)
     guess = left + share * chord
     if tangents is not None:
-        guess += _bend(share, chord, tangents)
+        length = np.linalg.norm(chord)
+        begins, ends = (length * tangent - chord for tangent in tangents)
+        guess += bend(share, begins, ends)
     condition = event.condition or vanishing(event.function)
     found = newton(problem, guess, condition, settings)
     progress = (found.point - left) @ chord / (chord @ chord)
-    if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
+    # Where a test function and its differences become large without bounds, a short step is no sign
+    # of a zero.
+    vanishes = found.residual <= max(abs(before), abs(after), _DEFECT)
+    if not (found.converged and vanishes and -_SLACK <= progress <= 1 + _SLACK):
         return None
     return SpecialPoint(event.name, found.point)
 
 
-def _bend(
-    share: float, chord: np.ndarray, tangents: tuple[np.ndarray, np.ndarray]
-) -> np.ndarray:  # Hermite's cubic
-    """The distance of a branch from a share of its chord, by the cubic with these unit tangents at
-    the ends of the chord.
+def bend(share: Any, begins: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """What is to be added to the point at a share of a chord, so that it lies on Hermite's cubic.
+
+    Parameters
+    ----------
+    share : float or array
+        The place on the chord, from 0 to 1.
+    begins, ends : ndarray
+        The tangents of the cubic at the ends of the chord, as long as it, minus the chord.
 
     Examples
     --------
-    The parabola (s, s²/1000) between s = 0 and s = 1, whose tangents have almost equal lengths:
+    The parabola (s, s²) between s = 0 and s = 1, with the tangents (1, 0) and (1, 2):
 
-    >>> tangents = np.array([1.0, 0.0]), np.array([1.0, 2e-3])
-    >>> _bend(0.5, np.array([1.0, 1e-3]), tangents).round(9).tolist()
-    [0.0, -0.00025]
+    >>> chord = np.array([1.0, 1.0])
+    >>> bend(0.5, np.array([1.0, 0.0]) - chord, np.array([1.0, 2.0]) - chord).tolist()
+    [0.0, -0.25]
     """
-    length = np.linalg.norm(chord)
-    begins, ends = (length * tangent - chord for tangent in tangents)
     return share * (1 - share) * ((1 - share) * begins - share * ends)
 
 

@@ -23,6 +23,7 @@ from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.ends import (
     AT_BOUND,
+    AtMargin,
     Window,
     events_along,
     flights_vanish,
@@ -328,8 +329,9 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     last = branch.points[-1]
     ends = np.arcsinh(np.array(within))
     at = ends[np.argmin(np.abs(ends - last[-1]))]
-    # An end at an event has the name of the event, and one that only lies next to a limit has none.
-    located = branch.end.event or not branch.end.finished
+    # An end at an event has the name of the event, and one that only lies next to a limit has none,
+    # or was taken for one where the flight vanishes.
+    located = branch.end.event not in ("", AtMargin.FLIGHT) or not branch.end.finished
     if located or not abs(at - last[-1]) < AT_BOUND:
         return branch
     # Rounding of sinh must not lead out of the range.
@@ -338,10 +340,13 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     point, why = solution_at(equations, np.array([*last[:-1], at]), PATIENT)
     if why:
         return branch
+    limits = limits_of(equations, within)
+    reached = next(each for each in limits if abs(float(each.function(point))) < AT_BOUND)
     return replace(
         branch,
         points=np.concatenate([branch.points, [point]]),
         tangents=np.concatenate([branch.tangents, branch.tangents[-1:]]),
+        end=End(reached.reason),
     )
 
 

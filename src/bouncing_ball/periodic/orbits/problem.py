@@ -179,7 +179,8 @@ class OrbitEquations:
         self, phase: np.ndarray, velocity: np.ndarray, duration: np.ndarray, **values: Any
     ) -> np.ndarray:
         """y of orbits from θ, v and D, shape (..., k), and the parameters that vary."""
-        state = np.stack([phase, velocity], axis=-1).reshape(*phase.shape[:-1], -1)
+        state = np.stack([phase, velocity], axis=-1)
+        state = state.reshape(*phase.shape[:-1], 2 * self.impacts)
         coordinates = [np.arcsinh(np.asarray(values[name])) for name in self.along]
         parts = [state]
         if self.selects:

@@ -14,9 +14,9 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball import (
+    ContactModel,
     RestitutionModel,
     SpringDamper,
-    SpringDamperModel,
     contact_law,
     corrected,
     orbit,
@@ -28,7 +28,6 @@ from bouncing_ball import (
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.orbits.stability import Side
@@ -168,7 +167,7 @@ def test_the_name_of_a_side_means_the_side():
 
 def test_a_law_or_a_model_of_ones_own_is_a_ball():
     law = Tsuji(900.0, 0.1)
-    for ball in (contact_law(law), LawModel(law)):
+    for ball in (contact_law(law), ContactModel(law)):
         assert orbit(ball, amplitude=0.9) == orbit(TSUJI, amplitude=0.9)
         assert dict(ball.parameters) == dict(TSUJI.parameters)
 
@@ -176,11 +175,11 @@ def test_a_law_or_a_model_of_ones_own_is_a_ball():
 SPRING = SpringDamper.from_restitution(0.85, 10.0)
 MODELS = [
     (RestitutionModel(0.85), RIGID),
-    (SpringDamperModel(SPRING), CONTACT),
+    (ContactModel(SPRING), CONTACT),
     (CorrectedModel.of_contact(SPRING), corrected(CONTACT)),
-    (LawModel(Tsuji(900.0, 0.1)), TSUJI),
+    (ContactModel(Tsuji(900.0, 0.1)), TSUJI),
 ]
-LINEAR = {"frequency_ratio": 10.0, "damping_ratio": CONTACT.contact.damping_ratio}
+LINEAR = {"frequency_ratio": 10.0, "damping_ratio": CONTACT.law.damping_ratio}
 LINEAR |= {"release": "displacement"}
 LABELS = [
     {"restitution": 0.85},
@@ -220,7 +219,7 @@ def test_models_in_an_array_have_an_axis():
     assert found.identical(same)
     # One value of each parameter for each model, and not a grid of them.
     pairs = SpringDamper(np.array([5.0, 10.0]), np.array([0.05, 0.1]))
-    found = simulate(SpringDamperModel(pairs), amplitude=[0.9, 1.0, 1.1], impacts=3)
+    found = simulate(ContactModel(pairs), amplitude=[0.9, 1.0, 1.1], impacts=3)
     assert dict(found.time.sizes) == {"amplitude": 3, "model": 2, "impact": 3}
     assert found.frequency_ratio.values.tolist() == [5.0, 10.0]
     one = spring_damper(frequency_ratio=10.0, damping_ratio=0.1)
@@ -402,7 +401,7 @@ def test_wrong_values_are_refused_with_the_allowed_ones(call, says, refusal):
 def test_a_contact_that_does_not_oscillate_is_refused_when_its_model_is_made(refusal):
     contact = bouncing_ball.SpringDamper([10.0, 20.0], [0.1, 2.0])
     with refusal(bouncing_ball.ModelError, "damping ratio ζ = 2.0 is not below 1"):
-        bouncing_ball.SpringDamperModel(contact)
+        bouncing_ball.ContactModel(contact)
 
 
 @pytest.mark.parametrize(

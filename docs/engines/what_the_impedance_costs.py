@@ -3,10 +3,9 @@
 import numpy as np
 
 from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 MASS, TABLE, R, AMPLITUDE = 0.5, 2 * np.pi * 20, 0.75, 0.8  # kg, rad/s, r, acceleration in g
@@ -16,10 +15,10 @@ width = 0.001 * TABLE**2 / 9.80665  # 1 mm in units of g/Ω²
 print("k in kN/m  d = 0.95  default")
 for stiffness in (1e5, 1e6, 1e7):
     ratio = np.sqrt(stiffness / MASS) / TABLE
-    spring = SpringDamperModel(SpringDamper(ratio, zeta, Release.FORCE))
+    spring = ContactModel(SpringDamper(ratio, zeta, Release.FORCE))
     heights = [n_t.require_orbit(spring, 1, AMPLITUDE).max_height]
     for least in (0.95, 0.9):
-        law = LawModel(Impedance(ratio, zeta, 0.95, least, width))
+        law = ContactModel(Impedance(ratio, zeta, 0.95, least, width))
         heights.append(n_t.require_orbit(law, 1, AMPLITUDE).max_height)
     errors = (f"{height / heights[0] - 1:+.2%}" for height in heights[1:])
     print(f"{stiffness / 1000:<9g}  {'    '.join(errors)}")

@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from bouncing_ball.long_run.over_time import history as history
     from bouncing_ball.long_run.over_time import simulate as simulate
     from bouncing_ball.measured.fit import fit_contact as fit_contact
+    from bouncing_ball.models.contact_model import ContactModel as ContactModel
     from bouncing_ball.models.laws.start_speed import Flores as Flores
     from bouncing_ball.models.laws.start_speed import LankaraniNikravesh as LankaraniNikravesh
     from bouncing_ball.models.makers import corrected as corrected
@@ -83,7 +84,6 @@ if TYPE_CHECKING:
     from bouncing_ball.models.makers import spring_damper as spring_damper
     from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
-    from bouncing_ball.models.spring_damper_model import SpringDamperModel as SpringDamperModel
     from bouncing_ball.models.suspension import Drag as Drag
     from bouncing_ball.models.suspension import Spring as Spring
     from bouncing_ball.models.waveform import Waveform as Waveform
@@ -103,6 +103,7 @@ __version__ = "0.1.0"
 # The public names and the modules in which they are defined.
 _MODULES = {
     "Contact": "contacts.contact",
+    "ContactModel": "models.contact_model",
     "Drag": "models.suspension",
     "EngineSetup": "contacts.question",
     "Flores": "models.laws.start_speed",
@@ -113,7 +114,6 @@ _MODULES = {
     "RestitutionModel": "models.rigid",
     "Spring": "models.suspension",
     "SpringDamper": "models.spring_damper",
-    "SpringDamperModel": "models.spring_damper_model",
     "Table": "contacts.table",
     "Waveform": "models.waveform",
     "assess_contact": "contacts.assess",

@@ -12,9 +12,9 @@ from bouncing_ball.accuracy.errors import (
     relative_errors,
     values,
 )
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 
@@ -25,7 +25,7 @@ def test_each_quantity_is_one_of_orbits_or_of_limits():
 
 def test_the_values_are_those_of_the_orbits_and_bifurcations_of_each_model():
     n, r, lam, omega = 2, 0.85, 1.0, 50.0
-    exact = SpringDamperModel(SpringDamper.from_restitution(r, omega))
+    exact = ContactModel(SpringDamper.from_restitution(r, omega))
     zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
     half = n * np.pi
     fold = n * np.pi * (1 - r) / (1 + r)
@@ -49,7 +49,7 @@ def test_the_values_are_those_of_the_orbits_and_bifurcations_of_each_model():
 def test_what_is_missing_is_not_right():
     # r = 0.0893: a compliant contact has no saddle-node, and a stiff one has.
     contact = SpringDamper.from_restitution(0.0893, np.array([2.592, 100.0]))
-    exact = SpringDamperModel(contact)
+    exact = ContactModel(contact)
     simple = [RestitutionModel(0.0893)]
     ((error,),) = relative_errors(exact, simple, 1, 3.0, [Quantity.SADDLE_NODE])
     assert np.isnan(error[0]) and abs(error[1]) < 0.1
@@ -58,6 +58,6 @@ def test_what_is_missing_is_not_right():
 
 def test_elastic_impacts_leave_nothing_to_be_relative_to():
     # r = 1: Λ_SN = 0 in the restitution model, and 0 or nearly in the contact.
-    exact = SpringDamperModel(SpringDamper(np.array([10.0, 100.0]), 0.0))
+    exact = ContactModel(SpringDamper(np.array([10.0, 100.0]), 0.0))
     (error,) = relative_errors(exact, [RestitutionModel(1.0)], 1, 0.8, ["saddle_node"])[0]
     assert np.all(np.isinf(modulus(error)))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import corrected_branch as corrected_branch
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -58,7 +58,7 @@ def test_the_next_order_is_right_to_third_order(n, zeta, release):
     errors = []
     for omega in (80.0, 160.0, 320.0):
         contact = SpringDamper(omega, zeta, release)
-        exact = SpringDamperModel(contact)
+        exact = ContactModel(contact)
         instant = Signature(contact)()
         tau, squared, jerk, later = constants(contact)
         low = corrected_branch.saddle_node(n, instant)

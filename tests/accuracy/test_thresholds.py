@@ -10,10 +10,10 @@ from bouncing_ball.accuracy.thresholds import (
     last_crossing,
     thresholds,
 )
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, NEVER = ThresholdStatus
@@ -88,7 +88,7 @@ def test_the_thresholds_of_the_restitution_model_are_those_of_a_fine_scan(releas
     )
 
     def errors(ratio):
-        exact = SpringDamperModel(SpringDamper(ratio, zeta, release))
+        exact = ContactModel(SpringDamper(ratio, zeta, release))
         simple = RestitutionModel(0.65)
         return relative_errors(exact, [simple], n, amplitude, tuple(Quantity))[0]
 

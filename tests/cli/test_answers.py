@@ -11,12 +11,11 @@ from hypothesis import strategies as st
 import bouncing_ball
 from bouncing_ball import corrected, rigid, spring_damper
 from bouncing_ball.contacts.named_laws import LAWS
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 
@@ -101,7 +100,7 @@ def test_the_threshold_of_permanent_contact_is_that_of_the_model(ask):
     for release in ("displacement", "force"):
         answer = ask(*call, "6", "--release", release)
         contact = SpringDamper.from_restitution(0.65, 6.0, release)
-        exact = SpringDamperModel(contact).permanent_contact_threshold()
+        exact = ContactModel(contact).permanent_contact_threshold()
         assert answer["threshold_amplitude"] == exact
 
 
@@ -140,7 +139,7 @@ def test_a_ball_that_starts_on_a_stable_orbit_stays_on_it(ask, said):
 def test_an_orbit_on_a_contact_law_is_that_of_its_model(ask):
     answer = ask("orbit", *HERTZ, "--amplitude", "1")
     assert set(FIELDS) <= set(answer)
-    orbit = n_t.orbit(LawModel(HuntCrossley(1000.0, 0.08)), 1, 1.0)
+    orbit = n_t.orbit(ContactModel(HuntCrossley(1000.0, 0.08)), 1, 1.0)
     assert answer["max_height"] == float(orbit.max_height)
     assert answer["parameters"] == {"stiffness": 1000.0, "damping": 0.08}
     assert answer["frequency_ratio"] == pytest.approx(math.pi / answer["free_duration"])

@@ -7,8 +7,8 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.branches import observables
 
 RIGID = bouncing_ball.rigid(restitution=0.5)
@@ -139,11 +139,11 @@ def test_a_part_of_a_branch_has_its_orbits(refusal):
 
 def test_a_contact_in_place_of_a_ball_is_told_its_model(refusal):
     contact = SpringDamper(10.0, 0.1)
-    with refusal(ModelError, "contact_law or corrected: give SpringDamperModel(…) of this contact"):
+    with refusal(ModelError, "contact_law, corrected or ContactModel(law)"):
         bouncing_ball.orbit(contact, amplitude=1.0)
-    assert bouncing_ball.orbit(SpringDamperModel(contact), amplitude=1.0).impacts == 1
+    assert bouncing_ball.orbit(ContactModel(contact), amplitude=1.0).impacts == 1
     with refusal(ModelError, "contact = 10.0 is not a SpringDamper"):
-        SpringDamperModel(10.0)
+        ContactModel(10.0)
 
 
 def test_a_special_orbit_is_followed_as_its_kind_says():

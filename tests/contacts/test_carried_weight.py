@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.families import can_carry
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -32,7 +32,7 @@ def test_orbits_that_exist_are_within_the_bounds(of, n):
     found = False
     for k in (0.5, 2.0):
         law = of(k)
-        orbit = n_t.orbit(LawModel(law), n, lam)
+        orbit = n_t.orbit(ContactModel(law), n, lam)
         if not orbit.exists:
             continue
         found = True
@@ -50,7 +50,7 @@ def test_orbits_that_exist_are_within_the_bounds(of, n):
 def test_a_contact_that_cannot_carry_the_ball_has_no_orbit(of):
     law = of(1e-4)
     assert not can_carry(law, np.array([1]), 0.9).any()
-    assert not n_t.orbit(LawModel(law), 1, 0.9).exists
+    assert not n_t.orbit(ContactModel(law), 1, 0.9).exists
 
 
 def test_the_bound_is_that_of_the_linear_contact():

@@ -17,11 +17,11 @@ from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.contacts.notes import notes
 from bouncing_ball.contacts.verdict import said_of_orbit
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 pytestmark = pytest.mark.usefixtures("short_runs")
@@ -74,7 +74,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
         for quantity, k in law.items():
             by_law = -float(k) / steel.frequency_ratio
             assert one.law_errors[quantity] == pytest.approx(by_law, rel=1e-12)
-        orbit = n_t.orbit(SpringDamperModel(contact), one.n, steel.amplitude)
+        orbit = n_t.orbit(ContactModel(contact), one.n, steel.amplitude)
         speed = -9.80665 / (100 * math.pi) * float(orbit.relative_impact_velocity)
         assert one.impact_speed == pytest.approx(speed, rel=1e-12)
         for name, standing in one.standing.items():
@@ -88,7 +88,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
 def test_loads_of_a_damped_contact_by_a_fine_sample():
     found = assessed(**STEEL, restitution=0.3, n=1, release="force", tolerance=0.5, gravity="0.3 g")
     contact = found.case.contact
-    orbit = n_t.orbit(SpringDamperModel(contact), 1, found.amplitude)
+    orbit = n_t.orbit(ContactModel(contact), 1, found.amplitude)
     time = np.linspace(0, float(orbit.contact_duration), 200_001)
     flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, found.amplitude)
     force = contact.force(-flow.displacement, -flow.velocity)
@@ -219,7 +219,7 @@ def test_the_verdict_gives_both_values_and_the_error_against_the_contact():
     contact = SpringDamper.from_restitution(0.65, math.sqrt(2.0))
     exact, predicted = (
         float(n_t.orbit(model, 1, 1.0).max_height)
-        for model in (SpringDamperModel(contact), RestitutionModel(0.65))
+        for model in (ContactModel(contact), RestitutionModel(0.65))
     )
     one = found.orbits[0]
     assert one.values["max_height"]["spring-damper"] == pytest.approx(exact, rel=1e-12)
@@ -296,7 +296,7 @@ def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred():
     parameters = UNIT | {"n": None, "restitution": 0.15}
     found = assessed(**parameters, acceleration=3.5, stiffness=1.0, quantity="permanent_contact")
     one, two = found.orbits[:2]
-    orbit = n_t.orbit(SpringDamperModel(SpringDamper.from_restitution(0.15, 1.0)), 2, 3.5)
+    orbit = n_t.orbit(ContactModel(SpringDamper.from_restitution(0.15, 1.0)), 2, 3.5)
     inside = np.linspace(0.0, float(orbit.contact_duration), 200)
     assert np.max(orbit.contact_motion(inside)[0]) > 0.7
     assert two.is_stable and not two.is_admissible and not one.is_stable and found.n == 1

@@ -8,7 +8,7 @@ from asked_contacts import answered, assessed, described
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.contact_model import ContactModel
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 
@@ -38,7 +38,7 @@ def test_a_drop_test_and_a_contact_time_are_met():
     found, _, settings, *_ = answered(**TABLE, **drop, engine="drake")
     # The package's own simulation, on a table at rest.
     length = found.case.table.length
-    run = SpringDamperModel(found.case.contact).simulate(0.0, 0.0, -((2 / length) ** 0.5), 1)
+    run = ContactModel(found.case.contact).simulate(0.0, 0.0, -((2 / length) ** 0.5), 1)
     height = run.release_displacement[0] + run.relative_bounce_velocity[0] ** 2 / 2
     assert length * float(height) == pytest.approx(0.49, rel=1e-9)
     # Without gravity the ball would leave a little faster.

@@ -22,11 +22,11 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import Starts, advance, start
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.force_law import NUMBER
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 
@@ -163,7 +163,7 @@ def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(
     if kind == "locked":
         # Means over whole repetitions are those of one repetition, which all balls share.
         contact = SpringDamper.from_restitution(restitution, np.sqrt(5000.0))
-        models = SpringDamperModel(contact), RestitutionModel(restitution)
+        models = ContactModel(contact), RestitutionModel(restitution)
         for model, *shown in zip(
             models, found.motion.mean_height.values(), found.motion.mean_power.values(), strict=True
         ):

@@ -13,9 +13,9 @@ from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 STEEL_ON_GLASS = {
     "youngs_modulus": 2.1e11,
@@ -35,7 +35,7 @@ def found(release=Release.DISPLACEMENT, **given):
 def rise(contact, drop):
     """The height in m to which a ball rises on the table at rest, by the package's simulation."""
     speed = math.sqrt(2 * drop / TABLE.length)
-    run = SpringDamperModel(contact).simulate(0.0, 0.0, -speed, 1)
+    run = ContactModel(contact).simulate(0.0, 0.0, -speed, 1)
     up = float(run.relative_bounce_velocity[0])
     return TABLE.length * (float(run.release_displacement[0]) + up * up / 2)
 

@@ -4,10 +4,10 @@ import mpmath
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics import first_zero
 
 MODELS = ("restitution", "spring-damper", "corrected")
@@ -26,7 +26,7 @@ def model_of(model, r, ratio):
     contact = SpringDamper.from_restitution(r, ratio)
     return {
         "restitution": RestitutionModel(r),
-        "spring-damper": SpringDamperModel(contact),
+        "spring-damper": ContactModel(contact),
         "corrected": CorrectedModel.of_contact(contact),
     }[model]
 

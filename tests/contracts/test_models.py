@@ -16,15 +16,14 @@ import pytest
 
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import KuwabaraKono, Tsuji
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.paper.claims.witness import nearest
 from bouncing_ball.periodic.branches.following import orbits_along
@@ -56,14 +55,14 @@ OWN = runpy.run_path(str(Path(__file__).with_name("plastic_impact.py")))
 MODELS = {
     "restitution": RestitutionModel(0.65),
     "elastic": RestitutionModel(1.0),
-    "compliant contact": SpringDamperModel(COMPLIANT),
-    "stiff contact": SpringDamperModel(STIFF),
-    "force release": SpringDamperModel(PUSHING),
-    "undamped contact": SpringDamperModel(SpringDamper(10.0, 0.0)),
+    "compliant contact": ContactModel(COMPLIANT),
+    "stiff contact": ContactModel(STIFF),
+    "force release": ContactModel(PUSHING),
+    "undamped contact": ContactModel(SpringDamper(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
     "corrected, kuwabara-kono": CorrectedModel(Signature(HERTZ["kuwabara-kono"])),
-    **{name: LawModel(law) for name, law in HERTZ.items()},
+    **{name: ContactModel(law) for name, law in HERTZ.items()},
     "one's own": OWN["MODEL"],
 }
 # Other laws of the same model: one of them is tried often, and the others weekly.
@@ -92,7 +91,7 @@ def cases(names):
     return found
 
 
-NEAREST = (RestitutionModel, SpringDamperModel)
+CLOSED = [name for name, model in MODELS.items() if model.name in ("restitution", "spring-damper")]
 every_model = pytest.mark.parametrize("name", often(MODELS))
 each_kind = pytest.mark.parametrize("name", often(MODELS, SLOW))
 every_side = pytest.mark.parametrize("side", list(Side))
@@ -185,7 +184,7 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(some):
 
 # Other models do not need these derivatives.
 @pytest.mark.parametrize(
-    "some", cases(x for x in MODELS if isinstance(MODELS[x], SpringDamperModel)), indirect=True
+    "some", cases(x for x in MODELS if MODELS[x].name == "spring-damper"), indirect=True
 )
 def test_the_slopes_of_a_duration_are_the_derivatives_of_the_contact(some):
     # Where the force vanishes the map does not feel the time of release, so that
@@ -362,7 +361,7 @@ def test_a_closed_form_is_what_the_continuation_finds(name):
 
 
 @every_side
-@pytest.mark.parametrize("name", [x for x in MODELS if isinstance(MODELS[x], NEAREST)])
+@pytest.mark.parametrize("name", CLOSED)
 def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
     orbit = some_orbit(name, 1, 0.6, side)
     assert nearest(orbit).distance(orbit) < 1e-12

@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 LAM, STEP = 1.8, 1e-6
 LAWS = [
     RestitutionModel(0.7),
-    SpringDamperModel(SpringDamper.from_restitution(0.7, 30.0)),
-    SpringDamperModel(SpringDamper.from_restitution(0.7, 30.0, "force")),
+    ContactModel(SpringDamper.from_restitution(0.7, 30.0)),
+    ContactModel(SpringDamper.from_restitution(0.7, 30.0, "force")),
     # Here one contact in ten resumes below the table's level.
-    SpringDamperModel(SpringDamper(2.0, 0.9, "force")),
+    ContactModel(SpringDamper(2.0, 0.9, "force")),
     CorrectedModel(Signature(SpringDamper.from_restitution(0.7, 30.0))),
     Tsuji(2000.0, tsuji_damping(0.7)),
     CorrectedModel(Signature(Tsuji(2000.0, tsuji_damping(0.7)))),
@@ -63,7 +63,7 @@ def test_areas_shrink_by_the_impact_and_by_nothing_else():
     contact = SpringDamper.from_restitution(0.7, 30.0)
     for case, loss in (
         (RestitutionModel(0.7), lambda _: 0.49),
-        (SpringDamperModel(contact), lambda d: np.exp(-2 * contact.damping_ratio * 30 * d)),
+        (ContactModel(contact), lambda d: np.exp(-2 * contact.damping_ratio * 30 * d)),
     ):
         (before, after), of, duration = step(case, phase, velocity)
         # The flow keeps areas across it: a section that it crosses slowly is wide.

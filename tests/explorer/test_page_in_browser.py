@@ -25,11 +25,11 @@ from bouncing_ball.contacts.texts import shown
 from bouncing_ball.explorer.document import BOUND, to_html
 from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow
@@ -262,7 +262,7 @@ def test_balls_on_the_stage_are_where_the_package_has_them(seen):
             r = given["r"]
             name = end["name"]
             contact = SpringDamper.from_restitution(r, given.get("w", 1.0), Release.DISPLACEMENT)
-            model = RestitutionModel(r) if name == "restitution" else SpringDamperModel(contact)
+            model = RestitutionModel(r) if name == "restitution" else ContactModel(contact)
             run = model.simulate(given["a"], phase, velocity, impacts=300)
             for k, ball in enumerate(ball for ball in balls if ball["model"] == name):
                 expected = motion_at(run[k], ball["since"]).height

@@ -12,10 +12,10 @@ from bouncing_ball.long_run.basins import basins
 from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.long_run.motions import Kind, Reason
 from bouncing_ball.long_run.orbit_of_motion import of_motion
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 PHASES = np.linspace(-3, 3, 7)
@@ -36,12 +36,12 @@ def beside(model, n, amplitude, moved=1e-3):
     ("model", "amplitude", "periods"),
     [
         (RestitutionModel(0.6), 3.0, 13),
-        (SpringDamperModel(contact(0.6, 80.0)), 3.0, 8),
-        pytest.param(SpringDamperModel(contact(0.6, 320.0)), 3.0, 43, marks=pytest.mark.long),
-        (SpringDamperModel(contact(0.6, 1280.0)), 3.0, 23),
+        (ContactModel(contact(0.6, 80.0)), 3.0, 8),
+        pytest.param(ContactModel(contact(0.6, 320.0)), 3.0, 43, marks=pytest.mark.long),
+        (ContactModel(contact(0.6, 1280.0)), 3.0, 23),
         pytest.param(CorrectedModel.of_contact(contact(0.6, 80.0)), 3.0, 8, marks=pytest.mark.long),
         (RestitutionModel(0.5), 2.5, 6),
-        pytest.param(SpringDamperModel(contact(0.5, 1280.0)), 2.5, 6, marks=pytest.mark.long),
+        pytest.param(ContactModel(contact(0.5, 1280.0)), 2.5, 6, marks=pytest.mark.long),
         (CorrectedModel.of_contact(contact(0.5, 80.0)), 2.5, 15),
     ],
 )
@@ -74,8 +74,8 @@ def test_the_first_doublings_have_the_amplitudes_and_periods_of_the_cascade(r):
     "model",
     [
         RestitutionModel(0.6),
-        SpringDamperModel(contact(0.6, 20.0)),
-        SpringDamperModel(contact(0.6, 20.0, "force")),
+        ContactModel(contact(0.6, 20.0)),
+        ContactModel(contact(0.6, 20.0, "force")),
         CorrectedModel.of_contact(contact(0.6, 20.0)),
     ],
 )
@@ -95,7 +95,7 @@ def test_an_answer_does_not_depend_on_the_other_balls():
     rng = np.random.default_rng(2)
     amplitude = rng.uniform(0.5, 4, 60)
     phase = rng.uniform(-3, 3, 60)
-    model = SpringDamperModel(contact(rng.uniform(0.2, 0.9, 60), 100.0))
+    model = ContactModel(contact(rng.uniform(0.2, 0.9, 60), 100.0))
     start = amplitude, phase, -amplitude - 3
     whole = final_motions(model, *start, impacts=150)
     order = rng.permutation(60)
@@ -108,7 +108,7 @@ def test_an_answer_does_not_depend_on_the_other_balls():
     "law",
     [
         RestitutionModel(0.5),
-        SpringDamperModel(contact(0.5, 30.0)),
+        ContactModel(contact(0.5, 30.0)),
         CorrectedModel.of_contact(contact(0.5, 30.0)),
     ],
 )
@@ -156,7 +156,7 @@ def test_a_stiff_contact_that_sticks_again_and_again_has_no_positive_exponent():
     # Sticking shrinks a deviation by e^(-ζϖD), which is more than all laps let it grow.
     lam = 2.1
     phase = np.linspace(-3, 3, 8)
-    contacts = SpringDamperModel(contact(0.4, [[1e4], [10.0]]))
+    contacts = ContactModel(contact(0.4, [[1e4], [10.0]]))
     stiff, compliant = final_motions(contacts, lam, phase, -9.0, impacts=600)
     assert stiff.is_unresolved().sum() >= 6
     assert np.all(stiff.exponent[stiff.is_unresolved()] < 0)
@@ -180,7 +180,7 @@ def test_a_chaotic_motion_says_for_how_long_it_was_followed():
     "law",
     [
         RestitutionModel(0.85),
-        SpringDamperModel(contact(0.85, 80.0)),
+        ContactModel(contact(0.85, 80.0)),
         pytest.param(CorrectedModel.of_contact(contact(0.85, 80.0)), marks=pytest.mark.long),
     ],
 )
@@ -315,7 +315,7 @@ def test_a_verdict_says_how_long_the_ball_was_followed():
 def test_chaos_on_a_contact_may_stick_again_and_again_but_not_after_an_instant():
     """A contact that lasts long shrinks deviations by a finite factor, an instant forgets."""
     lam = np.linspace(2.8, 4.0, 15)
-    stiff = final_motions(SpringDamperModel(contact(0.7, 100.0)), lam, 1.0, -5.0, impacts=600)
+    stiff = final_motions(ContactModel(contact(0.7, 100.0)), lam, 1.0, -5.0, impacts=600)
     assert (stiff.times_stuck[stiff.kind == "chaotic"] > 2).any()
     rigid = final_motions(RestitutionModel(0.7), lam, 1.0, -5.0, impacts=600)
     assert (rigid.times_stuck[rigid.kind == "locked"] == 2).all()

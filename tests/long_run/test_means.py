@@ -9,12 +9,12 @@ from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means
 from bouncing_ball.long_run.sampled_means import Starts, advance, start
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 RELEASE = Release.DISPLACEMENT
 
@@ -76,7 +76,7 @@ def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
 
 def test_a_deviation_grows_as_the_product_of_the_derivatives_says():
     """Over eight impacts of a chaotic ball, from a deviation of the phase."""
-    model = SpringDamperModel(SpringDamper.from_restitution(0.85, 50.0, RELEASE))
+    model = ContactModel(SpringDamper.from_restitution(0.85, 50.0, RELEASE))
     found, of = found_and_means(model, 2.0, samples=8)
     assert found.kind == "chaotic"
     dynamics, first, relative, _ = model.dynamics(2.0).first_impacts(
@@ -94,7 +94,7 @@ def test_a_deviation_grows_as_the_product_of_the_derivatives_says():
 
 def test_a_law_whose_contact_is_a_spring_has_the_means_of_the_linear_contact():
     amplitude = np.array([0.7, 1.3])
-    spring = SpringDamperModel(SpringDamper(20.0, 0.0, Release.FORCE))
+    spring = ContactModel(SpringDamper(20.0, 0.0, Release.FORCE))
     found = final_motions(spring, amplitude, 0.5, -4.0, impacts=3)
     linear = means(spring, amplitude, found, 5)
     general = means(LinearHuntCrossley(400.0, 0.0), amplitude, found, 5)

@@ -10,11 +10,11 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.contact_model import ContactModel
 rng = np.random.default_rng(5)
 r, lam, phase = rng.uniform([[0.1], [0.9], [-3]], [[0.95], [5], [3]], (3, 60))
 contact = SpringDamper.from_restitution(r, 100.0)
-for model in (RestitutionModel(r), SpringDamperModel(contact), CorrectedModel.of_contact(contact)):
+for model in (RestitutionModel(r), ContactModel(contact), CorrectedModel.of_contact(contact)):
     found = final_motions(model, lam, phase, -lam - rng.uniform(0, 12, 60), impacts=160)
     # A chaotic ball of 160 impacts has made a last digit into another motion long ago.
     assert (found.kind == "chaotic").sum() > 5

@@ -14,14 +14,14 @@ from bouncing_ball.long_run.sampled_means import (
     start,
     sums_at,
 )
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 LAMBDA = 4.0
 MODELS = [
     RestitutionModel(0.85),
-    SpringDamperModel(SpringDamper.from_restitution(0.85, 70.0)),
+    ContactModel(SpringDamper.from_restitution(0.85, 70.0)),
 ]
 
 

@@ -5,17 +5,17 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 CONTACT = SpringDamper.from_restitution(0.6, 30.0, Release.FORCE)
-MODELS = [RestitutionModel(0.6), SpringDamperModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
+MODELS = [RestitutionModel(0.6), ContactModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
 
 
 @pytest.mark.parametrize("model", MODELS)

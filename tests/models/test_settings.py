@@ -13,16 +13,15 @@ import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, rigid, spring_damper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.as_text import model_of, text_of
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.linear_flight import LinearFlight, Pressure
 from bouncing_ball.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import PAPER, GeneralSetting, setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import free_responses
 from bouncing_ball.models.waveform import SINE
 
@@ -366,6 +365,17 @@ def test_settings_with_their_older_names_are_read():
         assert older != text and model_of(older, arrays) == ball
 
 
+def test_models_with_their_older_names_are_read():
+    spring = spring_damper(restitution=0.5, frequency_ratio=10.0)
+    text, arrays = text_of(spring)
+    older = text.replace('ContactModel", "law"', 'SpringDamperModel", "contact"')
+    assert older != text and model_of(older, arrays) == spring
+    hertzian = bouncing_ball.contact_law("hunt-crossley", stiffness=1000.0, damping=0.08)
+    text, arrays = text_of(hertzian)
+    older = text.replace("ContactModel", "LawModel")
+    assert older != text and model_of(older, arrays) == hertzian
+
+
 def test_an_array_of_drags_is_a_row_of_balls():
     drags = np.array([0.0, 0.1, 0.4])
     model = RestitutionModel(0.5, GeneralSetting(SINE, Drag(drags)))
@@ -380,8 +390,8 @@ def test_an_array_of_drags_is_a_row_of_balls():
     "model",
     [
         lambda setting: RestitutionModel(0.5, setting),
-        lambda setting: SpringDamperModel(SpringDamper(10.0, 0.1), setting),
-        lambda setting: LawModel(Tsuji(900.0, 0.1), setting),
+        lambda setting: ContactModel(SpringDamper(10.0, 0.1), setting),
+        lambda setting: ContactModel(Tsuji(900.0, 0.1), setting),
     ],
 )
 def test_what_is_no_setting_is_refused_in_one_line(model, refusal):

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 EPS = np.finfo(float).eps
 
@@ -133,7 +133,7 @@ def test_next_to_the_undamped_resonance_a_motion_has_all_its_digits(detuning, ze
         lam = rng.uniform(0.3, 3)
         velocity = -rng.uniform(0.1, 3)
         phase = rng.uniform(-3, 3)
-        dynamics = SpringDamperModel(contact).dynamics(np.array([lam]))
+        dynamics = ContactModel(contact).dynamics(np.array([lam]))
         impact = dynamics.start(np.array([phase]), np.array([velocity]))
         inside = dynamics.release_function(impact, dynamics.depart(impact))
         time = rng.uniform(0.2, 6.0)

@@ -1,12 +1,11 @@
 """Balls by the name of their model, and orbits with several impacts on which balls end."""
 
 from bouncing_ball.long_run.orbit_of_motion import of_impact
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.simulation import simulated
@@ -14,14 +13,14 @@ from bouncing_ball.periodic.orbits.simulation import simulated
 
 def balls(name, amplitude, restitution=0.5, frequency_ratio=10.0, stiffness=500.0):
     if name == "tsuji":
-        return Balls(LawModel(Tsuji(stiffness, 0.3)), amplitude)
+        return Balls(ContactModel(Tsuji(stiffness, 0.3)), amplitude)
     if name == "restitution":
         return Balls(RestitutionModel(restitution), amplitude)
     release = "force" if name == "force release" else "displacement"
     contact = SpringDamper.from_restitution(restitution, frequency_ratio, release)
     if name == "corrected":
         return Balls(CorrectedModel.of_contact(contact), amplitude)
-    return Balls(SpringDamperModel(contact), amplitude)
+    return Balls(ContactModel(contact), amplitude)
 
 
 def known_orbit(name, amplitude, along=("amplitude",), n=1, side="stable"):

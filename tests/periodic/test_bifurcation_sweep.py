@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -36,7 +36,7 @@ def sample(seed: int, count: int, release: Release):
 @pytest.mark.parametrize(("count", "_"), SIZES)
 def test_every_bifurcation_found_has_a_multiplier_of_plus_or_minus_one(release, kind, count, _):
     contact, n = sample(7, count, release)
-    orbit = getattr(n_t, kind)(SpringDamperModel(contact), n)
+    orbit = getattr(n_t, kind)(ContactModel(contact), n)
     orbit = orbit[orbit.exists]
     assert orbit.size > 0.85 * count
     # The trace from the flow's Jacobian, which the search does not use. Its
@@ -74,7 +74,7 @@ def first_zero(contact: SpringDamper, n: int, kind: str, edges) -> tuple[float, 
 def test_no_bifurcation_of_a_fine_grid_is_missing(release, _, count):
     contacts, families = sample(8, count, release)
     for contact, n in ((contacts[k], families[k]) for k in range(count)):
-        model = SpringDamperModel(contact)
+        model = ContactModel(contact)
         start = float(contact.free_angle)
         frequency = float(contact.damped_frequency)
         full = frequency * 2 * np.pi * n - start

@@ -13,16 +13,15 @@ from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.law_balls import contact_law
 from bouncing_ball.contacts.named_laws import LAWS, law_named
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
@@ -38,7 +37,7 @@ every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in K
     "law", [HuntCrossley(1e3, 0.08), HuntCrossley(1e3, 0.5), KuwabaraKono(2e3, 0.008)]
 )
 def test_the_impact_speed_of_the_restitution_models_orbits_solves_its_equation(law):
-    model = LawModel(law)
+    model = ContactModel(law)
     n = np.array([1, 2, 5])
     speed, _ = restitution_speed(n, model)
     # The last step of Newton's method is below 1e-3, and leaves its square.
@@ -63,7 +62,7 @@ def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name
             law = orbit_of_law(LAWS[name], r, duration, 1, 1.0).law
         orbit, corrected = (
             n_t.require_orbit(model, 1, 1.0)
-            for model in (LawModel(law), CorrectedModel(Signature(law)))
+            for model in (ContactModel(law), CorrectedModel(Signature(law)))
         )
         # The simple models compared have the r of the speed at the instant.
         _, impact = corrected._start
@@ -113,7 +112,7 @@ def test_an_unknown_law_and_an_impossible_impact_are_refused():
 
 
 def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(monkeypatch):
-    model = LawModel(Tsuji(1e3, 0.3))
+    model = ContactModel(Tsuji(1e3, 0.3))
     orbit = n_t.require_orbit(model, 20, 300.0, Side.UNSTABLE)
     # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.
     assert orbit.defect() < 1e-12 * 300
@@ -128,7 +127,7 @@ def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(mon
     ("r", "duration"), [(0.85, 0.3), pytest.param(0.5, 0.6, marks=pytest.mark.long)]
 )
 def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, duration):
-    model = LawModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
+    model = ContactModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
     fold = n_t.saddle_node(model, 1)
     apart = []
     for above in (1e-6, 1e-4):
@@ -146,7 +145,7 @@ def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, dura
 def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, number):
     """Also from far above the fold, which is at Λ = 0.18: the closed form has the same orbits."""
     contact = SpringDamper(2.0, 0.05)
-    found = SearchedOrbits(SpringDamperModel(contact)).orbits(1, amplitude)
+    found = SearchedOrbits(ContactModel(contact)).orbits(1, amplitude)
     known = by_formula(contact, 1, amplitude)
     assert found.contact_duration.shape == (number,)
     assert np.abs(found.contact_duration - known.contact_duration).max() < 1e-11
@@ -182,7 +181,7 @@ def test_the_linear_law_is_the_ball_of_the_spring_and_damper(release):
     assert ball == bouncing_ball.spring_damper(**given) and ball.parameters["law"] == "linear"
     assert contact_law(SpringDamper(2.0, 0.05, release)) == ball
     found = bouncing_ball.orbits(ball, amplitude=0.9)
-    searched = bouncing_ball.orbits(LawModel(ball.contact), amplitude=0.9)
+    searched = bouncing_ball.orbits(ContactModel(ball.law), amplitude=0.9)
     assert len(found) == 3
     # Newton's method for the orbits of any law has a tolerance of 1e-12.
     assert max(one.distance(other) for one, other in zip(found, searched, strict=True)) < 1e-11

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 import bouncing_ball
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import solve
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of_points
@@ -33,7 +33,7 @@ def test_the_distance_of_orbits_is_their_largest_difference():
     contact = SpringDamper(10.0, 0.05)
     point = branch_point(0.02, contact, 1)
     base = {
-        "model": SpringDamperModel(contact),
+        "model": ContactModel(contact),
         "n": 1,
         "amplitude": point.amplitude,
         "phase": point.phase + 2 * np.pi,  # the same table
@@ -62,9 +62,7 @@ def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
 
 def test_a_contact_that_only_touches_its_release_has_no_derivatives():
     # δ′ = 0 at the impact and at the release of a contact without duration.
-    orbit = Orbit.of(
-        SpringDamperModel(SpringDamper(10.0, 0.05)), 1, 1.0, 0.0, 0.0, impact_velocity=1.0
-    )
+    orbit = Orbit.of(ContactModel(SpringDamper(10.0, 0.05)), 1, 1.0, 0.0, 0.0, impact_velocity=1.0)
     assert np.all(np.isnan(orbit.monodromy()))
     assert not orbit.is_stable() and not orbit.is_admissible()
 
@@ -95,7 +93,7 @@ def test_errors_of_the_equations_move_an_orbit_by_what_its_digits_tell():
 
 
 def test_where_there_is_no_orbit_no_digit_is_certain():
-    none = Orbit.of(SpringDamperModel(SpringDamper(10.0, 0.05)), 1, [1.0, 1.1], np.nan)
+    none = Orbit.of(ContactModel(SpringDamper(10.0, 0.05)), 1, [1.0, 1.1], np.nan)
     assert np.isnan(none.digits_left()).all()
 
 

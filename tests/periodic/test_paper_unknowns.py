@@ -7,10 +7,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import continue_branch
 from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import orbits_along
@@ -69,7 +69,7 @@ def test_the_residual_is_that_of_the_papers_solution(
     expected = [-height, bounce - flight - lam * np.cos(phase) - u, longer]
     system = PaperUnknowns.of(
         Orbit.of(
-            SpringDamperModel(SpringDamper(omega, zeta, release)),
+            ContactModel(SpringDamper(omega, zeta, release)),
             n,
             lam,
             phase,

@@ -14,10 +14,9 @@ import xarray as xr
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.orbits.orbit import Orbit
 
 LINEAR = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
@@ -42,7 +41,7 @@ BALLS = {
     "force": bouncing_ball.spring_damper(restitution=0.5, frequency_ratio=20.0, release="force"),
     "hertz": bouncing_ball.contact_law("hunt-crossley", stiffness=1e4, damping=0.1),
     "corrected": bouncing_ball.corrected(LINEAR),
-    "own law": LawModel(Cubic(2e4, 20.0)),
+    "own law": ContactModel(Cubic(2e4, 20.0)),
 }
 
 
@@ -105,7 +104,7 @@ def test_an_orbit_of_several_impacts_and_a_row_come_back(tmp_path):
     one = bouncing_ball.orbit_of_motion(BALLS["rigid"], amplitude=1.6)
     assert one.impacts == 2
     assert _written_and_read(one.to_dataset(), tmp_path) == one
-    row = Orbit.of(SpringDamperModel(SpringDamper([5.0, 10.0], 0.05)), 1, [0.9, 1.0], 0.7, 0.3)
+    row = Orbit.of(ContactModel(SpringDamper([5.0, 10.0], 0.05)), 1, [0.9, 1.0], 0.7, 0.3)
     again = _written_and_read(row.to_dataset(), tmp_path)
     assert again.shape == (2,) and all(again[k] == row[k] for k in range(2))
 

@@ -6,9 +6,9 @@ import pytest
 from mpmath import mp, mpf
 from sixty_digits import Exact
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
 from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
@@ -81,7 +81,7 @@ def test_bifurcations_near_poles_and_grazing_orbits_are_those_of_sixty_digits(
     contact = SpringDamper.from_restitution(restitution, omega)
     with mpmath.workdps(60):
         assert check_bifurcation(contact, n, kind)
-    orbit = getattr(n_t, kind)(SpringDamperModel(contact), n)
+    orbit = getattr(n_t, kind)(ContactModel(contact), n)
     assert orbit.relative_impact_velocity > 0
     assert not orbit.is_admissible()
 

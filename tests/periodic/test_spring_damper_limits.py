@@ -5,9 +5,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
     orbit_at,
@@ -74,17 +74,17 @@ def test_a_required_orbit_that_does_not_exist_is_refused_with_its_reason(refusal
     with refusal(
         NoOrbitError, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988"
     ):
-        n_t.require_orbit(SpringDamperModel(contact), 1, 0.2)
+        n_t.require_orbit(ContactModel(contact), 1, 0.2)
     # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
     soft = SpringDamper(2.592, float(damping_ratio(0.0893)))
     with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ"):
-        n_t.require_orbit(SpringDamperModel(soft), 1, 0.5)
+        n_t.require_orbit(ContactModel(soft), 1, 0.5)
     with refusal(NoOrbitError, "Λ = 2.5", "no saddle-node and therefore no other side"):
-        n_t.require_orbit(SpringDamperModel(soft), 1, 2.5, Side.UNSTABLE)
+        n_t.require_orbit(ContactModel(soft), 1, 2.5, Side.UNSTABLE)
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
     with refusal(NoOrbitError, "Λ = 1.3", "does not reach this Λ"):
         n_t.require_orbit(
-            SpringDamperModel(SpringDamper(2.0, float(damping_ratio(0.85)))), 1, 1.3, Side.UNSTABLE
+            ContactModel(SpringDamper(2.0, float(damping_ratio(0.85)))), 1, 1.3, Side.UNSTABLE
         )
 
 
@@ -129,7 +129,7 @@ def test_the_unstable_side_of_a_very_compliant_contact_has_an_orbit_or_none(omeg
 )
 def test_just_above_the_fold_there_are_two_orbits_and_just_below_none(n, omega, zeta, release):
     # The bracket between the last point of the scan and the fold is one of D's last digits.
-    model = SpringDamperModel(SpringDamper(omega, zeta, release))
+    model = ContactModel(SpringDamper(omega, zeta, release))
     fold = float(n_t.saddle_node(model, n).amplitude)
     for excess in (1e-6, 1e-10):
         stable, unstable = (n_t.orbit(model, n, fold * (1 + excess), side) for side in Side)
@@ -158,7 +158,7 @@ def test_the_first_orbit_just_below_the_turn_of_the_unstable_side_is_found():
 
 def test_all_orbits_at_an_amplitude_approach_the_table_and_leave_it():
     # Far up, half of the points of the branch have balls that rise at impact, or fall at release.
-    found = n_t.orbits(SpringDamperModel(SpringDamper(3.3, 0.1)), 1, 4.0)
+    found = n_t.orbits(ContactModel(SpringDamper(3.3, 0.1)), 1, 4.0)
     assert found.size == 2
     assert np.all(found.relative_impact_velocity < 0) and np.all(found.apparent_restitution > 0)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import corrected_branch, n_t
 from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
 from bouncing_ball.periodic.one_impact.start import SearchedOrbits, special_on_branch
@@ -14,8 +14,8 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # The branch of the compliant contact has saddle-nodes at Λ = 0.188 and 1.176 and a second stable
 # side; that of the other one ends at Λ = 2.004, where the ball no longer leaves the table.
-COMPLIANT = SpringDamperModel(SpringDamper.from_restitution(0.85, 2.0))
-SHORT = SpringDamperModel(SpringDamper.from_restitution(0.65, 3.0))
+COMPLIANT = ContactModel(SpringDamper.from_restitution(0.85, 2.0))
+SHORT = ContactModel(SpringDamper.from_restitution(0.65, 3.0))
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_the_end_of_a_branch_at_a_lost_release_is_that_of_its_closed_form(
     restitution, ratio, release
 ):
     """On the explicit branch δ′ + κ δ″ at the release vanishes there."""
-    model = SpringDamperModel(SpringDamper.from_restitution(restitution, ratio, release))
+    model = ContactModel(SpringDamper.from_restitution(restitution, ratio, release))
     law = model.impact_law
     end = whole_branch(model, 1, 20.0).special[0]
     assert end.kind == "release lost"

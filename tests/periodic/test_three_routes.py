@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution
@@ -53,7 +53,7 @@ def drawn(request, rule, side):
 def test_every_missing_orbit_has_its_reason(drawn):
     contact, n, lam, side, orbit = drawn
     missing = np.isnan(orbit.contact_duration)
-    reasons = n_t.absence(SpringDamperModel(contact), n, lam, side)
+    reasons = n_t.absence(ContactModel(contact), n, lam, side)
     assert np.all((reasons == Absence.NONE) == ~missing)
     # The sample reaches below the saddle-nodes, and most of it lies above.
     assert np.mean(reasons == Absence.BELOW_SADDLE_NODE) > 1 / 50

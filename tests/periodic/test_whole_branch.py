@@ -5,9 +5,9 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch, whole_branches
@@ -23,9 +23,9 @@ TOP = 1.4
 def test_a_branch_is_the_same_alone_and_beside_others(release):
     n, ratios = (np.array(column) for column in zip(*CASES, strict=True))
     contacts = SpringDamper.from_restitution(0.7, ratios, release)
-    together = whole_branches(SpringDamperModel(contacts), n, TOP)
+    together = whole_branches(ContactModel(contacts), n, TOP)
     for k, beside in enumerate(together):
-        alone = SpringDamperModel(contacts[k])
+        alone = ContactModel(contacts[k])
         if not isinstance(beside, Followed):
             with pytest.raises((NoOrbitError, ContinuationError)) as error:
                 whole_branch(alone, int(n[k]), TOP)

@@ -23,10 +23,10 @@ import numpy as np
 import bouncing_ball
 from bouncing_ball.contacts.engines.engine import Physical
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.periodic.branches.curves import CurveProblem, condition_of, curve_through
 from bouncing_ball.periodic.branches.following import branch_from
@@ -308,7 +308,7 @@ def simulation_row() -> Row:
     contact = SpringDamper.from_restitution(0.85, 20.0)
     impacts = 300
     # Beside the stable 1-T orbit, so that rounding errors do not grow.
-    orbit = n_t.orbit(SpringDamperModel(contact), 1, 0.9)
+    orbit = n_t.orbit(ContactModel(contact), 1, 0.9)
     phase = float(orbit.phase) + 0.01
     velocity = float(orbit.impact_velocity)
     dynamics = LinearContactDynamics.of(contact, 0.9)
@@ -334,7 +334,7 @@ def simulation_row() -> Row:
 def engine_row() -> Row:
     """Bounces on an orbit, against the time steps of MuJoCo with which r is met within an error."""
     contact = SpringDamper.from_restitution(0.85, 20.0, Release.FORCE)
-    orbit = n_t.orbit(SpringDamperModel(contact), 1, 0.9)
+    orbit = n_t.orbit(ContactModel(contact), 1, 0.9)
     phase = float(orbit.phase)
     velocity = float(orbit.impact_velocity)
     highest = float(orbit.max_height)

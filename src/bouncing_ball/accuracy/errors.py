@@ -148,8 +148,8 @@ def relative_errors(
 
     >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> from bouncing_ball.models.rigid import RestitutionModel
-    >>> from bouncing_ball.models.spring_damper_model import SpringDamperModel
-    >>> stiff = SpringDamperModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
+    >>> from bouncing_ball.models.contact_model import ContactModel
+    >>> stiff = ContactModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
     >>> relative_errors(stiff, [RestitutionModel(1.0)], 1, 1.0, ["permanent_contact"]).tolist()
     [[[-0.25]]]
     """

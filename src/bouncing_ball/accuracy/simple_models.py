@@ -17,12 +17,12 @@ from bouncing_ball.accuracy.errors import (
     values,
 )
 from bouncing_ball.accuracy.thresholds import Numbered, by_quantity, last_zero, thresholds
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.orbits.orbit import Orbit
 
 SIMPLE = ("restitution", "corrected")
@@ -31,7 +31,7 @@ SIMPLE = ("restitution", "corrected")
 
 def exact_and_simple_models(
     contact: SpringDamper,
-) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
+) -> tuple[ContactModel, RestitutionModel, CorrectedModel]:
     """The exact model of a contact, and both simple models with the r of a free impact on it.
 
     Raises
@@ -45,7 +45,7 @@ def exact_and_simple_models(
     ['spring-damper', 'restitution', 'corrected']
     """
     return (
-        SpringDamperModel(contact),
+        ContactModel(contact),
         RestitutionModel(contact.restitution),
         CorrectedModel.of_contact(contact),
     )
@@ -174,7 +174,7 @@ def search(
     def at(ratio: np.ndarray, orbit: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
         """The errors of the orbits with these indices, shape (model, quantity, m)."""
         contact = SpringDamper(ratio, damping[orbit], rule)
-        exact = SpringDamperModel(contact)
+        exact = ContactModel(contact)
         return measure(relative_errors(exact, simple(contact), index[orbit], lam[orbit], wanted))
 
     def along(ratio: np.ndarray, row: np.ndarray, wanted: Sequence[str]) -> np.ndarray:

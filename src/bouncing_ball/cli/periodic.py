@@ -21,12 +21,12 @@ from bouncing_ball.datasets.arguments import (
     ReleaseName,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import orbits_of_ball as library
 from bouncing_ball.periodic.one_impact.start import restitution_speed
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
@@ -247,6 +247,6 @@ def permanent_contact(**contact: Any) -> Answer:
     return {"threshold_amplitude": float(threshold), **law_values(ball.impact_law)}
 
 
-def _ball(*, release: ReleaseName | None, **contact: Any) -> SpringDamperModel:
+def _ball(*, release: ReleaseName | None, **contact: Any) -> ContactModel:
     """The ball on the contact that the options of :func:`.add_contact` describe."""
     return spring_damper(release=release or "displacement", **contact)

@@ -30,12 +30,12 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ParameterError, Range, shortened, suggesting
 from bouncing_ball.models.ball import Ball
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.makers import corrected, flattened, numbers_of_flight
 from bouncing_ball.models.setting import PAPER, Setting, require_paper, setting_of
-from bouncing_ball.models.spring_damper_model import model_of_law
 from bouncing_ball.models.suspension import Suspension
 from bouncing_ball.models.waveform import Waveform
 from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
@@ -101,7 +101,7 @@ class FreeImpactBall(Ball):
         return self.at_speed(rigid_speed(n, self.restitution))
 
     def _with(self, law: ContactLaw) -> Ball:
-        model = model_of_law(law, self.setting).labelled(self.parameters)
+        model = ContactModel(law, self.setting).labelled(self.parameters)
         return corrected(model) if self.is_corrected else model
 
     def corrected(self) -> FreeImpactBall:
@@ -169,25 +169,25 @@ def contact_law(
     Examples
     --------
     >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08)
-    LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
+    ContactModel(law=HuntCrossley(stiffness=1000, damping=0.08))
     >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=1.5).law
     SpringDamper(frequency_ratio=10, damping_ratio=1.5, release='displacement')
     >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=0.5)
-    SpringDamperModel(contact=SpringDamper(frequency_ratio=10, damping_ratio=0.5, \
+    ContactModel(law=SpringDamper(frequency_ratio=10, damping_ratio=0.5, \
 release='displacement'))
     >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
     >>> ball.at_speed(3.0)
-    LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
+    ContactModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
     """
     setting = setting_of(table, flight)
     if isinstance(law, ContactLaw):
-        model = model_of_law(law, setting)
+        model = ContactModel(law, setting)
         return model.labelled({"law": law.name, **model.parameters})
     kind = law_named(law if isinstance(law, str) else shortened(law))
     if parameters:
         _refuse_free_impact(kind, parameters, restitution, duration, speed)
         found, labels = _law_of_parameters(kind, parameters, release)
-        return model_of_law(found, setting).labelled(labels | numbers_of_flight(flight))
+        return ContactModel(found, setting).labelled(labels | numbers_of_flight(flight))
     if restitution is None or duration is None:
         raise ParameterError(
             f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"

@@ -11,8 +11,8 @@ from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.named_laws import contact_in_words
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 # Shakers reach some hundred times gravity.
@@ -85,7 +85,7 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     """
     of = engine.names[0]
     about = f"stiffness, damping, ϖ and ζ are those of the spring and damper of this {of}"
-    spring = n_t.orbit(SpringDamperModel(case.contact), family.n, case.table.amplitude)
+    spring = n_t.orbit(ContactModel(case.contact), family.n, case.table.amplitude)
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     where = engine.at_depth(case.given.engine_parameters, family.greatest_compression)

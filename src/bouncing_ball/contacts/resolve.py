@@ -21,11 +21,11 @@ from bouncing_ball.contacts.quantities import given, single
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
@@ -229,7 +229,7 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
     if case.impact_speed is not None:
         at = case.impact_speed * case.table.time / case.table.length
         return _with_impact(case, law.signature(at))
-    speed, impact = restitution_speed(asked, LawModel(law), _LAST_STEP)
+    speed, impact = restitution_speed(asked, ContactModel(law), _LAST_STEP)
     n = first_stable_family(asked, impact.restitution, case.table.amplitude)
     return _with_impact(case, law.signature(float(speed[asked.index(n)])))
 

@@ -14,10 +14,10 @@ from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.named_laws import model_name
 from bouncing_ball.contacts.rebounds import slowed
 from bouncing_ball.contacts.table import TableMotion
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.laws.steady_contact import known_threshold
@@ -216,7 +216,7 @@ class ResolvedContact:
         if self.is_linear:
             return {model.name: model for model in exact_and_simple_models(self.contact)}
         return {
-            model_name(self.law): LawModel(self.law),
+            model_name(self.law): ContactModel(self.law),
             "restitution": RestitutionModel(self.contact.restitution),
             "corrected": CorrectedModel(Signature(self.law)),
         }

@@ -18,7 +18,8 @@ The modules in reading order:
 ``instant``                   a contact seen from outside, as an impact at an instant
 ``ball``, ``model``           what all balls share, and the interface of every model
 ``rigid``, ``restitution_by_speed``   models with instantaneous impacts
-``spring_damper``, ``spring_damper_model``   the paper's contact, and balls on it
+``spring_damper``             the paper's contact
+``contact_model``             balls on a contact of any law
 ``makers``                    balls by their parameters, which a user calls
 ``history``                   the motion of a ball over time
 ``as_text``                   models as text, from which they come back exactly

@@ -6,18 +6,18 @@ array is left out: the text names the variable of the dataset beside it that has
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.model import Model
@@ -25,17 +25,21 @@ from bouncing_ball.models.restitution_by_speed import RestitutionLaw, Restitutio
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.setting import GeneralSetting, PaperSetting
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import Drag, Spring
 from bouncing_ball.models.waveform import Sine, Waveform
 
-_MODELS = (RestitutionModel, SpringDamperModel, LawModel, CorrectedModel, RestitutionLawModel)
+_MODELS = (RestitutionModel, ContactModel, CorrectedModel, RestitutionLawModel)
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
 _OTHERS = (ElastoBacklash, LankaraniNikravesh, Flores)
 _PARTS = (PaperSetting, GeneralSetting, Drag, Spring, Waveform, Sine, SpringDamper, Signature)
 _OF_USERS = (ForceLaw, RestitutionLaw, Model)
-# The names that these classes have in older files.
-_FORMER = {"Setting": PaperSetting, "OtherSetting": GeneralSetting}
+# What makes the objects of older files by the names that they have there.
+_FORMER: dict[str, Callable[..., Any]] = {
+    "Setting": PaperSetting,
+    "OtherSetting": GeneralSetting,
+    "LawModel": ContactModel,
+    "SpringDamperModel": lambda contact, setting: ContactModel(contact, setting),
+}
 _KNOWN = _FORMER | {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
 # The keys of the type of an object, and of the name of the variable with an array.
 _TYPE = "type"
@@ -108,7 +112,7 @@ def _written(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:
     return np.asarray(value).item()
 
 
-def _read(value: Any, arrays: Mapping[str, Any], known: Mapping[str, type]) -> Any:
+def _read(value: Any, arrays: Mapping[str, Any], known: Mapping[str, Callable[..., Any]]) -> Any:
     if not isinstance(value, dict):
         return value
     if _ARRAY in value:

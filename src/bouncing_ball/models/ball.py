@@ -22,10 +22,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.datasets.arguments import is_array
 from bouncing_ball.errors import ParameterError, shortened
 
-# The models of contacts that are not balls themselves. A model imports the balls, so that only its
-# name is known here.
-_OF_CONTACTS = {"SpringDamper": "SpringDamperModel"}
-
 
 class Ball:
     """One ball, or several if parameters are arrays, whose impacts obey one model."""
@@ -44,8 +40,8 @@ class Ball:
         Examples
         --------
         >>> from bouncing_ball.models.spring_damper import SpringDamper
-        >>> from bouncing_ball.models.spring_damper_model import SpringDamperModel
-        >>> dict(SpringDamperModel(SpringDamper(10.0, 0.1)).parameters)
+        >>> from bouncing_ball.models.contact_model import ContactModel
+        >>> dict(ContactModel(SpringDamper(10.0, 0.1)).parameters)
         {'frequency_ratio': 10.0, 'damping_ratio': 0.1, 'release': 'displacement'}
         """
         found = _fields_of(self)
@@ -126,14 +122,12 @@ def a_ball(ball: Any) -> Ball:
     >>> a_ball(0.85)
     Traceback (most recent call last):
     bouncing_ball.errors.ParameterError: the ball = 0.85 is not a ball: it is not made by rigid, \
-spring_damper, contact_law or corrected
+spring_damper, contact_law, corrected or ContactModel(law)
     """
     if not isinstance(ball, Ball):
-        how = "rigid, spring_damper, contact_law or corrected"
-        maker = _OF_CONTACTS.get(type(ball).__name__)
-        remedy = f": give {maker}(…) of this contact" if maker else ""
+        how = "rigid, spring_damper, contact_law, corrected or ContactModel(law)"
         raise ParameterError(
-            f"the ball = {{}} is not a ball: it is not made by {how}{remedy}", shortened(ball)
+            f"the ball = {{}} is not a ball: it is not made by {how}", shortened(ball)
         )
     return ball
 

@@ -27,13 +27,13 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.setting import require_paper, setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import Suspension
 from bouncing_ball.models.waveform import Waveform
 
@@ -111,7 +111,7 @@ def spring_damper(
     release: ReleaseName = "displacement",
     table: Waveform | None = None,
     flight: Suspension | None = None,
-) -> SpringDamperModel:
+) -> ContactModel:
     """A ball on a contact with a spring and a damper (Eqs. 10-27).
 
     Exactly one of the parameters restitution, damping_ratio and measured_restitution is needed.
@@ -143,7 +143,7 @@ def spring_damper(
 
     Examples
     --------
-    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).contact
+    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).law
     SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement')
     """
     chosen("release", release, [str(each) for each in LINEAR])
@@ -167,7 +167,7 @@ def spring_damper(
         contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
     setting = setting_of(table, flight)
     given = {**parameters, "release": str(release)} | numbers_of_flight(flight)
-    return SpringDamperModel(contact, setting).labelled(given)
+    return ContactModel(contact, setting).labelled(given)
 
 
 def the_loss(
@@ -208,7 +208,7 @@ def corrected(ball: Ball) -> Ball:
     Examples
     --------
     >>> corrected(spring_damper(frequency_ratio=10.0, restitution=0.65)).label
-    'linear with frequency ratio 10, damping ratio 0.135851'
+    'ϖ = 10, ζ = 0.1359'
     """
     known: Any = a_ball(ball)
     if not known.is_known:

@@ -7,7 +7,7 @@ contact, leaves the table and flies, and how small deviations grow on the way
 (:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
 (:mod:`bouncing_ball.periodic`)::
 
-    model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
+    model = ContactModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
     model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
     bouncing_ball.orbit(model, 1, amplitude=0.9)
 
@@ -21,7 +21,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,11 +52,13 @@ class Model(Batch, Ball, ABC):
     """A law of the impact, for one ball or for a row of balls.
 
     A subclass is a frozen dataclass whose first field holds the law; a field ``setting`` says where
-    its balls bounce, if this may be elsewhere than in the paper. ``name`` is the name of the model
-    in messages.
+    its balls bounce, if this may be elsewhere than in the paper.
     """
 
-    name: ClassVar[str]
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """The name of the model in messages, which a subclass may define as a class variable."""
 
     def __repr__(self) -> str:
         values = {each.name: getattr(self, each.name) for each in fields(self)}

@@ -36,7 +36,12 @@ from bouncing_ball.models.damping import (
 )
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.held_contact import HeldContactDynamics, gap_in_contact
+from bouncing_ball.models.held_contact import (
+    HeldContactDynamics,
+    gap_in_contact,
+    held_by,
+    held_threshold,
+)
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_contact import LinearContactDynamics
@@ -70,7 +75,7 @@ class SpringDamper(OscillatorLaw):
     >>> contact[1].release, float(contact[1].frequency_ratio)
     (<Release.FORCE: 'force'>, 10.0)
     >>> contact[1].label
-    'linear with frequency ratio 10, damping ratio 0'
+    'ϖ = 10, ζ = 0'
     """
 
     release: Release = Release.DISPLACEMENT
@@ -93,6 +98,11 @@ class SpringDamper(OscillatorLaw):
         if not self.release.is_linear:
             rate = np.where(np.real(rate) > 0, rate, 0.0)
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
+
+    @property
+    def label(self) -> str:
+        """The parameters of a single contact as text."""
+        return f"ϖ = {float(self.frequency_ratio):g}, ζ = {float(self.damping_ratio):.4g}"
 
     @property
     def has_kink(self) -> bool:
@@ -367,6 +377,18 @@ class SpringDamper(OscillatorLaw):
         numbers = self.frequency_ratio, self.damping_ratio, amplitude
         return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)
 
+    def check_in(self, setting: Setting) -> None:
+        """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts cannot be computed on
+        this table, or in this flight.
+        """
+        if self.release is Release.DISPLACEMENT:
+            # A contact that does not oscillate never comes back to the level of the table.
+            self.require_underdamped()
+        if not self.is_linear_and_underdamped:
+            super().check_in(setting)
+        elif not setting.is_paper:
+            held_by(self, setting).check(setting.waveform)
+
     def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
         """Contacts in closed form if all of them are linear and underdamped, otherwise by
         collocation.
@@ -414,6 +436,14 @@ class SpringDamper(OscillatorLaw):
             found = each(self.frequency_ratio, self.damping_ratio)
             return found[()] if np.all(np.isfinite(found)) else None
         return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
+
+    def permanent_contact_in(self, setting: Setting) -> Any:
+        """The largest Λ of permanent contact: Λ_SD or Λ_F in the setting of the paper, and
+        :func:`.held_threshold` in another one, if the contacts are linear and ζ < 1.
+        """
+        if not self.is_linear_and_underdamped:
+            return super().permanent_contact_in(setting)
+        return self.permanent_contact if setting.is_paper else held_threshold(self, setting)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

@@ -6,9 +6,9 @@ import pytest
 from bouncing_ball.beyond.exhibits import cascades
 from bouncing_ball.beyond.exhibits.cascades import cascade_of_flights
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 # The ends of the grid. A whole row takes half a minute, and `make diff` compares it.
@@ -69,7 +69,7 @@ def test_a_ball_leaves_the_orbit_of_one_period_on_compliant_contacts_only(withou
     # Another start just below and just above it.
     law = SpringDamper.from_restitution(0.95, 27.12, Release.DISPLACEMENT)
     lam = float(found.threshold_amplitude[0]) + (float(compliant) - np.array([0.4, 0.0])) / 27.12**2
-    assert final_motions(SpringDamperModel(law), lam, 1.7, -0.2).periods.tolist() == [1, 2]
+    assert final_motions(ContactModel(law), lam, 1.7, -0.2).periods.tolist() == [1, 2]
 
 
 # As above, on a contact where balls need most impacts.
@@ -81,7 +81,7 @@ def test_a_ball_that_comes_slowly_to_an_orbit_of_one_period_does_not_leave_it(wi
     law = SpringDamper.from_restitution(0.95, 36.88, Release.DISPLACEMENT)
     lam = float(found.threshold_amplitude[0]) + 10.33 / 36.88**2
     # After so many impacts it is within 1.4e-10, and its distance falls tenfold in 180 of them.
-    way = SpringDamperModel(law).simulate(lam, 1.7, -0.2, 1500)
+    way = ContactModel(law).simulate(lam, 1.7, -0.2, 1500)
     # A period has three impacts.
     apart = np.ptp(way.phase[-30:].reshape(10, 3), axis=0)
     assert apart.max() < 1e-9

@@ -13,11 +13,11 @@ from bouncing_ball.beyond.exhibits.contact_laws import (
     exact_model,
     law_errors,
 )
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.pipeline.configuration import typed
@@ -55,7 +55,7 @@ def test_the_linear_law_is_that_of_the_paper():
     assert contacts.threshold(ratios, contacts.height_error(ratios), 0.01) / root == pytest.approx(
         expected, rel=1e-9
     )
-    model = SpringDamperModel(SpringDamper(ratios / root, zeta))
+    model = ContactModel(SpringDamper(ratios / root, zeta))
     rigid = n_t.orbit(RestitutionModel(0.65), 1, 1.0)
     expected = abs(n_t.orbit(model, 1, 1.0).max_height / rigid.max_height - 1)
     np.testing.assert_allclose(contacts.height_error(ratios), expected, rtol=1e-9)
@@ -90,7 +90,7 @@ def test_a_threshold_that_the_grid_does_not_have_is_nan():
 def law_at_rigid_speed(name, duration):
     """The trial gave r and D at the restitution model's impact speed, 2π/(1 + r)."""
     model = exact_model(name, 0.65, duration, rigid_speed(1, 0.65))
-    return model, model.contact if name in LINEAR else model.law
+    return model, model.law
 
 
 def height_by_one_impact(law):

@@ -3,8 +3,8 @@
 import numpy as np
 
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
@@ -20,7 +20,7 @@ def test_the_reference_orbits_satisfy_the_equations_of_the_contact():
         )
         names = ("amplitude", "phase", "contact_duration", "impact_velocity")
         orbit = Orbit.of(
-            SpringDamperModel(contact),
+            ContactModel(contact),
             part.n.values.astype(int),
             *(part[name].values for name in names),
         )

@@ -18,10 +18,10 @@ from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.measured.curves import CURVES, LawCurve
 from bouncing_ball.measured.experiment import experiment
 from bouncing_ball.measured.verdicts import judge
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
@@ -188,7 +188,7 @@ def test_the_error_by_the_duration_is_that_of_orbits_on_the_contact(shakers):
     one = shakers.sel(experiment="croquet", shaker_frequency=5.0, n=1)
     r = one.shaker_restitution.item()
     contact = SpringDamper.from_restitution(r, one.shaker_ratio.item(), "displacement")
-    exact = float(n_t.saddle_node(SpringDamperModel(contact), 1).amplitude)
+    exact = float(n_t.saddle_node(ContactModel(contact), 1).amplitude)
     simple = float(n_t.saddle_node(RestitutionModel(r), 1).amplitude)
     error = (exact - simple) / exact
     # The law is that of a Kuwabara-Kono contact, whose σ differs from the linear one by less than

@@ -12,10 +12,10 @@ from sixty_digits import Exact
 from bouncing_ball.beyond.motions.cascade_of_flights import Openings, openings, stiff_openings
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import IMPACTS, final_motions
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 
 def motions(r, ratio, excess, impacts=IMPACTS):
@@ -25,7 +25,7 @@ def motions(r, ratio, excess, impacts=IMPACTS):
     lam = permanent_contact_threshold(ratio, zeta) + excess / np.square(ratio)
     phase = np.pi / 2 + 3 / ratio
     slow = lam * np.cos(phase) - 0.1 / np.square(ratio)
-    model = SpringDamperModel(SpringDamper(ratio, zeta))
+    model = ContactModel(SpringDamper(ratio, zeta))
     return final_motions(model, lam, phase, slow, impacts=impacts)
 
 
@@ -135,7 +135,7 @@ def test_an_opening_is_that_of_its_equations_in_sixty_digits(r, ratio, k):
     threshold = permanent_contact_threshold(ratio, zeta)
     below = (1 - 1e-6) * (amplitude - threshold)
     seen = motions(r, ratio, ratio**2 * below)
-    impacts = SpringDamperModel(law).simulate(
+    impacts = ContactModel(law).simulate(
         threshold + below, float(seen.end_phase), float(seen.end_velocity), k
     )
     rows = np.array([impacts.phase[0] + impacts.time, impacts.relative_velocity,
@@ -189,7 +189,7 @@ def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
     apart = []
     for part in (1e-2, 2.5e-3, 6.25e-4):
         velocity = touch * (1 + part)
-        motion = SpringDamperModel(law).simulate(lam, phase, lam * np.cos(phase) + velocity, 2)
+        motion = ContactModel(law).simulate(lam, phase, lam * np.cos(phase) + velocity, 2)
         start = motion.time[1] - motion.time[0]
         flow = law.flow(later - start, 0.0, motion.relative_velocity[1], motion.phase[1], lam)
         heights.append(top(velocity))

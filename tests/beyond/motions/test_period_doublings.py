@@ -7,16 +7,16 @@ from mpmath import mp, mpf
 from bouncing_ball.beyond.motions.period_doublings import FEIGENBAUM, cascade
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 R = 0.5
 RATIOS = np.array([20.0, 40.0, 80.0, 160.0])
 CONTACT = SpringDamper.from_restitution(R, RATIOS)
-MODELS = [SpringDamperModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
+MODELS = [ContactModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +122,7 @@ def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_se
 ):
     """Halving 1/ϖ halves the distance from the limit, and quarters it for what is left."""
     if isinstance(model, CorrectedModel):
-        exact = cascade(n_t.period_doubling(SpringDamperModel(CONTACT), 1), 4)
+        exact = cascade(n_t.period_doubling(ContactModel(CONTACT), 1), 4)
         error = found.amplitude / exact.amplitude - 1
         order = 2
     else:

@@ -40,10 +40,10 @@ from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.pipeline.configuration import read_yaml
@@ -150,7 +150,7 @@ def simulated(name, case, steps):
     """
     release, restitution, n, ratio = case
     contact = SpringDamper(np.array([ratio]), damping_ratio(restitution, release), release)
-    orbit = n_t.orbit(SpringDamperModel(contact), n, exact_orbit(*case).amplitude)
+    orbit = n_t.orbit(ContactModel(contact), n, exact_orbit(*case).amplitude)
     asked = {"n": n, "restitution": restitution, "release": release, "steps": steps}
     errors = step_errors(orbit, EngineOrbit(**PARAMETERS | asked))
     level = model_errors(orbit, 1)[SIMPLE.index("corrected"), 0]

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 from bouncing_ball.periodic.orbits.stability import Side
@@ -19,7 +19,7 @@ COMPARED = (*OBSERVABLES[1:], "bounce_height")
 
 def models(omega, zeta, release):
     contact = SpringDamper(omega, zeta, release)
-    return CorrectedModel.of_contact(contact), SpringDamperModel(contact)
+    return CorrectedModel.of_contact(contact), ContactModel(contact)
 
 
 @pytest.mark.parametrize("side", list(Side))

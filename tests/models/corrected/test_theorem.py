@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.named_laws import LAWS
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -44,7 +44,7 @@ def difference(law, amplitude, phase, speed, step=1e-5):
     """Contact less instant model in C⁰ and C¹, shape (2, 4, ...), and the next closing speed."""
     around = step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])[..., np.newaxis]
     both = [images(x, amplitude, phase + around[:, 0], speed + around[:, 1])
-            for x in (LawModel(law), CorrectedModel(Signature(law)))]  # fmt: skip
+            for x in (ContactModel(law), CorrectedModel(Signature(law)))]  # fmt: skip
     apart = both[0] - both[1]
     apart[2] = reduce_angle(apart[2])
     slopes = np.abs(apart[:, 1::2] - apart[:, 2::2]).max(axis=1) / (2 * step)
@@ -106,7 +106,7 @@ def test_the_multipliers_need_the_derivatives_of_delay_and_restitution(name):
     missed = []
     for duration in DURATIONS:
         contact = law(name, duration)
-        orbit = n_t.orbit(LawModel(contact), 1, 1.0)
+        orbit = n_t.orbit(ContactModel(contact), 1, 1.0)
         signature = Signature(contact)
         psi = float(orbit.phase)
         for _ in range(30):
@@ -144,7 +144,7 @@ def test_at_grazing_the_error_grows_by_the_predicted_powers_of_the_speed():
     contact = law("displacement", 0.01)
     for _ in range(50):
         middle = (edge + beyond) / 2
-        slow = -images(LawModel(contact), 4.0, phase, np.array([middle]))[3, 0] < 1.5
+        slow = -images(ContactModel(contact), 4.0, phase, np.array([middle]))[3, 0] < 1.5
         edge, beyond = (middle, beyond) if slow else (edge, middle)
     found = [difference(contact, 4.0, phase, np.array([edge - eta]), 1e-3 * eta)
              for eta in (0.01, 0.0025)]  # fmt: skip

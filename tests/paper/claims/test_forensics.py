@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
     altered_ends,
@@ -89,7 +89,7 @@ def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
 def test_the_ends_of_an_unaltered_branch_are_those_of_the_model():
     contact = SpringDamper(np.array([2.0, 10.0, 1e4]), ZETA)
     n = np.full(3, 2)
-    model = SpringDamperModel(contact)
+    model = ContactModel(contact)
     found = altered_ends(contact, n, orbits_on_branch, Orbit.monodromy)
     expected = np.stack(
         [n_t.saddle_node(model, n).amplitude, n_t.period_doubling(model, n).amplitude], -1
@@ -116,7 +116,7 @@ def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):
         ("damping to first order", -np.log(0.85) / np.pi),
         ("equations as they stand", ZETA),
     ):
-        node = n_t.saddle_node(SpringDamperModel(SpringDamper(10.0, zeta)), 3).amplitude
+        node = n_t.saddle_node(ContactModel(SpringDamper(10.0, zeta)), 3).amplitude
         found = study.computed.sel(reading=reading, frequency_ratio=10, n=3, bound="saddle-node")
         assert float(found) == float(node)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import witness as witnesses
 from bouncing_ball.paper.claims.tables import witness as rows
@@ -136,13 +136,13 @@ def test_where_the_equations_have_no_derivatives_no_orbit_is_found(recorded, mon
 
 
 def test_the_comparison_with_the_simulation_can_fail(recorded, monkeypatch):
-    original = SpringDamperModel.cycle
+    original = ContactModel.cycle
 
     def late(self, *start):
         cycle = original(self, *start)
         return cycle._replace(time=cycle.time + 1e-7)
 
-    monkeypatch.setattr(SpringDamperModel, "cycle", late)
+    monkeypatch.setattr(ContactModel, "cycle", late)
     assert off("fig08", recorded["fig08"]) == {CLOSES}
 
 

@@ -5,10 +5,10 @@ import pytest
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     both_domains,
     first_limits,
@@ -84,7 +84,7 @@ def follow(continuation_settings):
     """The equations and the branch of n-T orbits up to ``top``."""
 
     def along(n, r, omega, top):
-        model = SpringDamperModel(SpringDamper.from_restitution(r, omega))
+        model = ContactModel(SpringDamper.from_restitution(r, omega))
         return whole_branch(model, n, top, continuation_settings.largest_step)
 
     return along
@@ -101,7 +101,7 @@ def test_points_are_orbits(figure_8):
     for omega in FIGURE_8["frequency_ratio"]:
         row = figure_8.sel(frequency_ratio=omega)
         orbit = Orbit.of(
-            SpringDamperModel(SpringDamper(omega, zeta)),
+            ContactModel(SpringDamper(omega, zeta)),
             1,
             row.amplitude.values,
             row.phase.values,

@@ -6,10 +6,10 @@ import pytest
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
 from bouncing_ball.periodic.one_impact import n_t
@@ -65,7 +65,7 @@ def test_beyond_its_threshold_each_error_is_within_the_tolerance(described):
     assert data["quantity"].values.tolist() == PARAMETERS["quantities"]
     # With the r and the ζ of Eq. 16, exact over restitution model.
     contact = SpringDamper(data.frequency_ratio.values, float(damping_ratio(0.65)))
-    exact = SpringDamperModel(contact)
+    exact = ContactModel(contact)
     simple = RestitutionModel(0.65)
     expected = modulus(relative_errors(exact, [simple], 1, 1.0, tuple(Quantity))[0])
     np.testing.assert_allclose(data.relative_error, expected, rtol=1e-9)
@@ -97,7 +97,7 @@ def test_a_threshold_at_the_end_of_the_bifurcation():
     assert data.threshold_status.item() == ThresholdStatus.FOUND
     fine = np.geomspace(1.0, 10.0, 20001)
     threshold = data.error_threshold.item()
-    exact = SpringDamperModel(SpringDamper.from_restitution(0.0893, fine))
+    exact = ContactModel(SpringDamper.from_restitution(0.0893, fine))
     there = np.isfinite(n_t.saddle_node(exact, 1).amplitude)
     first = int(np.argmax(there))
     assert np.all(there[first:]) and fine[first - 1] <= threshold <= fine[first]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.lowest_period_doubling import (
     lowest_along_ratio,
     lowest_period_doublings,
@@ -24,7 +24,7 @@ def test_the_lowest_period_doubling_is_that_of_a_fine_scan():
     # That of the third family is lowest at the end of this scan, where nothing is said.
     fine = np.geomspace(2.0, 40.0, 2001)
     n = np.array([1, 2, 3])
-    model = SpringDamperModel(SpringDamper(fine, 0.0517))
+    model = ContactModel(SpringDamper(fine, 0.0517))
     amplitude = n_t.period_doubling(model, n[:, np.newaxis]).amplitude
     coarse = slice(None, None, 100)
     found = lowest_along_ratio(fine[coarse], amplitude[:, coarse], 0.0517, Release.DISPLACEMENT, n)
@@ -37,7 +37,7 @@ def test_a_period_doubling_rises_on_both_sides_of_the_ratio_at_which_it_is_lowes
     lowest = data.period_doubling_amplitude.values
     for factor in (0.9, 1.1):
         contact = SpringDamper(factor * data.period_doubling_turn.values, zeta)
-        beside = n_t.period_doubling(SpringDamperModel(contact), data.n.values).amplitude
+        beside = n_t.period_doubling(ContactModel(contact), data.n.values).amplitude
         assert np.all(beside > lowest)
 
 

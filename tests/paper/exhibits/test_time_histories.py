@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.time_histories import both_histories, contact_history
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
@@ -88,7 +88,7 @@ def test_the_histories_of_fig_12_are_those_of_the_orbits_of_both_models(describe
     for ratio in BOTH["frequency_ratio"]:
         row = data.sel(frequency_ratio=ratio)
         # One cycle of the orbit, as in Fig. 7, from the start of its contact.
-        model = SpringDamperModel(SpringDamper.from_restitution(parameters["restitution"], ratio))
+        model = ContactModel(SpringDamper.from_restitution(parameters["restitution"], ratio))
         orbit = n_t.orbit(model, n, lam)
         touching = row.contact.values
         ends = np.mod([orbit.phase, orbit.phase + orbit.contact_duration], turns)

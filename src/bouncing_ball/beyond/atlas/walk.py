@@ -29,8 +29,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.beyond.atlas.plan import Nodes
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
 from bouncing_ball.periodic.one_impact.spring_damper_branch import (
@@ -168,4 +168,4 @@ def _replaced(orbit: Orbit, sought: np.ndarray, contact: SpringDamper, nodes: No
     columns = [np.array(getattr(orbit, name)) for name in names]
     for column, name in zip(columns, names, strict=True):
         column[sought] = getattr(found, name)
-    return Orbit.of(SpringDamperModel(contact), nodes.n, *columns)
+    return Orbit.of(ContactModel(contact), nodes.n, *columns)

@@ -30,9 +30,9 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
@@ -142,7 +142,7 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
         stiff = np.stack([stiff_openings(z, most) for z in zeta])
         excess, periods = _leaving(every[:, some], stiff[:, 1])
     dims = ("flights", "frequency_ratio")
-    threshold = SpringDamperModel(law).permanent_contact_threshold()
+    threshold = ContactModel(law).permanent_contact_threshold()
     growth = np.square(restitution)[:, np.newaxis] * stiff[:, 1:] / stiff[:, :-1]
     return described(
         {
@@ -172,7 +172,7 @@ def _leaving(law: SpringDamper, second: np.ndarray) -> tuple[np.ndarray, np.ndar
     0 if there is none.
     """
     excess = second[:, np.newaxis] * np.linspace(0, 1, _PLACES + 1)[1:, np.newaxis, np.newaxis]
-    threshold = SpringDamperModel(law).permanent_contact_threshold()
+    threshold = ContactModel(law).permanent_contact_threshold()
     amplitude = threshold + excess / np.square(law.frequency_ratio)
     found = balls_behind_the_top(law, amplitude)
     every_period = found.periods.copy()
@@ -180,7 +180,7 @@ def _leaving(law: SpringDamper, second: np.ndarray) -> tuple[np.ndarray, np.ndar
     # the ball does not leave at a smaller E.
     left = np.logical_or.accumulate(every_period > 1)
     unknown = np.nonzero((every_period == 0) & ~left)
-    slow = SpringDamperModel(law[unknown[1:]])
+    slow = ContactModel(law[unknown[1:]])
     ends = found.end_phase[unknown], found.end_velocity[unknown]
     further = final_motions(slow, amplitude[unknown], *ends, impacts=_FURTHER)
     every_period[unknown] = further.periods

@@ -35,14 +35,13 @@ from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
@@ -135,13 +134,13 @@ def exact_model(name: str, restitution: float, duration: ArrayLike, speed: Array
     --------
     A linear contact has the same r and D at every speed:
 
-    >>> float(exact_model("linear", 1.0, np.pi, 2.0).contact.frequency_ratio)
+    >>> float(exact_model("linear", 1.0, np.pi, 2.0).law.frequency_ratio)
     1.0
     """
     duration, speed = np.broadcast_arrays(duration, speed)
     if name in LINEAR:
-        return SpringDamperModel(SpringDamper.of_impact(restitution, duration, LINEAR[name]))
-    return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
+        return ContactModel(SpringDamper.of_impact(restitution, duration, LINEAR[name]))
+    return ContactModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
 @dataclass(frozen=True)

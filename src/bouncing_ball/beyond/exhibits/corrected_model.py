@@ -20,10 +20,10 @@ from bouncing_ball.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
 from bouncing_ball.paper.exhibits.time_histories import ContactHistory
 from bouncing_ball.periodic.one_impact import n_t
@@ -102,7 +102,7 @@ def meeting_flights(parameters: OneContact, release: Release) -> xr.Dataset:
     contact = SpringDamper.from_restitution(
         parameters.restitution, parameters.frequency_ratio, release
     )
-    orbit = n_t.require_orbit(SpringDamperModel(contact), parameters.n, parameters.amplitude)
+    orbit = n_t.require_orbit(ContactModel(contact), parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
     start, velocity = orbit.contact_path(np.zeros(()))

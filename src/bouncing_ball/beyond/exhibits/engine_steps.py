@@ -22,9 +22,9 @@ from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import Orbit
 
@@ -141,8 +141,8 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
 
     Examples
     --------
-    >>> from bouncing_ball.models.spring_damper_model import SpringDamperModel
-    >>> orbit = n_t.orbit(SpringDamperModel(SpringDamper(10.0, damping_ratio(0.85))), 1, 1.0)
+    >>> from bouncing_ball.models.contact_model import ContactModel
+    >>> orbit = n_t.orbit(ContactModel(SpringDamper(10.0, damping_ratio(0.85))), 1, 1.0)
     >>> tops = greatest_heights(orbit, np.full(5, 0.85))
     >>> bool(np.all(abs(tops / orbit.max_height - 1) < 1e-12))
     True
@@ -154,7 +154,7 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
     heights = []
     for zeta in damping_ratio(restitution, contact.release):
         law = SpringDamper(contact.frequency_ratio, zeta, contact.release)
-        cycle = SpringDamperModel(law).cycle(lam, phase, relative_velocity)
+        cycle = ContactModel(law).cycle(lam, phase, relative_velocity)
         phase = cycle.phase
         relative_velocity = cycle.relative_velocity
         velocity = lam * np.cos(phase) + relative_velocity
@@ -262,7 +262,7 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     for rule in map(Release.of, runs.release.values):
         contact = SpringDamper(ratio, damping_ratio(r[:, np.newaxis, np.newaxis], rule), rule)
         lam = runs.amplitude.sel(release=rule).transpose(*along).values
-        orbit = n_t.orbit(SpringDamperModel(contact), n[:, np.newaxis], lam)
+        orbit = n_t.orbit(ContactModel(contact), n[:, np.newaxis], lam)
         orbits.append(orbit)
         model_error.append(model_errors(orbit, parameters.transient + parameters.impacts))
         contacts_in_bounce.append(2 * np.pi * n[:, np.newaxis] / contact.free_duration)

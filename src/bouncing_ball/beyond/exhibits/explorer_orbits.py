@@ -13,11 +13,11 @@ from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 
@@ -90,7 +90,7 @@ def _motions() -> xr.Dataset:
     r, omega, lam, phase, velocity = _BALLS
     restitution = RestitutionModel(r)
     contact = SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)
-    spring_damper = SpringDamperModel(contact)
+    spring_damper = ContactModel(contact)
     given = {name: ("motion", values) for name, values in zip(_GIVEN, _BALLS, strict=True)}
     start = xr.Dataset(given)
     of_models = [
@@ -142,7 +142,7 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         "saddle_node_amplitude": n_t.saddle_node(exact, n).amplitude,
         "period_doubling_amplitude": n_t.period_doubling(exact, n).amplitude,
         "ball": orbit.contact_path(middle)[0],
-        "contact_force": exact.contact.force(*-np.array(orbit.contact_motion(middle))),
+        "contact_force": exact.law.force(*-np.array(orbit.contact_motion(middle))),
         "restitution_phase": simple_orbit.phase,
         "restitution_trace": simple_trace,
         "restitution_period_doubling": n_t.period_doubling(simple, n).amplitude,

@@ -28,11 +28,11 @@ from bouncing_ball.datasets.parameters import (
     Sharded,
     number,
 )
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
 MostImpacts = Annotated[
@@ -109,7 +109,7 @@ class ThreeModels(NamedTuple):
 
     restitution: RestitutionModel
     corrected: CorrectedModel
-    contact: SpringDamperModel
+    contact: ContactModel
 
 
 def three_models(

@@ -25,10 +25,10 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, describe, described
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
@@ -68,7 +68,7 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     families = np.array(parameters.n)
     ratios = parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
-    model = SpringDamperModel(SpringDamper(ratios, zeta, rule))
+    model = ContactModel(SpringDamper(ratios, zeta, rule))
     saddle_nodes = n_t.saddle_node(model, families[:, np.newaxis]).amplitude
     doublings = n_t.period_doubling(model, families[:, np.newaxis]).amplitude
     ends = np.stack([saddle_nodes, doublings], axis=-1)

@@ -37,9 +37,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import require
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Motions
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -262,7 +262,7 @@ def balls_behind_the_top(law: SpringDamper, amplitude: np.ndarray) -> Motions:
     """The motions on which balls end that are set down slowly behind the top of the table."""
     phase, closing = _behind_the_top(law)
     velocity = amplitude * np.cos(phase) + closing
-    return final_motions(SpringDamperModel(law), amplitude, phase, velocity, impacts=_IMPACTS)
+    return final_motions(ContactModel(law), amplitude, phase, velocity, impacts=_IMPACTS)
 
 
 def _steps(excess: np.ndarray) -> np.ndarray:
@@ -310,7 +310,7 @@ class _Followed(Batch):
         there = replace(self, excess=excess)
         level = there.amplitude
         velocity = level * np.cos(self.phase) + self.closing
-        model = SpringDamperModel(self.law)
+        model = ContactModel(self.law)
         found = final_motions(model, level, self.phase, velocity, impacts=impacts * (flights + 1))
         closing = found.end_velocity - level * np.cos(found.end_phase)
         there = replace(there, phase=found.end_phase, closing=closing)
@@ -392,7 +392,7 @@ class _Followed(Batch):
         From permanent contact the phases and durations differ by the order of ϖ⁻¹, the velocities
         by ϖ⁻³ and Λ by ϖ⁻².
         """
-        model = SpringDamperModel(self.law)
+        model = ContactModel(self.law)
         amplitude = self.amplitude
         velocity = amplitude * np.cos(self.phase) + self.closing
         impacts = model.simulate(amplitude, self.phase, velocity, flights)

@@ -7,12 +7,12 @@ A user's law is a subclass of :class:`ContactLaw`. The paper's contact is
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.errors import ModelError, ParameterError, require
 from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.damping import (
     Release,
@@ -23,11 +23,13 @@ from bouncing_ball.models.damping import (
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.analytic import require_analytic
 from bouncing_ball.models.laws.collocation import integrals_of_force, states
 from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.signature import computed
+from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.setting import PAPER, Setting
 
 # The closed form of a motion is used for √γ above this value. Its steady part has the size Λ/√γ, so
@@ -48,6 +50,23 @@ class ContactLaw(ForceLaw):
     of them in :class:`~.force_law.ForceLaw`. The motion of balls on the contact is computed by
     collocation, unless the subclass knows it in closed form.
     """
+
+    @property
+    def is_linear_and_underdamped(self) -> bool:
+        """Whether all contacts are those of a spring and a damper with a linear release and ζ < 1,
+        of which the motion and the branch of n-T orbits have a closed form.
+        """
+        return False
+
+    def check_in(self, setting: Setting) -> None:
+        """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts of balls on this law
+        cannot be computed on this table, or in this flight.
+        """
+        require_analytic(self.started(1.0))
+        if not setting.is_free:
+            raise ParameterError(
+                "{flight} is known for rigid and spring_damper, and not for contact laws"
+            )
 
     def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
         """The contacts and flights of balls with this law on a table of amplitude Λ.
@@ -88,6 +107,18 @@ class ContactLaw(ForceLaw):
         w_rate, w = table(phase, amplitude)
         sunk, moved = integrals_of_force(self, duration, -gap[0], -rate[0], phase[0], amplitude)
         return w_rate[0] - w_rate[1] - sunk, (w[1] * w[1] - w[0] * w[0]) / 2 - moved
+
+    def permanent_contact_in(self, setting: Setting) -> Any:
+        """The largest Λ up to which a steady contact never releases the ball, of the laws' shape.
+
+        Raises
+        ------
+        ModelError
+            If no such contact was found.
+        """
+        laws = self.flat(self.shape)
+        found = [permanent_contact(laws.take(k), setting.waveform) for k in range(self.size)]
+        return np.array(found).reshape(self.shape)[()]
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The impacts as instants, at impact speeds v > 0 of any shape.

@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.linear_flow import ContactFlow
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
 from bouncing_ball.periodic.one_impact import n_t
@@ -88,7 +88,7 @@ def weightless_orbits(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) ->
     flight = 2 * np.pi * np.asarray(n) - duration
 
     def orbit(u, x, y) -> Orbit:
-        model = SpringDamperModel(contact)
+        model = ContactModel(contact)
         return Orbit.of(model, n, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
 
     def defects(u, x, y) -> np.ndarray:
@@ -194,7 +194,7 @@ def readings() -> dict[str, np.ndarray]:
     zeta = float(damping_ratio(RESTITUTION))
 
     def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
-        model = SpringDamperModel(SpringDamper(omega, damping, release))
+        model = ContactModel(SpringDamper(omega, damping, release))
         ends = [n_t.saddle_node(model, n).amplitude, n_t.period_doubling(model, n).amplitude]
         return np.stack(ends, axis=-1)
 

@@ -18,12 +18,12 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest_defect
@@ -214,12 +214,12 @@ def contact_orbits(rng, samples) -> Checks:
     omega = np.exp(rng.uniform(0.7, 5, samples))
     zeta = rng.uniform(0.01, 0.5, samples)
     n = rng.integers(1, 4, samples)
-    fold = n_t.saddle_node(SpringDamperModel(SpringDamper(omega, zeta)), n).amplitude
+    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n).amplitude
     # A compliant contact with strong damping may have no saddle-node.
     omega, zeta, n, fold = (values[np.isfinite(fold)] for values in (omega, zeta, n, fold))
     contact = SpringDamper(omega, zeta)
     lam = fold + rng.uniform(0.05, 0.5, fold.size)
-    orbit = n_t.orbit(SpringDamperModel(contact), n, lam)
+    orbit = n_t.orbit(ContactModel(contact), n, lam)
     phase = orbit.phase
     impact = orbit.impact_velocity
     end = orbit.contact_duration

@@ -14,13 +14,13 @@ import numpy as np
 from bouncing_ball.accuracy.errors import Quantity, relative_errors
 from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.models import permanent_contact as threshold
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as rigid
@@ -197,14 +197,14 @@ def _contact_orbits(rng, samples) -> Rows:
     omega = np.exp(rng.uniform(0.7, 5, samples))
     zeta = rng.uniform(0.01, 0.5, samples)
     n = rng.integers(1, 4, samples)
-    fold = n_t.saddle_node(SpringDamperModel(SpringDamper(omega, zeta)), n)
+    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n)
     # A compliant contact with strong damping may have no saddle-node, or no period doubling.
     there = np.isfinite(fold.amplitude)
     omega = omega[there]
     zeta = zeta[there]
     n = n[there]
     contact = SpringDamper(omega, zeta)
-    model = SpringDamperModel(contact)
+    model = ContactModel(contact)
     node = n_t.saddle_node(model, n)
     doubling = n_t.period_doubling(model, n)
     lam = node.amplitude + rng.uniform(0.05, 0.5, n.size)
@@ -302,7 +302,7 @@ def _errors(rng, samples) -> Rows:
     r = rng.uniform(0.5, 0.95, samples)
     omega = np.exp(rng.uniform(2, 5, samples))
     lam = np.pi * (1 - r) / (1 + r) + rng.uniform(0.05, 0.5, samples)
-    exact = SpringDamperModel(SpringDamper.from_restitution(r, omega))
+    exact = ContactModel(SpringDamper.from_restitution(r, omega))
     simple = RestitutionModel(r)
     compared = [Quantity.MAX_HEIGHT, Quantity.PERMANENT_CONTACT]
     errors = np.abs(relative_errors(exact, [simple], 1, lam, compared)[0])

@@ -12,9 +12,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.one_impact import restitution_branch
@@ -64,7 +64,7 @@ def spring_damper_model_orbits(
     names += ["restitution", "frequency_ratio", "n"]
     names += [] if kind else ["impact_velocity"]
     duration, lam, phase, admissible, r, ratio, n, *velocity = _columns(data, *names)
-    model = SpringDamperModel(SpringDamper.from_restitution(r, ratio, data.attrs["release"]))
+    model = ContactModel(SpringDamper.from_restitution(r, ratio, data.attrs["release"]))
     return Shown(Orbit.of(model, n, lam, phase, duration, *velocity), admissible, kind)
 
 
@@ -111,7 +111,7 @@ def nearest(orbit: Orbit) -> Orbit:
     if isinstance(model, RestitutionModel):
         fold = restitution_branch.saddle_node(orbit.n, model.restitution)
         return Orbit.of(model, orbit.n, np.hypot(fold, y), np.arctan2(y, fold))
-    contact = model.contact
+    contact = model.law
     excess = excess_angle(contact, orbit.contact_duration)
     return orbits_on_branch(nearest_excess(contact, orbit.n, x, y, excess), contact, orbit.n)
 

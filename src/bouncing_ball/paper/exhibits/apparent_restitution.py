@@ -9,10 +9,10 @@ from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.datasets.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
     require_amplitude,
@@ -106,7 +106,7 @@ def _sweep(
     """
     r, lam = np.broadcast_arrays(restitution, amplitude)
     contact = SpringDamper.from_restitution(r[:, np.newaxis], ratios, release)
-    orbits = n_t.orbit(SpringDamperModel(contact), n, lam[:, np.newaxis])
+    orbits = n_t.orbit(ContactModel(contact), n, lam[:, np.newaxis])
     require_any_orbit(orbits.exists, n, lam, ratios)
     found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")

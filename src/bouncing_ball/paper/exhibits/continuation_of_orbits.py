@@ -16,10 +16,10 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.branch import Branch, ContinuationError
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     BranchEnd,
@@ -191,7 +191,7 @@ def _first_and_second(
     ratios = np.array(parameters.frequency_ratio)
     contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     families = np.full(ratios.size, n)
-    starts = starts_of_branches(SpringDamperModel(contacts), families, top)
+    starts = starts_of_branches(ContactModel(contacts), families, top)
     duration = 2 * np.pi * n - _SHORT_FLIGHT / ratios
     long = orbits_on_branch(excess_angle(contacts, duration), contacts, n)
     rows = np.flatnonzero(long.exists & (long.amplitude < top) & long.is_admissible())
@@ -199,7 +199,7 @@ def _first_and_second(
     both = {
         name: np.concatenate([getattr(starts, name), getattr(long, name)[rows]]) for name in place
     }
-    model = SpringDamperModel(contacts[[*range(ratios.size), *rows]])
+    model = ContactModel(contacts[[*range(ratios.size), *rows]])
     found = branches_through(Orbit.of(model, n, **both), top, continuation.largest_step)
     branches = found[: ratios.size]
     none = NoOrbitError("no other branch begins at permanent contact")
@@ -305,7 +305,7 @@ def stability_ranges(
         parameters.restitution, np.repeat(ratios, families.size), release
     )
     branches = whole_branches(
-        SpringDamperModel(contacts),
+        ContactModel(contacts),
         np.tile(families, ratios.size),
         parameters.amplitude_max,
         continuation.largest_step,

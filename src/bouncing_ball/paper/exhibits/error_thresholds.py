@@ -8,10 +8,10 @@ from pydantic import Strict
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitErrors,
@@ -84,7 +84,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
         tolerances=[parameters.tolerance],
     ).squeeze(["quantity", "tolerance"], drop=True)
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
-    orbit = n_t.orbit(SpringDamperModel(contact), n, lam)
+    orbit = n_t.orbit(ContactModel(contact), n, lam)
     require_any_orbit(orbit.exists, n, lam, ratios)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))

@@ -9,9 +9,9 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Parameters, Span
 from bouncing_ball.datasets.variables import described
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
 
@@ -49,7 +49,7 @@ def lowest_along_ratio(
     from scipy.optimize.elementwise import find_minimum
 
     def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
-        model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, release))
+        model = ContactModel(SpringDamper(np.exp(log_ratio), zeta, release))
         return n_t.period_doubling(model, n).amplitude
 
     lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
@@ -72,12 +72,12 @@ def lowest_period_doublings(parameters: FamiliesAlongRatio, release: Release) ->
     families = np.array(parameters.n)
     ratios = parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
-    scanned = SpringDamperModel(SpringDamper(ratios, zeta, release))
+    scanned = ContactModel(SpringDamper(ratios, zeta, release))
     amplitude = n_t.period_doubling(scanned, families[:, np.newaxis]).amplitude
     turns = lowest_along_ratio(ratios, amplitude, zeta, release, families)
     known = np.isfinite(turns)
     lowest = np.full(turns.shape, np.nan)
-    at_turns = SpringDamperModel(SpringDamper(turns[known], zeta, release))
+    at_turns = ContactModel(SpringDamper(turns[known], zeta, release))
     lowest[known] = n_t.period_doubling(at_turns, families[known]).amplitude
     return described(
         {

@@ -24,9 +24,9 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import saddle_node
 from bouncing_ball.periodic.orbits.stability import Side
@@ -109,9 +109,7 @@ class OrbitsOfContacts(NamedTuple):
         [False, True]
         """
         column = np.asarray(ratios)[:, np.newaxis]
-        model = SpringDamperModel(
-            SpringDamper.from_restitution(self.restitution, column, self.release)
-        )
+        model = ContactModel(SpringDamper.from_restitution(self.restitution, column, self.release))
         stable = n_t.orbit(model, self.n, self.amplitudes)
         if self.admissible:
             found = stable.exists & stable.is_admissible()

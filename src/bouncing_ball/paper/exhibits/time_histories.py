@@ -6,10 +6,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.parameters import Many, Samples
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import ContactRatio, OrbitParameters
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -46,7 +46,7 @@ def _orbit(
 ) -> tuple[Orbit, dict[str, float]]:
     """The orbit on one contact, which is admissible, and the numbers of its dataset."""
     contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-    model = SpringDamperModel(contact)
+    model = ContactModel(contact)
     orbit = n_t.require_admissible(model, parameters.n, parameters.amplitude)
     return orbit, {name: float(getattr(orbit, name)) for name in _STATE}
 

@@ -9,17 +9,18 @@ branch of the spring-damper model. They are a second route beside the equations 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.impact import impact
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.setting import PAPER
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
@@ -66,9 +67,14 @@ class RestitutionLine(OrbitsOfModel):
 class SpringDamperBranch(OrbitsOfModel):
     """The explicit branch of :mod:`~bouncing_ball.periodic.one_impact.spring_damper_branch`."""
 
-    model: SpringDamperModel
+    model: ContactModel
 
     is_complete: ClassVar[bool] = True
+
+    @property
+    def _contact(self) -> SpringDamper:
+        """The law, which is that of a spring and a damper where it has this branch."""
+        return cast(SpringDamper, self.model.law)
 
     def _in_setting(self, found: Orbit) -> Orbit:
         """Orbits of the contact as those of the ball, whose setting may be one with a drag of 0."""
@@ -80,11 +86,11 @@ class SpringDamperBranch(OrbitsOfModel):
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node."""
-        return self._in_setting(bifurcations.orbit_at(self.model.contact, n, amplitude, side))
+        return self._in_setting(bifurcations.orbit_at(self._contact, n, amplitude, side))
 
     def orbits(self, n: int, amplitude: float) -> Orbit:
         """All n-T orbits of one contact at one Λ: see :func:`.orbits_at`."""
-        return self._in_setting(bifurcations.orbits_at(self.model.contact, n, amplitude))
+        return self._in_setting(bifurcations.orbits_at(self._contact, n, amplitude))
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node.
@@ -95,11 +101,11 @@ class SpringDamperBranch(OrbitsOfModel):
         Examples
         --------
         >>> from bouncing_ball.models.spring_damper import SpringDamper
-        >>> model = SpringDamperModel(SpringDamper(10.0, 0.0))
+        >>> model = ContactModel(SpringDamper(10.0, 0.0))
         >>> SpringDamperBranch(model).saddle_node([1, 2]).amplitude.tolist()
         [0.0, 0.0]
         """
-        contact = self.model.contact
+        contact = self._contact
         found = orbits_on_branch(bifurcations.saddle_node(contact, n), contact, n)
         rounding = _UNITS * np.spacing(np.abs(found.impact_velocity))
         lam = np.where(found.amplitude <= rounding, 0.0, found.amplitude)
@@ -107,7 +113,7 @@ class SpringDamperBranch(OrbitsOfModel):
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """The orbits at the period doubling nearest to the saddle-node."""
-        contact = self.model.contact
+        contact = self._contact
         doubling = bifurcations.period_doubling(contact, n)
         return self._in_setting(orbits_on_branch(doubling, contact, n))
 

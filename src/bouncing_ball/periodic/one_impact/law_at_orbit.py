@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.spring_damper_model import model_of_law
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
@@ -77,13 +77,13 @@ def orbit_of_law(
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
     law = law_of_impact(kind, restitution, taken, speed)
-    orbit = n_t.orbit(model_of_law(law), n, amplitude, side)
+    orbit = n_t.orbit(ContactModel(law), n, amplitude, side)
     problem = orbit.problem()
     y = orbit.point(problem)
     for _ in range(_ROUNDS):
         lost = np.flatnonzero(np.isnan(y).any(axis=-1))
         if lost.size:
-            n_t.require_orbit(model_of_law(law.take(lost[0])), n, amplitude, side)
+            n_t.require_orbit(ContactModel(law.take(lost[0])), n, amplitude, side)
         missed = -problem.states(y)[1][..., 0] - speed
         slope = np.full_like(taken, -1.0)
         np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
@@ -91,7 +91,7 @@ def orbit_of_law(
         missed_before = missed
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         law = law_of_impact(kind, restitution, taken, speed)
-        problem = replace(problem, balls=Balls(model_of_law(law), amplitude))
+        problem = replace(problem, balls=Balls(ContactModel(law), amplitude))
         found = solve(problem.equations_at, y, _CLOSE)
         y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
         if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):

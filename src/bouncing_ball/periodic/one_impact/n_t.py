@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper_model import SpringDamperModel, model_of_law
 from bouncing_ball.periodic.one_impact.closed_forms import (
     CorrectedLine,
     RestitutionLine,
@@ -61,16 +60,11 @@ def _(model: RestitutionModel) -> OrbitsOfModel:
 
 
 @orbits_of.register
-def _(model: SpringDamperModel) -> OrbitsOfModel:
-    return SpringDamperBranch(model) if model.setting.is_paper else OrbitsOfContact(model)
-
-
-@orbits_of.register
-def _(model: LawModel) -> OrbitsOfModel:
-    ball = model_of_law(model.law, model.setting)
-    if isinstance(ball, SpringDamperModel):
-        return orbits_of(ball)
-    return SearchedOrbits(model) if model.setting.is_paper else OrbitsOfContact(model)
+def _(model: ContactModel) -> OrbitsOfModel:
+    if not model.setting.is_paper:
+        return OrbitsOfContact(model)
+    has_closed_form = model.law.is_linear_and_underdamped
+    return SpringDamperBranch(model) if has_closed_form else SearchedOrbits(model)
 
 
 @orbits_of.register

@@ -45,9 +45,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
+from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.oscillator import gravity_response, table_response
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import blocks, pick
 from bouncing_ball.periodic.orbits.orbit import Orbit
 
@@ -309,7 +309,7 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
 def orbits_of_points(point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Orbit:
     """The orbits at points of the branch."""
     return Orbit.of(
-        SpringDamperModel(contact),
+        ContactModel(contact),
         n,
         point.amplitude,
         point.phase,

@@ -72,8 +72,8 @@ def restitution_speed(
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
-    >>> from bouncing_ball.models.laws.model import LawModel
-    >>> speed, _ = restitution_speed(1, LawModel(HuntCrossley(1e3, 0.0)))
+    >>> from bouncing_ball.models.contact_model import ContactModel
+    >>> speed, _ = restitution_speed(1, ContactModel(HuntCrossley(1e3, 0.0)))
     >>> round(float(speed / np.pi), 12)
     1.0
     """

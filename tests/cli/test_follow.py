@@ -142,7 +142,7 @@ def test_a_contact_in_place_of_a_ball_is_told_its_model(refusal):
     with refusal(ModelError, "contact_law, corrected or ContactModel(law)"):
         bouncing_ball.orbit(contact, amplitude=1.0)
     assert bouncing_ball.orbit(ContactModel(contact), amplitude=1.0).impacts == 1
-    with refusal(ModelError, "contact = 10.0 is not a SpringDamper"):
+    with refusal(ModelError, "law = 10.0 is not a law of a contact"):
         ContactModel(10.0)
 
 

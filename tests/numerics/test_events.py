@@ -53,6 +53,51 @@ def test_a_change_of_sign_without_a_zero_is_not_located(function):
     assert locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0])) is None
 
 
+class Parabola:
+    """The branch x = p²."""
+
+    def residual(self, y):
+        return y[..., :1] - y[..., 1:] ** 2
+
+    def jacobian(self, y):
+        return np.stack([np.ones_like(y[..., 1]), -2 * y[..., 1]], axis=-1)[..., np.newaxis, :]
+
+
+def test_a_short_step_next_to_a_pole_is_no_zero():
+    # Newton's step of ±|p - c|^(-1/2) is 2(p - c), which is 2e-13 at the secant's estimate, p = 0.3.
+    pole = 0.3 + 1e-13
+
+    def condition(y):
+        x = y[..., 1] - pole
+        value = np.sign(x) / np.sqrt(np.abs(x))
+        slope = -0.5 * np.abs(x) ** -1.5
+        return value, np.stack([0 * slope, slope], axis=-1)
+
+    event = Event("pole", lambda y: condition(y)[0], condition=condition)
+    assert locate(Line(), event, np.zeros(2), np.full(2, 0.6), values=(-1.0, 1.0)) is None
+
+
+def test_with_tangents_the_first_estimate_is_next_to_the_curve_and_the_zero_is_the_same():
+    ends = np.array([0.36, 0.6]), np.array([0.64, 0.8])
+    tangents = tuple(np.array([2 * p, 1.0]) / np.hypot(2 * p, 1.0) for p in (0.6, 0.8))
+    zero = np.array([0.49, 0.7])
+    missed = []
+    for known in (None, tangents):
+        estimates = []
+
+        def condition(y, estimates=estimates):
+            estimates.append(y)
+            return y[..., 1] - 0.7, np.array([0.0, 1.0])
+
+        event = Event("level", lambda y: y[..., 1] - 0.7, condition=condition)
+        found = locate(Parabola(), event, *ends, tangents=known)
+        assert found.point == pytest.approx(zero, abs=1e-15)
+        missed.append(abs(Parabola().residual(estimates[0]).item()))
+    # The chord is 0.1² beside the parabola; the cubic misses it by the next order in the step.
+    assert missed[0] == pytest.approx(0.01, abs=1e-12)
+    assert missed[1] < missed[0] / 10
+
+
 def test_the_limit_of_a_sign_is_bisected():
     event = Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0), is_sign=True)
     for ends in (0.0, 1.0), (1.0, 0.0):

@@ -42,6 +42,13 @@ HELD = 1e-4 + 1e-6
 LEAVES = 1e-11
 
 
+# The multiplier at which an orbit bifurcates, by its kind. Unknowns that are located to 1e-12 leave
+# it to 1e-8 for slopes up to 10⁴; next to a grazing impact, where slopes grow without bounds, the
+# multipliers themselves are that large.
+CRITICAL = {"saddle-node": 1.0, "period doubling": -1.0}
+AT_CRITICAL = 1e-8
+
+
 class Verdict(NamedTuple):
     """The model, where it moves, k, the parameter, the reason of the end, what the second code says
     of it ("right", "named" or "wrong"), the largest defect that it finds, and the slowest impact.
@@ -153,11 +160,21 @@ def _is_right(end):
     return None
 
 
+def require_critical(special):
+    """Each saddle-node and each period doubling has the multiplier that its kind says."""
+    for kind, orbit in special:
+        if kind in CRITICAL:
+            multipliers = orbit.multipliers()
+            missed = np.min(np.abs(multipliers - CRITICAL[kind]))
+            assert missed < AT_CRITICAL * (1 + np.max(np.abs(multipliers))), (kind, multipliers)
+
+
 def judged(orbit, along, to, setting=SINE):
     """The branch of an orbit up to a value, and the verdict on its end."""
     found = bouncing_ball.follow(orbit, along=along, to=to, points=200)
     reason = str(found.end_reason.values[-1])
     special = found.special_states()
+    require_critical(special)
     *_, last = found.states()
     if special and reason.startswith(special[-1][0]):
         last = special[-1][1]

@@ -394,6 +394,21 @@ def test_a_branch_that_merges_with_permanent_contact_says_so(ratio):
     assert found.sizes["point"] < 200
 
 
+def test_a_branch_ends_at_its_limit_also_where_the_flight_nearly_vanishes():
+    """At ζ = 1.4e-10 the flight is so short that the end was taken for that of vanishing flights;
+    the branch goes on to ζ = 0, where the flight lasts for 0.0076.
+    """
+    ball = bouncing_ball.spring_damper(damping_ratio=1e-3, frequency_ratio=1.3)
+    whole = bouncing_ball.branch(ball, amplitude_max=3.0, points=400)
+    flights = 2 * np.pi - whole.contact_duration.values
+    start = list(whole.states())[int(np.argmin(np.abs(np.log(flights / 0.0023))))]
+    found = bouncing_ball.follow(start, along="damping_ratio", to=0.0)
+    assert str(found.end_reason[1].values) == "damping ratio = 0 is reached"
+    assert found.damping_ratio[-1] == 0
+    *_, last = found.states()
+    assert last.flight_time == pytest.approx(0.0076, abs=5e-5) and last.defect() < 1e-12
+
+
 def test_an_orbit_on_a_resting_table_is_not_followed(refusal):
     """The saddle-node of an elastic ball is at Λ = 0, where all phases are the same orbit."""
     fold, _ = bouncing_ball.limits(bouncing_ball.rigid(restitution=1.0))

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
-from random_branches import ELSEWHERE, ON_SINES, orbit_of, sample
+from random_branches import ELSEWHERE, ON_SINES, orbit_of, require_critical, sample
 
+import bouncing_ball
+from bouncing_ball import Spring, Waveform
 from bouncing_ball.periodic.branches.following import branch_from
 
 LONG = [pytest.mark.long, pytest.mark.slow]
@@ -40,6 +42,19 @@ def test_the_ends_of_random_branches_elsewhere_are_right_or_named(count, seed, k
     verdicts = sample(count, seed, kinds)
     assert {each.setting for each in verdicts} == {setting for _, setting in kinds}
     check(verdicts)
+
+
+def test_next_to_a_grazing_impact_a_short_step_of_newtons_method_is_no_zero():
+    """det(M + 1) and its slopes grow without bounds there; a doubling with the multipliers -254434
+    and -2e-6 was listed at gap 1.391755.
+    """
+    flight = Spring(0.35, 0.02, gap=1.0)
+    ball = bouncing_ball.rigid(restitution=0.8, table=Waveform([1, 0.1]), flight=flight)
+    start = bouncing_ball.orbit(ball, amplitude=1.2)
+    found = bouncing_ball.follow(start, along="gap", to=2.0)
+    special = found.special_states()
+    assert [kind for kind, _ in special] == ["grazing of an impact"]
+    require_critical(special)
 
 
 @pytest.mark.parametrize("name", ["rigid", "displacement", "force", "corrected"])

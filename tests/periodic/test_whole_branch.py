@@ -24,6 +24,7 @@ def test_a_branch_is_the_same_alone_and_beside_others(release):
     n, ratios = (np.array(column) for column in zip(*CASES, strict=True))
     contacts = SpringDamper.from_restitution(0.7, ratios, release)
     together = whole_branches(ContactModel(contacts), n, TOP)
+    assert whole_branches(ContactModel(contacts[0]), [], TOP) == []
     for k, beside in enumerate(together):
         alone = ContactModel(contacts[k])
         if not isinstance(beside, Followed):

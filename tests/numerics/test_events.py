@@ -64,7 +64,7 @@ class Parabola:
 
 
 def test_a_short_step_next_to_a_pole_is_no_zero():
-    # Newton's step of ±|p - c|^(-1/2) is 2(p - c), which is 2e-13 at the secant's estimate, p = 0.3.
+    # Newton's step of ±|p - c|^(-1/2) is 2(p - c): 2e-13 at p = 0.3, the secant's estimate.
     pole = 0.3 + 1e-13
 
     def condition(y):

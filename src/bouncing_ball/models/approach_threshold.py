@@ -17,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
+from bouncing_ball.models.oscillator import impulse_response
+
 _PERIOD = 2 * np.pi
 # Samples of half an oscillation between which a turn is found, and the turns in one period.
 _FINE = 32
@@ -41,14 +43,9 @@ class _Part(NamedTuple):
 
     def free(self, time: np.ndarray) -> np.ndarray:
         """The matrix of (y, y′) over a time without forcing, shape (2, 2, time)."""
-        rate = self.zeta * self.omega
-        damped = self.omega * np.sqrt((1 - self.zeta) * (1 + self.zeta))
-        decay = np.exp(-rate * time)
-        cosine = decay * np.cos(damped * time)
-        sine = decay * np.sin(damped * time) / damped
-        return np.array(
-            [[cosine + rate * sine, sine], [-(self.omega**2) * sine, cosine - rate * sine]]
-        )
+        g, g_rate = impulse_response(time, self.omega, self.zeta)
+        level = g_rate + 2 * self.zeta * self.omega * g
+        return np.array([[level, g], [-(self.omega**2) * g, g_rate]])
 
     def after(self, start: float, state: np.ndarray, time: np.ndarray) -> np.ndarray:
         """y and y′ a time after a state at ``start``, shape (2, time)."""

@@ -151,19 +151,32 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     >>> round(float(responses(3.0, 1e-9, 0.0).gravity.value), 12)
     4.5
     """
+    columns = _columns(time, frequency_ratio, damping_ratio)
+    impulse = impulse_response(time, frequency_ratio, damping_ratio)
+    return Responses(
+        impulse=impulse,
+        gravity=_exponential(0, *columns, impulse),
+        table=_exponential(1j, *columns, impulse),
+    )
+
+
+def impulse_response(
+    time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayLike
+) -> Response:
+    """g and g′ alone; the arguments are those of :func:`responses`."""
+    s, a, q, w = _columns(time, frequency_ratio, damping_ratio)
+    c, g = _damped(s, a, q, w)
+    return Response(g, c - a * g)
+
+
+def _columns(
+    time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """s, a, q and w, of one shape."""
     args = (np.asarray(x, dtype=float) for x in (time, frequency_ratio, damping_ratio))
     s, omega, zeta = np.broadcast_arrays(*args)
     # The product form of w keeps its digits near ζ = 1, where q - a² would lose them.
-    a = zeta * omega
-    q = omega * omega
-    w = omega * omega * (1 - zeta) * (1 + zeta)
-    c, g = _damped(s, a, q, w)
-    impulse = Response(g, c - a * g)
-    return Responses(
-        impulse=impulse,
-        gravity=_exponential(0, s, a, q, w, impulse),
-        table=_exponential(1j, s, a, q, w, impulse),
-    )
+    return s, zeta * omega, omega * omega, omega * omega * (1 - zeta) * (1 + zeta)
 
 
 def steady_response(real: Any, imaginary: Any, detuning: Any, loss: Any, gamma: Any) -> tuple:

@@ -23,12 +23,12 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import bouncing_ball
+from bouncing_ball.cli import patience
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Continuation
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
-from bouncing_ball.pipeline import patience
 from bouncing_ball.pipeline.configuration import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]

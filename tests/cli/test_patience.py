@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 import bouncing_ball
+from bouncing_ball.cli import patience as module
 from bouncing_ball.cli.main import main
+from bouncing_ball.cli.patience import told_if_slow
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.pipeline import patience as module
-from bouncing_ball.pipeline.patience import told_if_slow
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
@@ -52,17 +52,6 @@ def test_without_advice_a_line_gives_the_time_alone(hasty, capfd):
         time.sleep(0.1)
     line = "bouncing-ball: no answer after 0 s yet; Ctrl-C ends it\n"
     assert capfd.readouterr().err == line
-
-
-def test_a_job_of_the_workflow_says_which_dataset_takes_long(monkeypatch, capfd):
-    monkeypatch.setattr(module, "_OF_A_JOB", 0.05)
-    with module.patience_of_job("ext_cascades", "fewer samples"):
-        time.sleep(0.12)
-    first, *_ = capfd.readouterr().err.splitlines()
-    assert first == (
-        "ext_cascades: no dataset after 0 s yet; fewer samples make the answer cheaper; "
-        "Ctrl-C ends it"
-    )
 
 
 def test_a_call_of_the_library_starts_no_thread(monkeypatch):

@@ -18,14 +18,14 @@ ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
         (None, "No such file or directory"),
         (
             "a: 1\nclose_within: ü".encode("latin-1"),
-            "not YAML: 'utf-8' codec can't decode byte 0xfc in position 19: invalid start byte",
+            "not YAML: unacceptable character #x00fc: invalid start byte in "
+            '"<byte string>", position 19',
         ),
         (
             b"a: 1\r\nb:\r\n\tc: 1\r\n",
             "not YAML: while scanning for the next token found character '\\t' that cannot "
-            'start any token in "<unicode string>", line 3, column 1: ',
+            'start any token in "<byte string>", line 3, column 1: ',
         ),
-        (b"a: 1\nb: " + 3000 * b"[" + 3000 * b"]", "not YAML: maximum recursion depth exceeded"),
         (b"a: 1\nb: !!python/name:os.system\n", "not YAML: could not determine a constructor"),
     ],
 )
@@ -50,17 +50,6 @@ def test_a_file_that_cannot_be_read_gives_one_line(tmp_path, one_line, content, 
 def test_a_duplicate_key_and_what_yaml_forbids_are_refused(refusal, text, said):
     with refusal(ConfigurationError, said):
         parse_yaml(text)
-
-
-@pytest.mark.parametrize("text", ["0x10", "010", "0b1", "1:30", "1_000", "!!int 1.5", "9" * 5000])
-def test_a_whole_number_is_written_in_decimal_digits(refusal, text):
-    with refusal(ConfigurationError, "in line 2 is not a whole number of decimal digits"):
-        parse_yaml(f"release: force\nn: {text}\n")
-
-
-def test_an_alias_inside_of_what_it_names_is_refused(refusal):
-    with refusal(ConfigurationError, "not YAML: Circular reference"):
-        parse_yaml("a: &a {b: *a}")
 
 
 def test_an_alias_stands_for_what_it_names():

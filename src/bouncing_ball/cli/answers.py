@@ -8,8 +8,8 @@ from bouncing_ball.cli.commands import COMMANDS, Program
 from bouncing_ball.cli.interrupt import importing
 from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
+from bouncing_ball.cli.patience import told_if_slow
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
-from bouncing_ball.pipeline.patience import told_if_slow
 
 
 class _OfCommand(Parser):

@@ -27,7 +27,6 @@ from bouncing_ball.datasets.files import (
 )
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
-from bouncing_ball.pipeline.patience import patience_of_job
 from bouncing_ball.pipeline.provenance import PREFIX, gather, read_attributes
 from bouncing_ball.pipeline.samples import CONTENT, SECONDS, computed_by, content_digest
 from bouncing_ball.pipeline.sources import file_of, names_of, without_versions
@@ -39,7 +38,6 @@ REFERENCE = (
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
 # What makes the dataset of any study cheaper.
-_CHEAPER = "fewer samples, contacts or families in its parameters"
 _CONCLUSION = Path("results/logs/conclusion")
 
 
@@ -223,8 +221,7 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
         shards = [read_input(path) for path in paths]
         from_other_jobs["found"] = joined_shards(shards)
         earlier = earlier_seconds(paths)
-    with patience_of_job(Path(snakemake.output.data).stem, _CHEAPER):
-        dataset = typed(study)(**given, **from_other_jobs)
+    dataset = typed(study)(**given, **from_other_jobs)
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")

@@ -55,10 +55,10 @@ def test_a_mistake_is_one_line(refused, options, words):
 
 
 @pytest.mark.parametrize(("window", "words"), [
-    (("--low", "0.6", "--high", "0.9"), "starts at restitution = 0.5, which is not between --low"),
-    (("--low", "0.9", "--high", "0.1"), "--low 0.9 is not below --high 0.1"),
+    (("--low", "0.6", "--high", "0.9"), "0.6 to 0.9 does not contain restitution = 0.5"),
+    (("--low", "0.9", "--high", "0.1"), "restitution = (0.9, 0.1) is not two numbers of which"),
     (("--low", "0.4"), "--low and --high are needed together"),
-    (("--along-low", "2", "--along-high", "3"), "1.52682, which is not between --along-low 2 and"),
+    (("--along-low", "2", "--along-high", "3"), "2 to 3 does not contain amplitude = 1.52682"),
     (("--along-high", "3"), "--along-low and --along-high are needed together"),
 ])  # fmt: skip
 def test_a_curve_starts_between_its_limits(refused, window, words):

@@ -83,7 +83,7 @@ curve --amplitude 1 --restitution 0.85 --frequency-ratio 10 --to 1.3 --across am
 curve --amplitude 1 --restitution 0.85 --to 1.3 --across damping-ratio
     --across damping-ratio needs --frequency-ratio of a contact, from which it starts
 curve --amplitude 1 --restitution 0.85 --to 1.3 DOUBLINGS --across restitution --low 0.9 --high 0.1
-    --low 0.9 is not below --high 0.1
+    the range of restitution = (0.9, 0.1) is not two numbers of which the second is larger
 fit ""
     the name of the file is empty
 explain ""

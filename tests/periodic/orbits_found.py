@@ -33,6 +33,11 @@ def known_orbit(name, amplitude, along=("amplitude",), n=1, side="stable"):
     return orbit, *simulated(ball, float(phase[0]), float(velocity[0]), 1, along)
 
 
+def first(found, kind):
+    """The first special orbit of a kind on a branch."""
+    return next(each for each in found.special if each.kind == kind)
+
+
 def legs_of(orbit):
     """The contacts and flights of an orbit."""
     problem = orbit.problem()

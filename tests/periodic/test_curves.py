@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import FOUND, balls, found_orbit
+from orbits_found import FOUND, balls, first, found_orbit
 
 import bouncing_ball
 from bouncing_ball.beyond.motions.cascade_of_flights import openings
@@ -22,7 +22,7 @@ from bouncing_ball.periodic.orbits.special import Special, flight_margin
 
 def special(name, kind, to, amplitude=1.3):
     orbit = n_t.orbit(balls(name, amplitude).model, 1, amplitude)
-    return branch_from(orbit, to=to).first(kind)
+    return first(branch_from(orbit, to=to), kind)
 
 
 def curve_of(start, across, **settings):
@@ -63,7 +63,7 @@ def test_the_curve_of_doublings_ends_at_a_1_to_2_resonance_without_dissipation()
 def test_without_dissipation_a_curve_of_saddle_nodes_ends_at_a_1_to_1_resonance():
     """With det M = r^{2k}, a saddle-node has the multipliers 1 and r^{2k}, both 1 at r = 1 only."""
     case = next(x for x in FOUND if x[:2] == ("restitution", 3))
-    fold = branch_from(found_orbit(case), to=0.5).first(Special.SADDLE_NODE)
+    fold = first(branch_from(found_orbit(case), to=0.5), Special.SADDLE_NODE)
     found = curve_of(fold, "restitution", across_window=Window(0.2, 1.0))
     trace, determinant = found.problem.trace_and_determinant(found.branch.points)
     r = found.problem.values(found.branch.points)["restitution"]
@@ -135,7 +135,7 @@ def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens(fligh
     assert orbit.impacts == flights
     steps = replace(STEPS, initial=1e-3)
     found = branch_from(orbit, to=held + (excess + 10.0) / ratio**2, control=steps)
-    opening = found.first(Special.GRAZING_RELEASE)
+    opening = first(found, Special.GRAZING_RELEASE)
     assert opening.amplitude == pytest.approx(amplitude[0], abs=1e-12)
     largest = abs(opening.multipliers()[0])
     assert largest == pytest.approx(known.multiplier[0, -1, 0], abs=1e-9)

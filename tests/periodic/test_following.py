@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import FOUND, balls, found_orbit, legs_of
+from orbits_found import FOUND, balls, first, found_orbit, legs_of
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
@@ -35,8 +35,8 @@ def start(name, amplitude=1.3):
 @pytest.mark.parametrize("name", CLOSED)
 def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
     model = start(name).model
-    down = branch_from(start(name), to=0.1).first(Special.SADDLE_NODE)
-    up = branch_from(start(name), to=2.0).first(Special.PERIOD_DOUBLING)
+    down = first(branch_from(start(name), to=0.1), Special.SADDLE_NODE)
+    up = first(branch_from(start(name), to=2.0), Special.PERIOD_DOUBLING)
     assert down.amplitude == pytest.approx(n_t.saddle_node(model, 1).amplitude, abs=1e-12)
     assert up.amplitude == pytest.approx(n_t.period_doubling(model, 1).amplitude, abs=1e-12)
 
@@ -56,7 +56,7 @@ def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, alo
 
 def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_table():
     found = branch_from(start("restitution", amplitude=2.0), to=0.9)
-    grazing = found.first(Special.GRAZING_FLIGHT)
+    grazing = first(found, Special.GRAZING_FLIGHT)
     lam = grazing.amplitude
     x, y = table(np.array(grazing.phase), lam)
     flight = Flight(0.0, -0.5 * grazing.relative_impact_velocity, x, y, lam)
@@ -91,13 +91,13 @@ def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(na
     orbit = start(name)
     before = 0.0
     for generation in range(4):
-        doubling = branch_from(orbit, to=2.2).first(Special.PERIOD_DOUBLING)
+        doubling = first(branch_from(orbit, to=2.2), Special.PERIOD_DOUBLING)
         lam = doubling.amplitude
         assert doubling.impacts == 2**generation and lam > before
         assert doubling.multipliers()[0] == pytest.approx(-1, abs=1e-9)
         orbit = switch(doubling, aside=0.02 / 2.2**generation)
         back = branch_from(orbit, to=0.5)
-        halving = back.first(Special.PERIOD_HALVING)
+        halving = first(back, Special.PERIOD_HALVING)
         assert halving.amplitude == pytest.approx(lam, abs=1e-12)
         before = lam
         impact = orbit.phase[0], orbit.impact_velocity[0]
@@ -108,7 +108,7 @@ def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(na
 def test_a_motion_starts_the_continuation_of_the_orbit_on_which_it_ends():
     orbit = of_motion(balls("restitution", 1.6).model, 1.6, 1.0, -3.0)
     assert (orbit.impacts, orbit.periods) == (2, 2)
-    doubling = branch_from(orbit, to=1.8).first(Special.PERIOD_DOUBLING)
+    doubling = first(branch_from(orbit, to=1.8), Special.PERIOD_DOUBLING)
     assert doubling.amplitude == pytest.approx(1.667130660770, abs=1e-11)
 
 
@@ -176,7 +176,7 @@ def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
     simulated = orbit.model.simulate(orbit.amplitude, *case[-2:], 4)
     assert abs(legs_of(orbit).impact.displacement[1] - simulated.displacement[3]) < 1e-12
     found = branch_from(orbit, "frequency_ratio", 20.0)
-    end = found.first(Special.GRAZING_IMPACT)
+    end = first(found, Special.GRAZING_IMPACT)
     assert abs(end.relative_impact_velocity[1]) < 1e-12 and end.defect() < 1e-12
     before = list(found)[:-1]
     assert all(each.relative_impact_velocity[1] > 0 for each in before)
@@ -357,6 +357,17 @@ def test_without_a_value_a_branch_ends_at_ten_times_its_first_value(refusal):
     orbit = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.3), amplitude=2.0)
     found = bouncing_ball.follow(orbit)
     assert str(found.end_reason[1].values) == "amplitude = 20 is reached"
+
+
+def test_an_end_behind_the_start_says_what_it_is():
+    """Behind its saddle-node the branch comes back; nobody has given 1.9."""
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    found = bouncing_ball.follow(bouncing_ball.orbit(ball, amplitude=1.0), to=0.1)
+    assert found.first("saddle-node").amplitude > 0.1
+    assert str(found.end_reason[1].values) == (
+        "amplitude = 1.9 is reached, as far behind the start as the given value is ahead of it"
+    )
+    assert float(found.amplitude[-1]) == pytest.approx(1.9, rel=1e-12)
 
 
 def test_the_limits_of_a_family_know_what_they_are(refusal):

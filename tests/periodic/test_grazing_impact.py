@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import balls, legs_of
+from orbits_found import balls, first, legs_of
 from scipy.optimize import brentq
 
 import bouncing_ball
@@ -79,7 +79,7 @@ def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
     # The orbit with two impacts exists above or below, which depends on r.
     increasing = slow.amplitude < amplitude
     found = branch_from(slow, increasing=increasing, control=replace(STEPS, initial=1e-4))
-    grazing = found.first(Special.GRAZING_IMPACT)
+    grazing = first(found, Special.GRAZING_IMPACT)
     assert grazing.amplitude == pytest.approx(amplitude, abs=1e-12)
     assert abs(grazing.relative_impact_velocity.max()) < 1e-12
     assert str(found.branch.end).startswith("grazing of an impact")
@@ -100,7 +100,7 @@ def _is_on_its_curve(impact, amplitude):
 def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     """Its contact becomes an instant, whose equations hold beyond the grazing as well."""
     model = balls("spring-damper", 2.0).model
-    grazing = branch_from(n_t.orbit(model, 1, 2.0), to=0.9).first(Special.GRAZING_FLIGHT)
+    grazing = first(branch_from(n_t.orbit(model, 1, 2.0), to=0.9), Special.GRAZING_FLIGHT)
     amplitude = grazing.amplitude
     orbit = n_t.orbit(model, 1, amplitude, "unstable")
     legs = legs_of(grazing)
@@ -110,7 +110,7 @@ def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     slow = with_a_slow_impact(orbit, amplitude, duration, leaving)
     found = branch_from(slow, increasing=False, control=replace(STEPS, initial=1e-4))
     assert str(found.branch.end).startswith("grazing of an impact")
-    ended = found.first(Special.GRAZING_IMPACT)
+    ended = first(found, Special.GRAZING_IMPACT)
     assert ended.amplitude == pytest.approx(amplitude, abs=1e-12)
     assert abs(ended.relative_impact_velocity.max()) < 1e-12
     *before, _ = found

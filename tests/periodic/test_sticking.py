@@ -15,7 +15,7 @@ from functools import cache, partial
 import numpy as np
 import pytest
 from mpmath import findroot, mp, mpf, workdps
-from orbits_found import balls
+from orbits_found import balls, first
 
 import bouncing_ball
 from bouncing_ball.long_run.orbit_of_motion import of_motion
@@ -78,7 +78,7 @@ def ended(along, amplitude, restitution, to):
     orbit = of_motion(balls("restitution", amplitude, restitution).model, amplitude, 1.0, -5.0)
     found = branch_from(orbit, along, to)
     assert str(found.branch.end).startswith("end of sticking")
-    return found.first(Special.STICKING)
+    return first(found, Special.STICKING)
 
 
 CASES = [

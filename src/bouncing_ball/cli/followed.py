@@ -93,26 +93,15 @@ def follow(
     return _answer(found.special_states(), found) | {"end": str(found.end_reason[1].values)}
 
 
-def _window(
-    low: float | None, high: float | None, options: tuple[str, str], name: str, start: float | None
-) -> tuple[float, float] | None:
-    """The range of a parameter of a curve, which contains its value at the start of the curve.
-
-    ``options`` are the names of the two limits.
-    """
+def _range(
+    name: str, low: float | None, high: float | None, prefix: str = ""
+) -> dict[str, tuple[float, float]]:
+    """The range of a parameter of a curve by its name, if it is given."""
     if low is None and high is None:
-        return None
-    lower, upper = (f"{{{each}}}" for each in options)
+        return {}
     if low is None or high is None:
-        raise ParameterError(f"{lower} and {upper} are needed together")
-    if not low < high:
-        raise ParameterError(f"{lower} {low:g} is not below {upper} {high:g}")
-    if start is not None and not low <= start <= high:
-        raise ParameterError(
-            f"the curve starts at {option(name)[2:]} = {start:g}, which is not between "
-            f"{lower} {low:g} and {upper} {high:g}"
-        )
-    return low, high
+        raise ParameterError(f"{{{prefix}low}} and {{{prefix}high}} are needed together")
+    return {name: (low, high)}
 
 
 def _require_contact(name: str, parameter: str, impact: dict[str, Any]) -> None:
@@ -214,14 +203,8 @@ def curve(
     words = str(Special[kind.replace("-", "_").upper()])
     name = across.replace("-", "_")
     special = found.first(words)
-    start = None if name in special.along else special.model.numbers().get(name)
     first = along.replace("-", "_")
-    at_first = special.parameters[first]
-    windows = {
-        first: _window(along_low, along_high, ("along_low", "along_high"), first, at_first),
-        name: _window(low, high, ("low", "high"), name, start),
-    }
-    ranges = {each: window for each, window in windows.items() if window is not None}
+    ranges = _range(first, along_low, along_high, "along_") | _range(name, low, high)
     traced = library.follow(special, along=(first, name), points=points, ranges=ranges)
     if plot is not None:
         traced.plot(plot)

@@ -84,11 +84,11 @@ def branch(
         top = checked_number("amplitude_max", amplitude_max, POSITIVE)
 
     def found(one: Ball, n: int) -> xr.Dataset:
-        return n_t_columns(_branch_of(one.at_limits(n), n, top, count), kept=True)
+        return n_t_columns(_branch_of(one.at_limits(n), n, top, count))
 
     grid = Grid(n=family, **a_ball(ball).parameters)
     require_memory(count * grid.size, "points", "points or branches")
-    whole = by_place(grid, ball, ("n",), found, partial(no_branch, count, kept=True), joined)
+    whole = by_place(grid, ball, ("n",), found, partial(no_branch, count), joined)
     data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude")
     if top is not None:
         data = data.assign_attrs(amplitude_max=top)

@@ -47,6 +47,7 @@ from bouncing_ball.periodic.one_impact.whole_branch import (
     whole_branches,
 )
 from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.saved import KEPT
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
@@ -58,6 +59,8 @@ VARIABLES = {
     "restitution_stable": Variable("whether the restitution model's orbit is stable"),
     "restitution_range": Variable("end of the stability range, restitution model", symbol="Λ"),
 }
+# The variables by which the orbits of a branch come back, which the figures do not need.
+_OF_ORBITS = [*KEPT, "special_point", "digits_left"]
 # The variables of branches are declared beside the function that writes them.
 _VARIABLES = VARIABLES | observables.VARIABLES
 _COMMON = ("point", "amplitude", "stable", "admissible", *observables.OBSERVED)
@@ -117,7 +120,8 @@ def _branch(ratio: float, branch: Followed | NoBranch, parameters: Domains) -> x
         found = n_t_columns(branch.resampled(points))
     except (NoOrbitError, ContinuationError) as error:
         found = no_branch(points, error)
-    return found.assign_coords(frequency_ratio=ratio)
+    shown = found.drop_vars(_OF_ORBITS, errors="ignore")
+    return shown.assign_coords(frequency_ratio=ratio)
 
 
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:

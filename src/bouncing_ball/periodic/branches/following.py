@@ -127,19 +127,6 @@ class Orbits:
         """The special orbits in order, with their kinds."""
         return [self._one(each.point, each.name) for each in self.special_points]
 
-    def first(self, kind: StrEnum) -> Orbit:
-        """The first special orbit of a kind.
-
-        Raises
-        ------
-        NoOrbitError
-            If there is none on the branch.
-        """
-        for each in self.special_points:
-            if each.name == kind:
-                return self._one(each.point, each.name)
-        raise NoOrbitError(f"the branch has no {kind}; it ends because {self.branch.end}")
-
     def resampled(self, count: int) -> Self:
         """The same orbits at ``count`` points with equal steps of arclength.
 
@@ -247,7 +234,7 @@ def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) 
     here = float(equations.values(start)[name])
     if to is not None:
         back = 2 * here - to
-        return Window(max(low, min(to, back)), min(high, max(to, back)))
+        return Window(max(low, min(to, back)), min(high, max(to, back)), back)
     return Window(low, min(high, _FARTHEST * max(abs(here), 1.0)))
 
 
@@ -327,7 +314,7 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     Steps beyond the end fail, because there are no balls, so that the steps become too short.
     """
     last = branch.points[-1]
-    ends = np.arcsinh(np.array(within))
+    ends = np.arcsinh([within.low, within.high])
     at = ends[np.argmin(np.abs(ends - last[-1]))]
     # An end at an event has the name of the event, and one that only lies next to a limit has none,
     # or was taken for one where the flight vanishes.

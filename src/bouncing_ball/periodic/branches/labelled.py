@@ -152,7 +152,7 @@ def labelled(found: Orbits, made_by: str, **attributes: str) -> dict[str, Any]:
     They are the arguments of a dataset, which is made once, because that takes as long as some
     points of a branch.
     """
-    variables = observables.kept_variables(found)
+    variables = observables.branch_variables(found)
     for name in _PHASES:
         dims, values = variables[name]
         variables[name] = dims, reduce_angle(values)

@@ -83,7 +83,7 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 
 def branch_variables(found: Orbits) -> dict[str, Any]:
     """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends,
-    as the variables and the coordinates of a dataset.
+    as the variables and the coordinates of a dataset, with all that the orbits need to come back.
 
     Over ``point``, they have each parameter that varies, ``stable``, ``admissible``, ``residual``
     and ``digits_left``, and over (point, impact) the observables of the orbits, with phases that
@@ -92,7 +92,18 @@ def branch_variables(found: Orbits) -> dict[str, Any]:
     over ``end``. ``special_point`` is the number of the last point before a special orbit.
     """
     special = _special_places(found)
-    return _variables(found, special, _in_order(found, special))
+    orbits = _in_order(found, special)
+    there = orbits[len(found) :]
+    along = columns_of(orbits[: len(found)], "point")
+    # No special orbit has parameters of its own if there is none.
+    empty = {f"special_{name}": ("special", np.empty(0)) for name in _over_points(along)}
+    kept = along | columns_of(there, "special", "special_")
+    points = np.concatenate([found.branch.points, special.points])
+    reasons = [str(found.branch.start), str(found.branch.end)]
+    observed = _observed(unrolled(found.problem, points, orbits), special.kinds, reasons)
+    observed["special_arclength"] = "special", special.arclength
+    observed["special_point"] = "special", special.before
+    return (empty if not there.size else {}) | kept | observed
 
 
 def _in_order(found: Orbits, special: "_Special") -> Orbit:
@@ -101,34 +112,6 @@ def _in_order(found: Orbits, special: "_Special") -> Orbit:
     if np.all(np.diff(special.order) > 0):
         return found.with_special
     return found.with_special[np.concatenate([np.arange(count), count + special.order])]
-
-
-def _variables(found: Orbits, special: "_Special", orbits: Orbit) -> dict[str, Any]:
-    """The variables of :func:`branch_variables`, from the orbits in their order."""
-    points = np.concatenate([found.branch.points, special.points])
-    orbits = unrolled(found.problem, points, orbits)
-    variables = _orbits_in_columns(orbits, special.kinds, _reasons(found))
-    variables["special_arclength"] = "special", special.arclength
-    variables["special_point"] = "special", special.before
-    return variables
-
-
-def _reasons(found: Orbits) -> list[str]:
-    """Why the two ends of a branch are there."""
-    return [str(found.branch.start), str(found.branch.end)]
-
-
-def kept_variables(found: Orbits) -> dict[str, Any]:
-    """The variables of :func:`branch_variables`, with all that the orbits need to come back."""
-    special = _special_places(found)
-    orbits = _in_order(found, special)
-    there = orbits[len(found) :]
-    along = columns_of(orbits[: len(found)], "point")
-    # No special orbit has parameters of its own if there is none.
-    empty = {f"special_{name}": ("special", np.empty(0)) for name in _over_points(along)}
-    kept = columns_of(there, "special", "special_")
-    variables = _variables(found, special, orbits)
-    return (empty if not there.size else {}) | kept | along | variables
 
 
 def _over_points(variables: dict[str, Any]) -> list[str]:
@@ -183,7 +166,7 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
 
 
-def _orbits_in_columns(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict[str, Any]:
+def _observed(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict[str, Any]:
     """Orbits along a branch, of which the last ones are its special orbits of these kinds, and the
     reasons for its two ends, as in :func:`branch_variables`.
     """
@@ -223,28 +206,27 @@ def _values(orbit: Orbit, name: str) -> np.ndarray:
     return np.broadcast_to(Balls(orbit.model, orbit.amplitude).values[name], orbit.shape)
 
 
-def n_t_columns(found: Orbits, kept: bool = False) -> xr.Dataset:
+def n_t_columns(found: Orbits) -> xr.Dataset:
     """As :func:`branch_variables` for orbits with one impact, from the unstable to the stable side,
-    without an axis of the impacts; with all that the orbits need to come back if they are ``kept``.
+    without an axis of the impacts.
     """
-    return _of_one_impact(xr.Dataset((kept_variables if kept else branch_variables)(found)))
+    return _of_one_impact(branch_variables(found))
 
 
-def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
-    one = columns.isel(impact=0, drop=True).drop_vars(["special_point", "digits_left"])
+def _of_one_impact(variables: dict[str, Any]) -> xr.Dataset:
+    one = xr.Dataset(variables).isel(impact=0, drop=True)
     kinds = one.special_kind.astype(object)
     return one.assign(special_kind=kinds).assign_coords(end=["unstable side", "stable side"])
 
 
-def no_branch(count: int, error: Exception, kept: bool = False) -> xr.Dataset:
+def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
-    found = _orbits_in_columns(none, [], [str(error)] * 2)
+    found = columns_of(none, "point") | columns_of(none[:0], "special", "special_")
+    found |= _observed(none, [], [str(error)] * 2)
     found["special_arclength"] = "special", np.empty(0)
     found["special_point"] = "special", np.empty(0)
-    if kept:
-        found = columns_of(none, "point") | columns_of(none[:0], "special", "special_") | found
-    return _of_one_impact(xr.Dataset(found))
+    return _of_one_impact(found)
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

@@ -81,7 +81,7 @@ def _one_way(
     """The points in one direction, in which the second parameter first rises if the sign is
     positive, and why they end.
     """
-    within = np.arcsinh(np.array(windows))
+    within = np.arcsinh([(each.low, each.high) for each in windows])
     points = [first]
     step = _FIRST
     # The column of the parameter that is given, and the direction in which it goes.

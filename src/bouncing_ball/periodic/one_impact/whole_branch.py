@@ -123,7 +123,7 @@ def whole_branches(
     --------
     >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> found = whole_branches(RestitutionModel(0.85), [1, 2], 1.2)
-    >>> [round(each.first("saddle-node").amplitude, 4) for each in found]
+    >>> [round(each.special[0].amplitude, 4) for each in found]
     [0.2547, 0.5094]
     """
     require_paper(model.place, *_WHOLE)
@@ -168,8 +168,8 @@ def branches_through(
     >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> starts = n_t.orbit(RestitutionModel(0.85), 1, np.array([1.0]))
     >>> (found,) = branches_through(starts, 1.2, LARGEST_STEP)
-    >>> round(found.first("saddle-node").amplitude, 4)
-    0.2547
+    >>> str(found.special[0].kind), round(found.special[0].amplitude, 4)
+    ('saddle-node', 0.2547)
     """
     problem = PaperUnknowns.of(starts)
 

@@ -13,9 +13,8 @@ same for all unknowns in which orbits are followed.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import NamedTuple
 
 import numpy as np
 
@@ -83,11 +82,17 @@ class AtMargin(StrEnum):
     FLIGHT = "flight lost"
 
 
-class Window(NamedTuple):
-    """The range of a parameter in which a branch or a curve is followed."""
+@dataclass(frozen=True)
+class Window:
+    """The range of a parameter in which a branch or a curve is followed.
+
+    ``behind`` is the end of it that is as far behind the start as the other end, which was asked
+    for, is ahead; None if there is none.
+    """
 
     low: float
     high: float
+    behind: float | None = None
 
 
 def reason_at(kind: Special) -> str:
@@ -198,11 +203,14 @@ def limits_of(equations: OrbitEquations, *ranges: Window) -> list[Event]:
     for j, (name, within) in enumerate(zip(equations.along, ranges, strict=True)):
         for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
             if np.isfinite(bound):
-                found.append(_limit(name, bound, sign, equations.size + j))
+                reason = f"{bound_in_words(name, bound)} is reached"
+                if bound == within.behind:
+                    reason += ", as far behind the start as the given value is ahead of it"
+                found.append(_limit(bound, sign, equations.size + j, reason))
     return found
 
 
-def _limit(name: str, bound: float, sign: float, column: int) -> Event:
+def _limit(bound: float, sign: float, column: int, reason: str) -> Event:
     """The end of a branch where a parameter, an entry of y, reaches a bound: from above if the sign
     is positive, otherwise from below.
     """
@@ -216,7 +224,6 @@ def _limit(name: str, bound: float, sign: float, column: int) -> Event:
         gradient[..., column] = sign
         return inside(y), gradient
 
-    reason = f"{bound_in_words(name, bound)} is reached"
     return Event(_BOUND, inside, True, reason, condition)
 
 
@@ -380,7 +387,7 @@ def accumulation(
     """
     last = points[0]
     for (name, within), at in zip(ranges.items(), last[-2:], strict=True):
-        for bound in within:
+        for bound in (within.low, within.high):
             if abs(np.arcsinh(bound) - at) < creep:
                 shown = bound_in_words(name, bound)
                 return End(f"the points accumulate next to {shown}, the end of its range")

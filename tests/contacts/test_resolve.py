@@ -44,15 +44,16 @@ def rise(contact, drop):
 def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
     c = 2 * zeta * math.sqrt(k * MASS)
     ratio = math.sqrt(k / MASS) / TABLE.angular_frequency
-    case = ResolvedContact(MASS, TABLE, SpringDamper(ratio, zeta, release))
-    own = float(case.contact.restitution)
+    spring = SpringDamper(ratio, zeta, release)
+    case = ResolvedContact(Contact(mass=MASS), TABLE, spring, spring)
+    own = float(case.equivalent.restitution)
     time = case.contact_time
     printed = math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
     for loss in (
         {"damping_ratio": zeta},
         {"restitution": printed},
         {"measured_restitution": own},
-        {"drop_height": 2.0, "rebound_height": rise(case.contact, 2.0)},
+        {"drop_height": 2.0, "rebound_height": rise(case.equivalent, 2.0)},
     ):
         for stiff in ({"stiffness": k}, {"contact_time": time}):
             assert found(release, **stiff, **loss) == pytest.approx((k, c), rel=1e-9), loss

@@ -139,7 +139,7 @@ def settings_for(
     given_step = setup.time_step is not None
     if given_step and not case.is_spring_damper and not engine.has_steps_of_law:
         raise ParameterError(_OF_A_LAW)
-    release = str(case.contact.release)
+    release = str(case.equivalent.release)
     error = setup.restitution_error
     return engine.settings(case.physical, release, error, setup.time_step)
 
@@ -205,8 +205,9 @@ def softer_contact(
         if ball is None:
             return None
         ratio = ball.angular_frequency * case.table.time
-        spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
-        own = replace(case, law=spring, given_stiffness=ball.stiffness, given_damping=ball.damping)
+        spring = SpringDamper(ratio, ball.damping_ratio, case.equivalent.release)
+        plain = Contact(mass=case.mass, stiffness=ball.stiffness, damping=ball.damping)
+        own = replace(case, plain=plain, law=spring, equivalent=spring)
     return Softer(
         contact=description_of(own),
         dropped=None if speed is None else drop_at_rest(own, speed),
@@ -223,8 +224,8 @@ def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
     factor = contact_time / (
         float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
     )
-    slower = replace(case.contact, frequency_ratio=case.contact.frequency_ratio / factor)
-    return replace(case, law=law.stiffened(1 / factor**2), beside=slower)
+    slower = replace(case.equivalent, frequency_ratio=case.equivalent.frequency_ratio / factor)
+    return replace(case, law=law.stiffened(1 / factor**2), equivalent=slower)
 
 
 def _verdict(case: ResolvedContact, question: Question) -> str:
@@ -248,7 +249,7 @@ def dropped_at_step(
         return None
     if settings.at_step.steps > MOST_STEPS:
         return None
-    release = case.contact.release
+    release = case.equivalent.release
     step = _engine_of(case, settings.name).step(case.physical, release, settings.time_step)
     return drop_in_steps(step, speed, case.table.gravity, case.physical.contact_time(release))
 
@@ -331,7 +332,7 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
     if exact is None:
         return None
     scheme = engine_named(at.engine).scheme
-    release = case.contact.release
+    release = case.equivalent.release
     found, _ = stiffest_contact(
         scheme, case.mass, exact.damping_ratio, release, at.time_step, LOOSE
     )

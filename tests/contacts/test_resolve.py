@@ -146,7 +146,7 @@ def test_r_is_that_of_the_damper_that_acts_on_approach_only():
     measured = Contact(mass=0.2, contact_time=4e-3, measured_restitution=0.6, release="approach")
     table = TableMotion(100.0, 1e-3, 9.81)
     found = resolve(asked, table)
-    assert found.contact == resolve(measured, table).contact
+    assert found.equivalent == resolve(measured, table).equivalent
     # Down to the greatest depth the energy falls by the work of the damper, then the spring alone.
     omega = math.sqrt(found.stiffness / 0.2)
     zeta = found.damping / (2 * math.sqrt(found.stiffness * 0.2))

@@ -40,10 +40,10 @@ class ResolvedContact:
     In units of 1/Ω, g/Ω² and m the model has the Λ of the table and the ϖ, ζ and release rule of
     the contact. The models are built on first use.
 
-    Two questions divide the contacts. If a contact :attr:`is_linear`, its motion and the error law
-    have closed forms, and it is not integrated in time. If it :attr:`is_spring_damper`, k and c are
-    its own, and not those of an equivalent. Only a damper that acts on approach tells them apart:
-    it is integrated in time, with its own k and c.
+    Two questions divide the contacts. If one :attr:`is_linear`, its motion on a vibrating table has
+    a closed form; otherwise its law is integrated in time. If one :attr:`is_spring_damper`, k and c
+    are its own; otherwise they are those of the equivalent. Only the answers for a damper that acts
+    on approach differ: its law is integrated, with its own k and c.
 
     Parameters
     ----------

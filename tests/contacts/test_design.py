@@ -87,7 +87,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
 
 def test_loads_of_a_damped_contact_by_a_fine_sample():
     found = assessed(**STEEL, restitution=0.3, n=1, release="force", tolerance=0.5, gravity="0.3 g")
-    contact = found.case.contact
+    contact = found.case.equivalent
     orbit = n_t.orbit(ContactModel(contact), 1, found.amplitude)
     time = np.linspace(0, float(orbit.contact_duration), 200_001)
     flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, found.amplitude)

@@ -54,7 +54,7 @@ def one_contact(m, k, c, release, table, start, speed):
 
 def rise(found, mass, drop):
     """The height to which the ball of a design rises after a drop onto a table at rest."""
-    release = str(found.case.contact.release)
+    release = str(found.case.equivalent.release)
     speed = -math.sqrt(2 * G * drop)
     numbers = (mass, found.stiffness, found.damping)
     _, height, velocity = one_contact(*numbers, release, (0.0, 1.0), 0.0, speed)

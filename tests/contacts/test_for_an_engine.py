@@ -38,7 +38,7 @@ def test_a_drop_test_and_a_contact_time_are_met():
     found, _, settings, *_ = answered(**TABLE, **drop, engine="drake")
     # The package's own simulation, on a table at rest.
     length = found.case.table.length
-    run = ContactModel(found.case.contact).simulate(0.0, 0.0, -((2 / length) ** 0.5), 1)
+    run = ContactModel(found.case.equivalent).simulate(0.0, 0.0, -((2 / length) ** 0.5), 1)
     height = run.release_displacement[0] + run.relative_bounce_velocity[0] ** 2 / 2
     assert length * float(height) == pytest.approx(0.49, rel=1e-9)
     # Without gravity the ball would leave a little faster.
@@ -110,7 +110,7 @@ def test_a_contact_without_a_table_is_that_of_one_with_it():
 def test_from_one_engine_to_another_of_another_release(table):
     given = {"mass": 0.5, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 20}}
     found = answered(**table | given).found
-    assert found.case.contact.release == "displacement"
+    assert found.case.equivalent.release == "displacement"
     written, _, settings, *_ = answered(**table | given, engine="mujoco")
     assert settings.parameters["solref"] == pytest.approx([-2e5, -20])
     before = found.measured_restitution

@@ -356,7 +356,7 @@ def test_a_change_of_a_law_is_one_of_its_parameters_in_si_units(law):
     for name, factor in {"r -0.1 %": 0.999, "r +0.1 %": 1.001, "k +0.1 %": 1.0}.items():
         after = changed[name].law.signature(speed)
         assert after.restitution == pytest.approx(factor * before.restitution, rel=1e-10)
-        of_contact = changed[name].contact.restitution / case.contact.restitution
+        of_contact = changed[name].equivalent.restitution / case.equivalent.restitution
         assert of_contact == pytest.approx(factor, rel=1e-12)
     plain = case.law_in_si
     stiffer = changed["k +0.1 %"].law_in_si
@@ -384,7 +384,7 @@ class Stiffening(LinearHuntCrossley):
 def test_the_linear_contact_stands_for_a_law_that_no_impact_determines():
     plain = Contact(mass=1, stiffness=1e5, restitution=0.7)
     case = resolve(plain, Table(frequency="20 Hz", acceleration="2 g").motion)
-    case = replace(case, law=Stiffening(400.0, 0.1, 0.5), beside=case.contact)
+    case = replace(case, law=Stiffening(400.0, 0.1, 0.5))
     impacts = Starts(np.array([0.5]), np.array([-3.0]))
     changed = _changed(case, Ending(MotionName(Kind.CHAOTIC, 0, 0), impacts))
     assert "no change" in changed and all(each.is_linear for each in changed.values())

@@ -44,15 +44,16 @@ def rise(contact, drop):
 def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
     c = 2 * zeta * math.sqrt(k * MASS)
     ratio = math.sqrt(k / MASS) / TABLE.angular_frequency
-    case = ResolvedContact(MASS, TABLE, SpringDamper(ratio, zeta, release))
-    own = float(case.contact.restitution)
+    spring = SpringDamper(ratio, zeta, release)
+    case = ResolvedContact(Contact(mass=MASS), TABLE, spring, spring)
+    own = float(case.equivalent.restitution)
     time = case.contact_time
     printed = math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
     for loss in (
         {"damping_ratio": zeta},
         {"restitution": printed},
         {"measured_restitution": own},
-        {"drop_height": 2.0, "rebound_height": rise(case.contact, 2.0)},
+        {"drop_height": 2.0, "rebound_height": rise(case.equivalent, 2.0)},
     ):
         for stiff in ({"stiffness": k}, {"contact_time": time}):
             assert found(release, **stiff, **loss) == pytest.approx((k, c), rel=1e-9), loss
@@ -145,7 +146,7 @@ def test_r_is_that_of_the_damper_that_acts_on_approach_only():
     measured = Contact(mass=0.2, contact_time=4e-3, measured_restitution=0.6, release="approach")
     table = TableMotion(100.0, 1e-3, 9.81)
     found = resolve(asked, table)
-    assert found.contact == resolve(measured, table).contact
+    assert found.equivalent == resolve(measured, table).equivalent
     # Down to the greatest depth the energy falls by the work of the damper, then the spring alone.
     omega = math.sqrt(found.stiffness / 0.2)
     zeta = found.damping / (2 * math.sqrt(found.stiffness * 0.2))

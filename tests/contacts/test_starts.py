@@ -6,6 +6,7 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.starts import SharesOfStarts, ends_of_starts, interval
 from bouncing_ball.contacts.table import TableMotion
@@ -47,8 +48,8 @@ def test_a_law_is_followed_itself():
     """Balls rest on the law, and bounce on the linear contact beside it, which loses less."""
     law = Tsuji(500.0, tsuji_damping(0.3))
     other = SpringDamper.from_restitution(0.95, 10.0)
-    case = ResolvedContact(1.0, TableMotion(1.0, 0.3, 1.0), law, other)
+    case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 0.3, 1.0), law, other)
     found = ends_of_starts(case)
     assert found.balls == 36 and found.by_text == {"permanent contact": 1.0}
-    of_linear = ends_of_starts(replace(case, law=other, beside=None))
+    of_linear = ends_of_starts(replace(case, law=other, equivalent=other))
     assert of_linear.balls == 144 and of_linear.by_text.get("permanent contact", 0.0) < 0.9

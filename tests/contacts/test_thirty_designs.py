@@ -112,7 +112,7 @@ def ball_of(answer):
     mass = found.case.mass
     name = law.pop("name", "linear")
     if name == "linear":
-        pulls = str(found.case.contact.release) == "displacement"
+        pulls = str(found.case.equivalent.release) == "displacement"
         return Ball(mass, linear(found.stiffness, found.damping), pulls, 1e-8)
     if name == "impedance":
         solref = [

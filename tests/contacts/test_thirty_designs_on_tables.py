@@ -128,7 +128,7 @@ def ball_of(found, name):
     if name in ("linear", "approach"):
         force = linear if name == "linear" else on_approach
         return Ball(
-            force(found.stiffness, found.damping), str(found.case.contact.release) != "force"
+            force(found.stiffness, found.damping), str(found.case.equivalent.release) != "force"
         )
     law = found.law
     made = {"hunt-crossley": hunt_crossley, "tsuji": tsuji}[name]

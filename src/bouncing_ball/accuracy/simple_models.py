@@ -20,6 +20,7 @@ from bouncing_ball.accuracy.thresholds import Numbered, by_quantity, last_zero, 
 from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -27,6 +28,15 @@ from bouncing_ball.periodic.orbits.orbit import Orbit
 
 SIMPLE = ("restitution", "corrected")
 """The simple models, which are compared with the exact model."""
+
+
+def models_of_law(
+    law: ContactLaw, restitution: float | np.ndarray
+) -> tuple[ContactModel, RestitutionModel, CorrectedModel]:
+    """The exact model of a contact law, and both simple models: r of the restitution model is
+    given, because that of a free impact may depend on its speed.
+    """
+    return ContactModel(law), RestitutionModel(restitution), CorrectedModel.of_contact(law)
 
 
 def exact_and_simple_models(
@@ -44,11 +54,7 @@ def exact_and_simple_models(
     >>> [model.name for model in exact_and_simple_models(SpringDamper(5.0, 0.0))]
     ['spring-damper', 'restitution', 'corrected']
     """
-    return (
-        ContactModel(contact),
-        RestitutionModel(contact.restitution),
-        CorrectedModel.of_contact(contact),
-    )
+    return models_of_law(contact, contact.restitution)
 
 
 def errors(

@@ -16,22 +16,21 @@ from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment, LargestTimeStep, assess
 from bouncing_ball.contacts.choose import choose
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, describe_contact, description_of
+from bouncing_ball.contacts.describe import Description, describe_contact
 from bouncing_ball.contacts.drops import drop_at_rest
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
-from bouncing_ball.contacts.table import Table, TableMotion
+from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.units import doubts, in_si
 from bouncing_ball.contacts.write import (
     at_given_step,
     at_own_step,
+    describe_for,
     dropped_at_step,
     looser,
-    resolve_for,
     settings_for,
-    settings_on_table,
     softer_contact,
 )
 from bouncing_ball.datasets.files import PICTURES, require_writable
@@ -103,40 +102,44 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         if given.get(name) is not None
     }
     read = {**given, **si}
+    speed = si.get("speed")
     setup = None if given.get("engine") is None else EngineSetup(**_of(EngineSetup, read))
     has_table = any(given.get(name) is not None for name in ("n", *_OF_TABLE))
     # With a speed an impact is meant, whose stiffness may be missing.
-    if has_table or not (setup or contact.is_stiff or "speed" in si):
+    if has_table or not (setup or contact.is_stiff or speed is not None):
         table = Table(**_of(Table, read))
         read |= _quantities_of(table)
-        found, engine = _on_table(contact, table, question, setup)
+        found = _on_table(contact, table, question, None if setup is None else setup.engine)
+    elif setup is None:
+        found = describe_contact(contact, si.get("gravity"), speed)
     else:
-        found, engine = _at_rest(contact, si.get("gravity"), setup, si.get("speed"))
-    dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
-    at_step = None if engine is None else engine.at_step
-    other = None
-    if engine is not None:
-        other = softer_contact(found.case, engine, question, si.get("speed"))
+        found = describe_for(contact, setup, si.get("gravity"), speed)
+    engine = None if setup is None else settings_for(found, setup)
+    if engine is not None and isinstance(found, Assessment):
+        found = replace(found, time_step=_step_of(engine))
     error = si.get("restitution_error", ERROR)
-    speed = _impact_speed(found, si.get("speed"))
     if error != ERROR and setup is None and contact.from_engine is None:
         raise ParameterError(
             "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
             "as generic"
         )
-    if "time_step" in si and engine is None:
-        at_step = at_given_step(contact, si["time_step"], error, speed)
-    elif engine is None:
-        at_step = at_own_step(contact, error, speed)
+    softer = None
+    if engine is not None:
+        at_step = engine.at_step
+        softer = softer_contact(found.case, engine, question, speed)
+    elif "time_step" in si:
+        at_step = at_given_step(contact, si["time_step"], error, _impact_speed(found, speed))
+    else:
+        at_step = at_own_step(contact, error, _impact_speed(found, speed))
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,
-        dropped=dropped,
+        dropped=None if speed is None else drop_at_rest(found.case, speed),
         engine=engine,
         at_step=at_step,
         question=read,
-        dropped_at_step=dropped_at_step(found.case, engine, si.get("speed")),
-        softer=other,
+        dropped_at_step=dropped_at_step(found.case, engine, speed),
+        softer=softer,
         looser=looser(found.case, at_step),
         doubts=doubts(given, KINDS),
     )
@@ -160,13 +163,9 @@ def _quantities_of(data: Any) -> dict[str, Any]:
 
 
 def _on_table(
-    contact: Contact,
-    table: Table,
-    question: Question,
-    setup: EngineSetup | None,
-) -> tuple[Assessment, EngineSettings | None]:
-    """The contact that is given, or the one that is chosen, and what to write into an engine."""
-    written = None if setup is None else setup.engine
+    contact: Contact, table: Table, question: Question, written: str | None
+) -> Assessment:
+    """The assessment of the contact that is given, or of the one that is chosen."""
     with table.hinting():
         if contact.is_stiff:
             case = resolve(contact, table.motion, question.families, written)
@@ -174,25 +173,14 @@ def _on_table(
         else:
             choice = choose(contact, table.motion, question, written)
             found = assess(choice.case, question, choice)
-    found = replace(found, hint=table.hint)
-    if setup is None:
-        return found, None
-    engine = settings_on_table(found, setup)
-    # The time step of the engine is the only one.
+    return replace(found, hint=table.hint)
+
+
+def _step_of(engine: EngineSettings) -> LargestTimeStep:
+    """The time step of an engine, which is the only one of the answer, and what r it has."""
     at = engine.at_step
     within = f"within {engine.error:g}" if at is None or at.is_within else at.span
-    rule = f"r of a free impact in {engine.name} is {within}"
-    return replace(found, time_step=LargestTimeStep(engine.time_step, rule)), engine
-
-
-def _at_rest(
-    contact: Contact, gravity: float | None, setup: EngineSetup | None, speed: float | None
-) -> tuple[Description, EngineSettings | None]:
-    """The contact without a table, and what to write into an engine."""
-    if setup is None:
-        return describe_contact(contact, gravity, speed), None
-    found = description_of(resolve_for(contact, setup, TableMotion.at_rest(gravity), speed))
-    return found, settings_for(found.case, setup)
+    return LargestTimeStep(engine.time_step, f"r of a free impact in {engine.name} is {within}")
 
 
 def _draw(given: DesignAnswer, path: Path) -> None:

@@ -146,7 +146,7 @@ class Assessment:
         """The judgement in words, or the contact that was chosen."""
         if self.chosen is None:
             law = None if self.case.is_linear else self.case.law.name
-            found = said_of_orbit(self.on_orbit, self.case.contact.linear, law)
+            found = said_of_orbit(self.on_orbit, self.case.equivalent.linear, law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         if self.on_motion is not None:
@@ -235,7 +235,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     NoOrbitError
         If no model has the orbit of the ``n`` that is asked for.
     """
-    contact = case.contact
+    contact = case.equivalent
     amplitude = case.table.amplitude
     ratio = float(contact.frequency_ratio)
     only = "below 1: on a vibrating table only underdamped contacts are computed"
@@ -302,7 +302,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
 
 def _by_release(case: ResolvedContact) -> dict[str, float | None]:
     """r of a free impact for each release rule; None for the rule that a law does not have."""
-    contact = case.contact
+    contact = case.equivalent
     if case.is_linear:
         return {str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR}
     at_surface = contact.release.at_surface

@@ -60,11 +60,11 @@ class Choice:
             mass=case.mass,
             stiffness=case.stiffness,
             damping=case.damping,
-            frequency_ratio=float(case.contact.frequency_ratio),
-            damping_ratio=float(case.contact.damping_ratio),
+            frequency_ratio=float(case.equivalent.frequency_ratio),
+            damping_ratio=float(case.equivalent.damping_ratio),
             contact_time=case.contact_time,
-            release=str(case.contact.release),
-            measured_restitution=float(case.contact.restitution),
+            release=str(case.equivalent.release),
+            measured_restitution=float(case.equivalent.restitution),
             n=n,
             needed=needed,
             case=case,
@@ -167,7 +167,7 @@ def choose(
         return ratio * table.angular_frequency, (SpringDamper(ratio, zeta, plain.rule), need)
 
     spring, need = of_loss(plain, table.gravity, stiffness)
-    case = ResolvedContact(plain.mass, table, spring, given=contact, written=written)
+    case = ResolvedContact(plain, table, spring, spring, given=contact, written=written)
     n = first_stable_family(question.families, float(spring.restitution), table.amplitude)
     return Choice.of(case, n, need)
 

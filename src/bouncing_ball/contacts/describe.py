@@ -103,7 +103,7 @@ def description_of(case: ResolvedContact) -> Description:
         If the contact is longer than any that is simulated, or is to be written for an engine
         whereas its r depends on the speed.
     """
-    release = case.contact.release
+    release = case.equivalent.release
     found = Description(
         mass=case.mass,
         stiffness=case.stiffness,
@@ -111,12 +111,12 @@ def description_of(case: ResolvedContact) -> Description:
         release=str(release),
         case=case,
     )
-    if case.needs_speed and case.is_linear and case.is_of_no_impact:
+    if case.lacks_speed:
         if case.written is not None:
             raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
         return replace(found, static_deflection=case.static_deflection)
     time = case.contact_time
-    restitution = float(case.contact.restitution)
+    restitution = float(case.equivalent.restitution)
     if not case.is_linear and case.impact_speed is not None:
         impact = case.law.signature(case.impact_speed * case.table.time / case.table.length)
         time = float(impact.duration) * case.table.time
@@ -125,7 +125,7 @@ def description_of(case: ResolvedContact) -> Description:
     return replace(
         found,
         damping=case.damping,
-        damping_ratio=float(case.contact.damping_ratio),
+        damping_ratio=float(case.equivalent.damping_ratio),
         contact_time=time,
         measured_restitution=restitution,
         slowed_speed=case.slowed_speed,

@@ -126,13 +126,15 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
 
     Examples
     --------
+    >>> from bouncing_ball.contacts.contact import Contact
     >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> case = ResolvedContact(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
+    >>> spring = SpringDamper(10.0, 0.0)
+    >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 1.0, 1.0), spring, spring)
     >>> by_error_law(case, np.array([1]))[0][-1].tolist()
     [0.01]
     """
     lam = case.table.amplitude
-    contact = case.contact
+    contact = case.equivalent
     predicted = np.full((len(Quantity), n.size), np.nan)
     holds = np.zeros(n.size, dtype=bool)
     there = n_t.orbit(case.models["restitution"], n, lam).exists
@@ -177,8 +179,10 @@ def families(
 
     Examples
     --------
+    >>> from bouncing_ball.contacts.contact import Contact
     >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> case = ResolvedContact(1.0, TableMotion(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
+    >>> spring = SpringDamper(10.0, 0.1)
+    >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 0.5, 1.0), spring, spring)
     >>> [family.n for family in families(case, [1, 2, 3])]
     [1]
     """
@@ -189,7 +193,7 @@ def families(
     of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD, near) for model in simple]
     if not case.is_linear:
         near = can_carry(case.law, n, lam)
-        if case.contact.frequency_ratio > _STIFF:
+        if case.equivalent.frequency_ratio > _STIFF:
             nodes = [found[len(OF_ORBITS)] for _, found in of_simple]
             near &= ~(np.nanmin(nodes, axis=0) > _FAR * lam)
     in_models = [_in_model(exact, n, lam, case.permanent_contact, near), *of_simple]

@@ -147,10 +147,10 @@ def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     """
     speed = _impact_speed(case, end)
     if not case.is_linear and not _is_of_impact(case.law, speed):
-        linear = replace(case, law=case.contact.linear, beside=None)
+        linear = replace(case, law=case.equivalent.linear, equivalent=case.equivalent.linear)
         return {NO_CHANGE: linear} | _changed(linear, end)
     found = {"r -0.1 %": _with(case, speed, restitution=1 - _CHANGE)}
-    if float(case.contact.restitution) * (1 + _CHANGE) <= 1:
+    if float(case.equivalent.restitution) * (1 + _CHANGE) <= 1:
         found["r +0.1 %"] = _with(case, speed, restitution=1 + _CHANGE)
     found["k +0.1 %"] = _with(case, speed, duration=_shorter(case, speed))
     # In units of g/Ω the same impact is then slower.
@@ -183,14 +183,14 @@ def _with(
     unit: float = 1.0,
 ) -> ResolvedContact:
     """The case with r and the duration of free impacts, and the unit of speeds, times factors."""
-    contact = case.contact
+    contact = case.equivalent
     r = float(contact.restitution) * restitution
     ratio = float(contact.frequency_ratio) / duration
     other = SpringDamper.from_restitution(r, ratio, contact.release, measured=True)
     if case.is_linear:
-        return replace(case, law=other)
+        return replace(case, law=other, equivalent=other)
     law = _law(case.law, speed, restitution, duration, unit)
-    return replace(case, law=law, beside=None if case.is_spring_damper else other)
+    return replace(case, law=law, equivalent=law if isinstance(law, SpringDamper) else other)
 
 
 def _law(
@@ -318,7 +318,7 @@ def _sums(
 
 def _before(case: ResolvedContact, least: int) -> int:
     """Number of first impacts that are left out."""
-    loss = 1 - float(case.contact.restitution)
+    loss = 1 - float(case.equivalent.restitution)
     forgotten = _MOST_BEFORE if loss * _MOST_BEFORE < _FORGOTTEN else math.ceil(_FORGOTTEN / loss)
     return max(least, forgotten)
 

@@ -34,7 +34,7 @@ def _on_engine(case: ResolvedContact) -> tuple[str, ...]:
     found = engine.remarks(case.given.engine_parameters)
     contact = engine.contact(case.given.engine_parameters, case.given.mass)
     own = engine.release()
-    release = case.contact.release
+    release = case.equivalent.release
     same = case.written is None or own is release
     if same or not 0 < contact.damping_ratio < 1:
         return found
@@ -72,7 +72,7 @@ def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
     if not case.is_linear:
         return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)
     arrives = shown(math.sqrt(2 * case.table.gravity * drop), "m/s")
-    free = float(case.contact.restitution)
+    free = float(case.equivalent.restitution)
     return (
         f"dropped from {shown(drop, 'm')} onto a table at rest, at {arrives}, the ball rises to "
         f"{shown(height, 'm')}: √(h′/h) = {r:.4g}, and r = {free:.4g} without gravity",
@@ -85,7 +85,7 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     """
     of = engine.names[0]
     about = f"stiffness, damping, ϖ and ζ are those of the spring and damper of this {of}"
-    spring = n_t.orbit(ContactModel(case.contact), family.n, case.table.amplitude)
+    spring = n_t.orbit(ContactModel(case.equivalent), family.n, case.table.amplitude)
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     where = engine.at_depth(case.given.engine_parameters, family.greatest_compression)
@@ -120,7 +120,7 @@ def _notes_on_law(case: ResolvedContact, family: ComparedOrbit) -> list[str]:
 
 def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> tuple[str, ...]:
     """Sentences that a user should read in addition to the verdict."""
-    contact = case.contact
+    contact = case.equivalent
     orbit = f"{family.n}-T orbit"
     found = [] if case.is_linear else _notes_on_law(case, family)
     if case.table.amplitude > _MOST:

@@ -26,7 +26,7 @@ def chart_and_motion(design: Assessment) -> xr.Dataset:
     (model, time); and ``gap`` (model, since). Values are NaN where there is no orbit or threshold.
     """
     table = design.case.table
-    rule = design.case.contact.linear.release
+    rule = design.case.equivalent.linear.release
     # The smallest r is that at which Λ is the saddle-node, unless the r of the contact is smaller.
     half = design.n * np.pi
     lam = table.amplitude
@@ -52,7 +52,7 @@ def chart_and_motion(design: Assessment) -> xr.Dataset:
     orbits = {name: n_t.orbit(model, design.n, lam) for name, model in design.case.models.items()}
     # Around the impact in the exact model, or in the first model that has an orbit.
     start = next(float(orbit.phase) for orbit in orbits.values() if orbit.exists)
-    duration = float(design.case.contact.free_duration)
+    duration = float(design.case.equivalent.free_duration)
     since = np.linspace(-_BEFORE * duration, (_SHOWN - _BEFORE) * duration, _SAMPLES)
 
     def heights(at: np.ndarray) -> np.ndarray:

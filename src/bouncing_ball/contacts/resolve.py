@@ -70,7 +70,7 @@ def resolve(
     Examples
     --------
     >>> contact = Contact(mass=1.0, stiffness=4.0, damping=0.4)
-    >>> resolve(contact, TableMotion(1.0, 1.0, 1.0)).contact.damping_ratio
+    >>> resolve(contact, TableMotion(1.0, 1.0, 1.0)).equivalent.damping_ratio
     0.1
     """
     plain = contact.by_stiffness_and_loss(written)
@@ -127,13 +127,7 @@ def _spring_damper(contact: Contact, table: TableMotion) -> ResolvedContact:
         omega = omega_of_time(contact.contact_time, rule)
     zeta = loss(contact, omega, table.gravity)
     spring = SpringDamper(omega(zeta) / table.angular_frequency, zeta, rule)
-    return ResolvedContact(
-        contact.mass,
-        table,
-        spring,
-        given_stiffness=contact.stiffness,
-        given_damping=contact.damping,
-    )
+    return ResolvedContact(contact, table, spring, spring)
 
 
 def _of_law(
@@ -170,7 +164,7 @@ def _of_law(
         duration = contact.contact_time / table.time
         law = law_of_impact(kind, r, duration, at)
     linear = SpringDamper.of_duration(duration, unit.damping_ratio, rule)
-    return ResolvedContact(contact.mass, table, law, linear)
+    return ResolvedContact(contact, table, law, linear)
 
 
 def needs_table(what: str, why: str) -> ParameterError:
@@ -187,12 +181,12 @@ def _with_law_of_engine(case: ResolvedContact, families: Sequence[int]) -> Resol
     law = engine.law(case.given.engine_parameters, case.mass, table.time, table.length)
     if law is None:
         return case
-    if case.is_of_no_impact and engine.needs_speed:
+    if case.lacks_speed:
         return case
     if engine.needs_speed:
         case = with_law(case, law, families)
     # For another engine the spring and damper is written in place of the law.
-    return case if case.written is not None else replace(case, law=law, beside=case.contact)
+    return case if case.written is not None else replace(case, law=law)
 
 
 def first_stable_family(
@@ -221,9 +215,10 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
-    >>> case = ResolvedContact(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
+    >>> spring = SpringDamper(1.0, 0.0)
+    >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 1.0, 1.0), spring, spring)
     >>> found = with_law(case, Tsuji(50.0, tsuji_damping(0.8)), [1])
-    >>> round(float(found.contact.restitution), 12)
+    >>> round(float(found.equivalent.restitution), 12)
     0.8
     """
     if case.impact_speed is not None:
@@ -237,5 +232,5 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
 def _with_impact(case: ResolvedContact, impact: Instant) -> ResolvedContact:
     """The case with the linear contact that has the r and the duration of an impact."""
     r = float(impact.restitution)
-    linear = SpringDamper.of_impact(r, float(impact.duration), case.contact.release)
-    return replace(case, law=linear, given_stiffness=None, given_damping=None)
+    linear = SpringDamper.of_impact(r, float(impact.duration), case.equivalent.release)
+    return replace(case, plain=Contact(mass=case.mass), law=linear, equivalent=linear)

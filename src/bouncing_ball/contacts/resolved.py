@@ -8,21 +8,17 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.simple_models import exact_and_simple_models
+from bouncing_ball.accuracy.simple_models import SIMPLE, models_of_law
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.named_laws import model_name
 from bouncing_ball.contacts.rebounds import slowed
 from bouncing_ball.contacts.table import TableMotion
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.scales import rest
-from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.laws.steady_contact import known_threshold
 from bouncing_ball.models.model import Model
-from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 
@@ -44,29 +40,37 @@ class ResolvedContact:
     In units of 1/Ω, g/Ω² and m the model has the Λ of the table and the ϖ, ζ and release rule of
     the contact. The models are built on first use.
 
+    Two questions divide the contacts. If one :attr:`is_linear`, its motion on a vibrating table has
+    a closed form; otherwise its law is integrated in time. If one :attr:`is_spring_damper`, k and c
+    are its own; otherwise they are those of the equivalent. Only the answers for a damper that acts
+    on approach differ: its law is integrated, with its own k and c.
+
     Parameters
     ----------
-    mass : float
-        m in kg.
+    plain : Contact
+        The contact by its mass, its stiffness and its loss
+        (:meth:`.contact.Contact.by_stiffness_and_loss`). It has k and c if they were given, because
+        mω² and 2ζmω differ from them by rounding.
     table : TableMotion
         The table, which may be at rest.
     law : ContactLaw
         The law of the contact, such as a spring and a damper.
-    beside : SpringDamper, optional
-        For another law the linear contact with the same restitution coefficient and duration as
-        this law has at the impact speed of the orbit, or with the parameters of an engine.
-    given_stiffness, given_damping : float, optional
-        k and c if they were given, because mω² and 2ζmω differ from them by rounding.
+    equivalent : SpringDamper
+        The law itself if it is a spring and a damper. For another law the one with the same
+        restitution coefficient and duration as this law has at the impact speed of the orbit, or
+        with the parameters of an engine.
     given : Contact
         The contact as it was given, for the sentences on how it was read.
     written : str, optional
         Name of the engine for which it is written.
     impact_speed : float, optional
-        On a table at rest, the speed in m/s of the impact at which a law has the r of ``beside``.
+        On a table at rest, the speed in m/s of the impact at which a law has the r of its
+        equivalent.
 
     Examples
     --------
-    >>> case = ResolvedContact(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
+    >>> spring = SpringDamper(10.0, 0.1)
+    >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 1.0, 1.0), spring, spring)
     >>> case.stiffness, case.damping
     (100.0, 2.0)
     """
@@ -74,31 +78,22 @@ class ResolvedContact:
     KEYS: ClassVar[dict[str, str]] = {
         "mass": "mass",
         "table": "table",
-        "contact": "contact",
+        "contact": "equivalent",
         "law": "integrated_law",
     }
 
-    mass: float
+    plain: Contact
     table: TableMotion
     law: ContactLaw
-    beside: SpringDamper | None = None
-    given_stiffness: float | None = None
-    given_damping: float | None = None
+    equivalent: SpringDamper
     given: Contact = _NOTHING
     written: str | None = None
     impact_speed: float | None = None
 
     @property
-    def is_of_no_impact(self) -> bool:
-        """Whether there is neither a table that moves nor an impact with a speed."""
-        return self.table.is_at_rest and self.impact_speed is None
-
-    @property
     def is_spring_damper(self) -> bool:
-        """Whether the contact is a spring and a damper, though this may act on approach only, so
-        that k and c are those of the contact itself.
-        """
-        return self.beside is None
+        """Whether the contact is a spring and a damper, which may act on approach only."""
+        return isinstance(self.law, SpringDamper)
 
     @property
     def is_linear(self) -> bool:
@@ -106,38 +101,33 @@ class ResolvedContact:
         return self.is_spring_damper and self.law.release.is_linear
 
     @property
-    def contact(self) -> SpringDamper:
-        """ϖ, ζ and the release rule: the law itself if it is a spring and a damper, otherwise the
-        linear contact beside it.
-        """
-        if self.beside is not None:
-            return self.beside
-        assert isinstance(self.law, SpringDamper)
-        return self.law
-
-    @property
     def integrated_law(self) -> ContactLaw | None:
         """The law that is integrated in time; None for a linear contact."""
         return None if self.is_linear else self.law
 
     @property
+    def mass(self) -> float:
+        """m in kg."""
+        return self.plain.mass
+
+    @property
     def omega(self) -> float:
         """ω = ϖΩ in rad/s."""
-        return float(self.contact.frequency_ratio) * self.table.angular_frequency
+        return float(self.equivalent.frequency_ratio) * self.table.angular_frequency
 
     @property
     def stiffness(self) -> float:
         """k = mω² in N/m."""
-        if self.given_stiffness is not None:
-            return self.given_stiffness
+        if self.plain.stiffness is not None:
+            return self.plain.stiffness
         return self.mass * self.omega**2
 
     @property
     def damping(self) -> float:
         """c = 2ζmω in N s/m."""
-        if self.given_damping is not None:
-            return self.given_damping
-        return 2 * float(self.contact.damping_ratio) * self.mass * self.omega
+        if self.plain.damping is not None:
+            return self.plain.damping
+        return 2 * float(self.equivalent.damping_ratio) * self.mass * self.omega
 
     @property
     def physical(self) -> Physical:
@@ -153,7 +143,7 @@ class ResolvedContact:
         ModelError
             If ζ ≥ 1.
         """
-        return float(self.contact.free_duration) * self.table.time
+        return float(self.equivalent.free_duration) * self.table.time
 
     @property
     def static_deflection(self) -> float:
@@ -168,11 +158,11 @@ class ResolvedContact:
         without damping, for ζ ≥ 1, and for a contact law in which it does at no speed.
         """
         if self.is_linear:
-            zeta = float(self.contact.damping_ratio)
+            zeta = float(self.equivalent.damping_ratio)
             if not 0 < zeta < 1:
                 return None
             # In units of 1/ω and g/ω² the contact has ϖ = 1.
-            found = slowed(SpringDamper(1.0, zeta, self.contact.release), _FAST)
+            found = slowed(SpringDamper(1.0, zeta, self.equivalent.release), _FAST)
             unit = self.table.gravity / self.omega
         else:
             found = slowed(self.law, _FAST * rest(self.law) * self.omega * self.table.time)
@@ -186,17 +176,21 @@ class ResolvedContact:
 
     @property
     def law_speed(self) -> float:
-        """The impact speed in m/s at which a law has the r of ``contact``: that of the drop, or of
-        the 1-T orbit of the restitution model.
+        """The impact speed in m/s at which a law has the r of its equivalent: that of the drop, or
+        of the 1-T orbit of the restitution model.
         """
         if self.impact_speed is not None:
             return self.impact_speed
-        return float(rigid_speed(1, self.contact.restitution)) * self.unit_speed
+        return float(rigid_speed(1, self.equivalent.restitution)) * self.unit_speed
 
     @property
-    def needs_speed(self) -> bool:
-        """Whether the contact was given by an engine's parameters whose r depends on the speed."""
-        return self.given.engine is not None and self.given.engine.needs_speed
+    def lacks_speed(self) -> bool:
+        """Whether r depends on the speed, as for the parameters of some engines, and there is
+        neither a table that moves nor an impact with a speed.
+        """
+        engine = self.given.engine
+        has_speed = not self.table.is_at_rest or self.impact_speed is not None
+        return engine is not None and engine.needs_speed and not has_speed
 
     @property
     def law_in_si(self) -> dict[str, Any] | None:
@@ -213,26 +207,22 @@ class ResolvedContact:
         """The models by name: first the exact model, then the two simple models, in which r is
         that of a free impact.
         """
-        if self.is_linear:
-            return {model.name: model for model in exact_and_simple_models(self.contact)}
-        return {
-            model_name(self.law): ContactModel(self.law),
-            "restitution": RestitutionModel(self.contact.restitution),
-            "corrected": CorrectedModel(Signature(self.law)),
-        }
+        models = models_of_law(self.law, self.equivalent.restitution)
+        exact = models[0].name if self.is_linear else model_name(self.law)
+        return dict(zip((exact, *SIMPLE), models, strict=True))
 
     def instant(self, n: ArrayLike) -> Instant:
         """Signature of the contact at the impact speeds of the restitution model's n-T orbits."""
         # The r of a contact law is interpolated, and may exceed 1 by rounding.
-        return self._interpolated_instant(n)._replace(restitution=self.contact.restitution)
+        return self._interpolated_instant(n)._replace(restitution=self.equivalent.restitution)
 
     def _interpolated_instant(self, n: ArrayLike) -> Instant:
         corrected: Any = self.models["corrected"]
-        return corrected.signature(rigid_speed(n, self.contact.restitution))
+        return corrected.signature(rigid_speed(n, self.equivalent.restitution))
 
     def has_its_restitution(self, n: ArrayLike) -> np.ndarray:
-        """Whether the contact law has the r of ``contact`` at the impact speed of n-T orbits."""
-        r = float(self.contact.restitution)
+        """Whether the contact law has the r of its equivalent at the impact speed of n-T orbits."""
+        r = float(self.equivalent.restitution)
         return np.abs(self._interpolated_instant(n).restitution - r) < _SAME
 
     @cached_property
@@ -242,6 +232,6 @@ class ResolvedContact:
         It is not searched for under a law that is hardly damped, because its oscillation on the
         table would have to be integrated over millions of periods.
         """
-        if not self.is_linear and 1 - float(self.contact.restitution) < _HARDLY:
+        if not self.is_linear and 1 - float(self.equivalent.restitution) < _HARDLY:
             return math.nan
         return known_threshold(self.law)

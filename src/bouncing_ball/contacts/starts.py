@@ -123,10 +123,12 @@ def ends_of_starts(case: ResolvedContact) -> SharesOfStarts:
 
     Examples
     --------
+    >>> from bouncing_ball.contacts.contact import Contact
     >>> from bouncing_ball.contacts.table import TableMotion
     >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> spring = SpringDamper(10.0, 0.2)
     >>> found = ends_of_starts(
-    ...     ResolvedContact(1.0, TableMotion(1.0, 0.2, 1.0), SpringDamper(10.0, 0.2)))
+    ...     ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 0.2, 1.0), spring, spring))
     >>> found.by_text, found.sentence
     ({'permanent contact': 1.0}, 'Of 144 balls with other starts, 100 % end at rest on the table.')
     """

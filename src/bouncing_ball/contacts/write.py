@@ -85,17 +85,19 @@ def write_contact(
     of = {"contact": (contact, Contact), "setup": (setup, EngineSetup), "table": on}
     check_kinds("write_contact", **of, question=(asked, Question))
     if table is None:
-        case = resolve_for(contact, setup, TableMotion.at_rest())
-        return settings_for(description_of(case).case, setup)
+        return settings_for(describe_for(contact, setup), setup)
     case = resolve(contact, table.motion, asked.families, setup.engine)
-    return settings_on_table(assess(case, asked), setup)
+    return settings_for(assess(case, asked), setup)
 
 
-def resolve_for(
-    contact: Contact, setup: EngineSetup, at_rest: TableMotion, speed: float | None = None
-) -> ResolvedContact:
-    """The contact as it ends in the engine, or without a stiffness the stiffest one that the time
-    step of the engine resolves.
+def describe_for(
+    contact: Contact,
+    setup: EngineSetup,
+    gravity: float | None = None,
+    speed: float | None = None,
+) -> Description:
+    """The numbers of a contact as it ends in the engine, or without a stiffness those of the
+    stiffest one that the time step of the engine resolves.
 
     Raises
     ------
@@ -103,9 +105,10 @@ def resolve_for(
         If parameters do not suffice or contradict each other, or no contact has its r within the
         error at this step.
     """
+    at_rest = TableMotion.at_rest(gravity)
     step = setup.time_step
     if contact.is_stiff or step is None:
-        return resolve(contact, at_rest, written=setup.engine, speed=speed)
+        return description_of(resolve(contact, at_rest, written=setup.engine, speed=speed))
     plain = contact.by_stiffness_and_loss(setup.engine)
     scheme = engine_named(setup.engine).scheme
     allowed = setup.restitution_error
@@ -120,14 +123,14 @@ def resolve_for(
         return found.angular_frequency, found.stiffness
 
     stiff = replace(contact, stiffness=of_loss(plain, at_rest.gravity, stiffness))
-    return resolve(stiff, at_rest, written=setup.engine)
+    return description_of(resolve(stiff, at_rest, written=setup.engine))
 
 
-def settings_for(
-    case: ResolvedContact, setup: EngineSetup, speed: float | None = None
-) -> EngineSettings:
-    """The settings for a contact, which at a given time step have the r of a law at an impact speed
-    in m/s, by default that at which the law has the r of the contact.
+def settings_for(found: Assessment | Description, setup: EngineSetup) -> EngineSettings:
+    """The settings for a contact, and on a table the orbit that the engine will show.
+
+    At a given time step they have the r of a law at the impact speed of this orbit, or else at that
+    at which the law has the r of the contact.
 
     Raises
     ------
@@ -135,13 +138,24 @@ def settings_for(
         If the engine has no such contact, or if a time step is given for a contact law, and it is
         not known what the engine does there.
     """
-    engine = _engine_of(case, setup.engine, speed)
+    case = found.case
+    judged = found.judged if isinstance(found, Assessment) else None
+    engine = _engine_of(case, setup.engine, None if judged is None else judged.impact_speed)
     given_step = setup.time_step is not None
     if given_step and not case.is_spring_damper and not engine.has_steps_of_law:
         raise ParameterError(_OF_A_LAW)
-    release = str(case.contact.release)
+    release = str(case.equivalent.release)
     error = setup.restitution_error
-    return engine.settings(case.physical, release, error, setup.time_step)
+    settings = engine.settings(case.physical, release, error, setup.time_step)
+    # At a step that is too long the contact has another r, and so another orbit.
+    if judged is None or (settings.at_step is not None and not settings.at_step.is_within):
+        return settings
+    return replace(
+        settings,
+        max_height=judged.max_height,
+        contact_duration=judged.contact_duration,
+        penetration=judged.greatest_compression,
+    )
 
 
 def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> Engine:
@@ -152,26 +166,6 @@ def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> 
         return engine
     at = case.law_speed if speed is None else speed
     return engine.with_law({**law, "radius": case.given.radius, "speed": at})
-
-
-def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
-    """The settings for a contact on a table, and the orbit that the engine will show.
-
-    Raises
-    ------
-    ModelError
-        See :func:`settings_for`.
-    """
-    settings = settings_for(found.case, setup, found.judged.impact_speed)
-    if settings.at_step is not None and not settings.at_step.is_within:
-        # At this step the contact has another r, and so another orbit.
-        return settings
-    return replace(
-        settings,
-        max_height=found.judged.max_height,
-        contact_duration=found.judged.contact_duration,
-        penetration=found.judged.greatest_compression,
-    )
 
 
 @dataclass(frozen=True)
@@ -205,8 +199,9 @@ def softer_contact(
         if ball is None:
             return None
         ratio = ball.angular_frequency * case.table.time
-        spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
-        own = replace(case, law=spring, given_stiffness=ball.stiffness, given_damping=ball.damping)
+        spring = SpringDamper(ratio, ball.damping_ratio, case.equivalent.release)
+        plain = Contact(mass=case.mass, stiffness=ball.stiffness, damping=ball.damping)
+        own = replace(case, plain=plain, law=spring, equivalent=spring)
     return Softer(
         contact=description_of(own),
         dropped=None if speed is None else drop_at_rest(own, speed),
@@ -223,8 +218,8 @@ def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
     factor = contact_time / (
         float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
     )
-    slower = replace(case.contact, frequency_ratio=case.contact.frequency_ratio / factor)
-    return replace(case, law=law.stiffened(1 / factor**2), beside=slower)
+    slower = replace(case.equivalent, frequency_ratio=case.equivalent.frequency_ratio / factor)
+    return replace(case, law=law.stiffened(1 / factor**2), equivalent=slower)
 
 
 def _verdict(case: ResolvedContact, question: Question) -> str:
@@ -248,7 +243,7 @@ def dropped_at_step(
         return None
     if settings.at_step.steps > MOST_STEPS:
         return None
-    release = case.contact.release
+    release = case.equivalent.release
     step = _engine_of(case, settings.name).step(case.physical, release, settings.time_step)
     return drop_in_steps(step, speed, case.table.gravity, case.physical.contact_time(release))
 
@@ -319,7 +314,8 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
     >>> from bouncing_ball.contacts.resolve import resolve
     >>> contact = Contact(mass=1.0, stiffness=1e6, restitution=0.75)
     >>> case = resolve(contact, TableMotion.at_rest(), written="generic")
-    >>> at = settings_for(case, EngineSetup(engine="generic", time_step="2 ms")).at_step
+    >>> setup = EngineSetup(engine="generic", time_step="2 ms")
+    >>> at = settings_for(description_of(case), setup).at_step
     >>> looser(case, at).stiffness > 20 * at.stiffest
     True
     """
@@ -331,7 +327,7 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
     if exact is None:
         return None
     scheme = engine_named(at.engine).scheme
-    release = case.contact.release
+    release = case.equivalent.release
     found, _ = stiffest_contact(
         scheme, case.mass, exact.damping_ratio, release, at.time_step, LOOSE
     )

@@ -144,8 +144,10 @@ def test_parameters_that_cannot_be_read_are_refused_in_one_line(
 def test_drakes_hunt_crossley_contact_loses_what_its_work_is():
     # ∫ u du/(1 + Cu) over the impact is 0: (1 - rs) exp(s(1 + r)) = 1 + s with s = Cv.
     given = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
-    found = describe_contact(Contact(mass=0.5, from_engine="drake", parameters=given))
-    assert found.stiffness == 1e5 and found.damping is found.measured_restitution is None
+    for release in ("approach", None):
+        contact = Contact(mass=0.5, from_engine="drake", parameters=given, release=release)
+        found = describe_contact(contact)
+        assert found.stiffness == 1e5 and found.damping is found.measured_restitution is None
     pairs = re.findall(r"([\d.]+) at ([\d.]+) m/s", found.notes[0])
     assert len(pairs) == 3
     for r, s in np.array(pairs, dtype=float) * [1.0, 0.5]:

@@ -398,12 +398,6 @@ def test_wrong_values_are_refused_with_the_allowed_ones(call, says, refusal):
         call()
 
 
-def test_a_contact_that_does_not_oscillate_is_refused_when_its_model_is_made(refusal):
-    contact = bouncing_ball.SpringDamper([10.0, 20.0], [0.1, 2.0])
-    with refusal(bouncing_ball.ModelError, "damping ratio ζ = 2.0 is not below 1"):
-        bouncing_ball.ContactModel(contact)
-
-
 @pytest.mark.parametrize(
     "ask",
     [

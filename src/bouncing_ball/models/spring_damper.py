@@ -381,9 +381,6 @@ class SpringDamper(OscillatorLaw):
         """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts cannot be computed on
         this table, or in this flight.
         """
-        if self.release is Release.DISPLACEMENT:
-            # A contact that does not oscillate never comes back to the level of the table.
-            self.require_underdamped()
         if not self.is_linear_and_underdamped:
             super().check_in(setting)
         elif not setting.is_paper:

@@ -17,16 +17,15 @@ pytestmark = pytest.mark.usefixtures("short_runs")
 TABLE = Table(frequency="50 Hz", acceleration="0.8 g")
 
 
-@pytest.mark.parametrize("loss", [
-    {"restitution": 0.85},
-    {"restitution": 0.6, "release": "force"},
-    {"drop_height": "1 m", "rebound_height": "70 cm"},
-])  # fmt: skip
-@pytest.mark.parametrize("question", [
-    {},
-    {"tolerance": 1e-6, "n": 1},
-    {"quantity": "saddle_node"},
-    {"quantity": "permanent_contact"},
+LOSS = {"restitution": 0.85}
+
+
+@pytest.mark.parametrize(("loss", "question"), [
+    (LOSS, {}),
+    ({"restitution": 0.6, "release": "force"}, {"tolerance": 1e-6, "n": 1}),
+    ({"drop_height": "1 m", "rebound_height": "70 cm"}, {}),
+    (LOSS, {"quantity": "saddle_node"}),
+    (LOSS, {"quantity": "permanent_contact"}),
 ])  # fmt: skip
 def test_a_chosen_contact_is_within_the_tolerance_when_it_is_assessed(loss, question):
     asked = Question(**question)

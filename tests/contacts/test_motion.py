@@ -46,32 +46,20 @@ def few_impacts(monkeypatch):
     monkeypatch.setattr("bouncing_ball.contacts.ends._IMPACTS", 200)
 
 
-def with_few_starts(patch):
-    patch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
-    patch.setattr("bouncing_ball.contacts.starts._IMPACTS", 100)
-
-
 @pytest.fixture
 def few_starts(monkeypatch):
     """An answer with nine other starts and few impacts, where their shares are not asserted.
 
     ``test_the_headline_is_about_the_motion_on_which_most_balls_end`` has all of them.
     """
-    with_few_starts(monkeypatch)
+    monkeypatch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+    monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 100)
 
 
 # A contact whose mean height is known to half a percent with 256 balls, and to less with 4096: the
 # error of the restitution model is that near this tolerance. Changes of r, k and g decide, too.
 ON_THE_EDGE = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "2 g", "restitution": 0.5}
 ON_THE_EDGE |= {"stiffness": "1e7 N/m", "tolerance": 0.2465}
-
-
-@pytest.fixture(scope="module")
-def on_the_edge():
-    """The answer of the usual 4096 balls with the changes, about which two tests ask."""
-    with pytest.MonkeyPatch.context() as few:
-        with_few_starts(few)
-        return assessed(**ON_THE_EDGE)
 
 
 @pytest.mark.parametrize(
@@ -284,23 +272,26 @@ def test_an_undecided_verdict_says_how_many_balls_would_decide(found, advice):
     assert advice in said_of_motion(judged_by_motion(found, 0.05, 1)).reason
 
 
-def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage(
-    on_the_edge, without_changes, few_starts
-):
+def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage(few_starts, monkeypatch):
     """Of r = 0.5 and Λ = 2 the mean height changes by tens of percent if r changes by 0.1 %."""
-    found = on_the_edge
+    found = assessed(**ON_THE_EDGE)
     assert "is decided by changes of 0.1 % in r, k or g" in found.verdict
     assert not found.is_good_enough and "± is of sampling alone" in found.reason
     changes = found.motion.changes
     assert [*changes] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
     # The change is as large as that of the contact with this r, which starts from its own orbit and
     # so may end on another lap: both are far from the error without the change.
-    # It has as many balls as the changes.
+    # It has as many balls as the changes, and needs no changes of its own.
+    monkeypatch.setattr("bouncing_ball.contacts.means._changes", lambda *_: None)
     other = assessed(**ON_THE_EDGE | {"restitution": 0.4995}, balls=1024)
     one = changes["r -0.1 %"]["height"]
     two = other.motion.mean_error["height"]
     nominal = found.motion.mean_error["height"]
     assert abs(one.value - two.value) < 0.1 * abs(two.value - nominal.value)
+    # Without changes the 4096 balls decide what 256 leave open.
+    alone = replace(found.motion, changes=None)
+    said = said_of_motion(judged_by_motion(alone, ON_THE_EDGE["tolerance"], 1)).verdict
+    assert said.startswith("The restitution model is not good enough") and alone.balls == 4096
 
 
 def with_changes(error, **heights):
@@ -418,15 +409,12 @@ def test_the_headline_is_about_the_motion_on_which_most_balls_end(without_change
     assert of_five.starts == found.starts
 
 
-def test_a_larger_sample_decides_what_a_smaller_one_leaves_open(
-    on_the_edge, without_changes, few_starts, few_impacts
+def test_a_small_sample_leaves_open_what_a_larger_one_decides(
+    without_changes, few_starts, few_impacts
 ):
+    # The larger one is in the test of changes of a thousandth.
     small = assessed(**ON_THE_EDGE, balls=256)
     assert "not decided" in small.verdict and small.motion.balls == 256
-    # The changes of r, k and g would decide about this error.
-    large = replace(on_the_edge.motion, changes=None)
-    said = said_of_motion(judged_by_motion(large, ON_THE_EDGE["tolerance"], 1)).verdict
-    assert said.startswith("The restitution model is not good enough") and large.balls == 4096
 
 
 def test_beside_a_lap_that_rounding_errors_decide_on_the_interval_is_that_of_the_lap(

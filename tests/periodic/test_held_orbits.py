@@ -177,6 +177,7 @@ def test_grazing_flights_are_where_the_simulation_changes(case):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_basins_and_diagrams_are_those_of_the_motions():
     ball, _, amplitude = ball_of("drag")
     shares = bouncing_ball.basins(ball, amplitude=amplitude, starts=2, impacts=60)

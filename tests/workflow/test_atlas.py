@@ -81,6 +81,7 @@ def test_a_killed_atlas_is_resumed_without_loss(made, fresh):
     assert f"made results/atlas/shards/{first}" not in said
 
 
+@pytest.mark.long
 def test_a_shard_of_the_workflow_has_the_bits_of_the_package(made):
     section = read_yaml(made.path / "config" / "config.yaml")["atlas"] | SMALL
     plan = Plan(**section)

@@ -102,12 +102,3 @@ def test_stale_bytecode_is_not_run(fresh):
     assert path.stat().st_size == before.st_size
     done = fresh.run("--cores", "1", "fig02", check=False)
     assert done.returncode != 0 and "Dateset" in done.stdout + done.stderr
-
-
-def test_touch_makes_files_of_any_time_up_to_date(complete):
-    for path in complete.path.glob("results/figures/fig11.*"):
-        os.utime(path, (0, 0))
-    made = ("fig11", "fig12")
-    assert {"fig11", "Drawing fig11"} <= complete.planned(*made)
-    complete.run("--cores", "1", "--touch", *made)
-    assert complete.planned(*made) == set()

@@ -261,13 +261,15 @@ def test_on_a_weakly_damped_contact_the_orbit_loses_its_stability_between_two_op
     assert seen.periods[0] == 1 and seen.impacts[0] == 1 and np.exp(seen.exponent[2]) > 1
     found = opened([r], [WEAK]).amplitude[0, 0, 0]
     excess = WEAK**2 * (found - permanent_contact_threshold(WEAK, damping_ratio(r)))
-    assert 5.4 < excess < 5.6 and np.isfinite(opened([r], [100.0]).amplitude).all()
+    assert 5.4 < excess < 5.6
 
 
 @pytest.mark.long
 def test_the_second_opening_of_a_weakly_damped_contact_has_no_stable_orbit_below_it():
     first, second = computed((0.95,), (WEAK,), 2).amplitude[0, :, 0]
     assert np.isfinite(first) and np.isnan(second)
+    # Stiffer ones have it.
+    assert np.isfinite(opened([0.95], [100.0]).amplitude).all()
 
 
 def test_an_opening_is_the_first_from_below_and_does_not_depend_on_the_other_contacts():

@@ -205,9 +205,9 @@ def known_threshold(law: ForceLaw, table: Waveform = SINE) -> float:
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.hertzian import Tsuji
-    >>> known_threshold(Tsuji(1e9, 1e-3))
-    nan
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> round(known_threshold(SpringDamper(2.0, 0.5)) / 13**0.5, 15)
+    0.25
     """
     try:
         return permanent_contact(law, table)
@@ -225,8 +225,9 @@ def holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import Tsuji
-    >>> holds(Tsuji(1e9, 1e-3), 0.5), holds(Tsuji(1e9, 1e-3), 1.5)
-    (True, False)
+    >>> law = Tsuji(1e9, 1e-3)
+    >>> known_threshold(law), holds(law, 0.5), holds(law, 1.5)
+    (nan, True, False)
     """
     threshold = known_threshold(law, table)
     if np.isfinite(threshold):

@@ -114,7 +114,7 @@ def binomial_limits(count, share=0.95, tail=5e-4):
 
 
 # Weekly all of them hold in a thousand experiments.
-OFTEN = [("tsuji", True), ("tsuji", False), ("kuwabara-kono", False)]
+OFTEN = [("tsuji", True), ("tsuji", False)]
 
 
 @pytest.mark.slow

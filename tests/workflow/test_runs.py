@@ -163,6 +163,7 @@ def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_by
     assert [name for made in found for name in made if made[name] != expected[name]] == []
 
 
+@pytest.mark.long
 def test_the_report_shows_every_figure_offline(complete):
     complete.run("--report", "results/report.html")
     page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")

@@ -32,7 +32,13 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("name", PLACES)
+# The others are made of parts by the same functions.
+OFTEN = ("ext_diagram", "ext_chaos", "ext_means")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(x, marks=() if x in OFTEN else pytest.mark.long) for x in PLACES]
+)
 def test_shards_give_the_dataset_of_one_job(name, recorded, tmp_path, refusal):
     artifact = ARTIFACTS[name]
     places = typed(function(artifact.module, artifact.places))

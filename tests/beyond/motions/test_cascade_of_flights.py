@@ -126,7 +126,10 @@ def missed(exact, amplitude, touch, *impacts):
     return [*found, *exact.state(touch, *start)]
 
 
-@pytest.mark.parametrize(("r", "ratio", "k"), [(0.3, 100.0, 2), (0.65, 31.6, 3), (0.95, 100.0, 2)])
+@pytest.mark.parametrize(
+    ("r", "ratio", "k"),
+    [(0.3, 100.0, 2), (0.65, 31.6, 3), pytest.param(0.95, 100.0, 2, marks=pytest.mark.long)],
+)
 def test_an_opening_is_that_of_its_equations_in_sixty_digits(r, ratio, k):
     """By equations of their own: the touch is a time with δ = δ′ = 0 there, and an unknown."""
     zeta = damping_ratio(r)

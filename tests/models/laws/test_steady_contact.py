@@ -17,6 +17,7 @@ from bouncing_ball.models.laws.steady_contact import (
     _Steady,
     _touching,
     holds,
+    known_threshold,
     permanent_contact,
 )
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -53,10 +54,12 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
 
 
 def test_contacts_that_are_weakly_damped_are_refused():
-    # The second one touches the surface at Λ = 0.629, but only on the resonant branch.
-    for law in (Tsuji(1e9, 1e-3), law_of_impact(HuntCrossley, 0.95, 0.6, 3.0)):
-        with pytest.raises(ModelError, match="too weakly damped"):
-            permanent_contact(law)
+    # It touches the surface at Λ = 0.629, but only on the resonant branch.
+    with pytest.raises(ModelError, match="too weakly damped"):
+        permanent_contact(law_of_impact(HuntCrossley, 0.95, 0.6, 3.0))
+    # Whether a contact is held at a given Λ is known without its threshold.
+    law = Tsuji(1e9, 1e-3)
+    assert np.isnan(known_threshold(law)) and holds(law, 0.5) and not holds(law, 1.5)
 
 
 def test_a_stiff_contact_has_a_threshold_next_to_that_of_a_rigid_table():

@@ -224,10 +224,9 @@ def holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.hertzian import Tsuji
-    >>> law = Tsuji(1e9, 1e-3)
-    >>> known_threshold(law), holds(law, 0.5), holds(law, 1.5)
-    (nan, True, False)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> holds(SpringDamper(2.0, 0.5), 0.5), holds(SpringDamper(2.0, 0.5), 1.5)
+    (True, False)
     """
     threshold = known_threshold(law, table)
     if np.isfinite(threshold):

@@ -370,6 +370,25 @@ def test_an_end_behind_the_start_says_what_it_is():
     assert float(found.amplitude[-1]) == pytest.approx(1.9, rel=1e-12)
 
 
+def test_a_branch_of_one_family_is_described_as_one_that_is_followed():
+    """Both come from one function; the branch of a family has no axis of its impacts."""
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    whole = bouncing_ball.branch(ball, n=2, points=40)
+    part = bouncing_ball.follow(bouncing_ball.orbit(ball, 2, amplitude=2.0), to=2.5)
+    assert {name: whole[name].dims for name in whole.data_vars} == {
+        name: tuple(dim for dim in part[name].dims if dim != "impact") for name in part.data_vars
+    }
+    assert all(whole[name].attrs == part[name].attrs for name in whole.data_vars)
+    for name in ("impacts", "periods", "along", "restitution", "frequency_ratio"):
+        assert whole.attrs[name] == part.attrs[name]
+    several = bouncing_ball.branch(ball, n=[1, 2], points=40)
+    assert several.attrs["impacts"] == 1 and "periods" not in several.attrs
+    # A part with one of the impacts has the figure of its phase.
+    (line, *_) = part.isel(impact=0).plot().axes[0].lines
+    (same, *_) = part.plot().axes[0].lines
+    np.testing.assert_array_equal(line.get_xydata(), same.get_xydata())
+
+
 def test_the_limits_of_a_family_know_what_they_are(refusal):
     """From a saddle-node the stable side is followed, and from a doubling the doubled branch."""
     fold, doubling = bouncing_ball.limits(bouncing_ball.rigid(restitution=0.5))

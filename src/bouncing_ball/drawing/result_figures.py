@@ -44,9 +44,12 @@ def followed(data: xr.Dataset) -> Figure:
     looks = np.where(data.admissible, stability, "inadmissible")
     edges = [0, *(np.flatnonzero(looks[1:] != looks[:-1]) + 1), len(looks)]
     borders = {int(data.special_point[j]) + 1: j for j in range(data.sizes["special"])}
-    for k in range(data.sizes["impact"]):
-        line = np.stack([data[along].values, data.phase.values[:, k] / np.pi])
-        special = np.stack([data[f"special_{along}"], data.special_phase[:, k] / np.pi])
+    # A part with one of the impacts has no axis of the impacts.
+    phases = np.atleast_2d(data.phase.values.T) / np.pi
+    special_phases = np.atleast_2d(data.special_phase.values.T) / np.pi
+    for k, (here, there) in enumerate(zip(phases, special_phases, strict=True)):
+        line = np.stack([data[along].values, here])
+        special = np.stack([data[f"special_{along}"], there])
         first = line[:, :0]
         for start, stop in pairwise(edges):
             # Without a special orbit the line changes at the next point.
@@ -58,8 +61,7 @@ def followed(data: xr.Dataset) -> Figure:
             look = LINES[looks[start]] | {"color": COLOURS[k % len(COLOURS)]}
             axes.plot(x, np.where(jumps, np.nan, phase), label=looks[start], **look)
             first = last
-    first = data.special_phase.isel(impact=0)
-    _mark_special(axes, data, data[f"special_{along}"], first / np.pi)
+    _mark_special(axes, data, data[f"special_{along}"].values, special_phases[0])
     axes.set(
         xlabel=symbol(along), ylabel=r"phases of impact $\varphi/\pi$", title=_orbit_title(data)
     )
@@ -75,17 +77,17 @@ def special_curve(data: xr.Dataset) -> Figure:
     look: Look = {"color": COLOURS[1], "label": data.attrs["curve_kind"]}
     axes.plot(data[second], data[first], **look | LINES["inadmissible"] | {"label": None})
     axes.plot(data[second], data[first].where(shown), **look)
-    _mark_special(axes, data, data[f"special_{second}"], data[f"special_{first}"])
+    _mark_special(axes, data, data[f"special_{second}"].values, data[f"special_{first}"].values)
     axes.set(xlabel=symbol(second), ylabel=symbol(first), title=_orbit_title(data))
     legend_below(figure, ncols=3)
     return figure
 
 
-def _mark_special(axes: Axes, data: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> None:
+def _mark_special(axes: Axes, data: xr.Dataset, x: np.ndarray, y: np.ndarray) -> None:
     """The special points of each kind."""
     kinds = dict.fromkeys(data.special_kind.values.tolist())
     for kind, marker in zip(kinds, cycle("osDv^P"), strict=False):
-        here = data.special_kind == kind
+        here = data.special_kind.values == kind
         look: Look = {"linestyle": "none", "markersize": 5, "markerfacecolor": "none"}
         look |= {"color": "black"}
         axes.plot(x[here], y[here], marker=marker, label=kind, zorder=4, **look)

@@ -89,7 +89,9 @@ def branch(
     grid = Grid(n=family, **a_ball(ball).parameters)
     require_memory(count * grid.size, "points", "points or branches")
     whole = by_place(grid, ball, ("n",), found, partial(no_branch, count), joined)
-    data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude")
+    data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude", impacts=1)
+    if "n" in data.attrs:
+        data = data.assign_attrs(periods=data.attrs["n"])
     if top is not None:
         data = data.assign_attrs(amplitude_max=top)
     return FollowedBranch.of(data, "branch")

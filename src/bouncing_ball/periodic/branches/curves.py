@@ -21,7 +21,6 @@ equations alone. The cusp is therefore a zero of the derivative of g in the dire
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
@@ -34,7 +33,7 @@ from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import (
     PATIENT,
     STEPS,
-    Orbits,
+    Followed,
 )
 from bouncing_ball.periodic.branches.grazing import lowest_touch
 from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
@@ -52,7 +51,7 @@ from bouncing_ball.periodic.orbits.ends import (
 from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.special import Special, passed_by
+from bouncing_ball.periodic.orbits.special import Degenerate, Special, passed_by
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CURVE_STEPS = replace(STEPS, creep=1e-3)
@@ -71,15 +70,6 @@ _ANOTHER = 1e-3
 # long as a point, and changes slowly.
 _STRIDE = 4
 _INFLECTION = "where the flight touches the table, its minimum merges with a maximum"
-
-
-class Degenerate(StrEnum):
-    """The kinds of points that are special on a curve."""
-
-    CUSP = "cusp"
-    ONE_TO_ONE = "1:1 resonance"
-    ONE_TO_TWO = "1:2 resonance"
-    GENERALIZED = "generalized period doubling"
 
 
 def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
@@ -119,15 +109,6 @@ class CurveProblem:
         return np.concatenate([matrix, gradient[..., np.newaxis, :]], axis=-2)
 
 
-@dataclass(frozen=True)
-class Curve(Orbits):
-    """A curve of special orbits of a kind in two parameters."""
-
-    kind: Special
-
-    kinds = Degenerate
-
-
 def curve_through(
     start: Orbit,
     kind: Special,
@@ -138,7 +119,7 @@ def curve_through(
     across_window: Window | None = None,
     control: StepControl = CURVE_STEPS,
     most: int = 1000,
-) -> Curve:
+) -> Followed:
     """The curve of special orbits through one of them, in both directions.
 
     Parameters
@@ -166,7 +147,7 @@ def curve_through(
     windows = _ranges(equations, {along: along_window, across: across_window})
     if kind is Special.STICKING:
         first, second = windows.values()
-        return Curve(equations, sticking_curve(equations, guess, (first, second), most), kind)
+        return Followed(equations, sticking_curve(equations, guess, (first, second), most))
     problem = CurveProblem(equations, condition_of(equations, kind))
     limits = limits_of(equations, *windows.values())
     first = _special_at(problem, guess)
@@ -196,7 +177,7 @@ def curve_through(
             start=_explained_end(problem, branch.start, branch.points, kind, windows),
             end=_explained_end(problem, branch.end, branch.points[::-1], kind, windows),
         )
-    return Curve(equations, named, kind)
+    return Followed(equations, named)
 
 
 def _explained_end(

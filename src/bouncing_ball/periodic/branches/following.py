@@ -7,9 +7,8 @@ branches and searches of n-T orbits are in :mod:`bouncing_ball.periodic.one_impa
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -34,7 +33,7 @@ from bouncing_ball.periodic.orbits.ends import (
 from bouncing_ball.periodic.orbits.halves import halves, turns_apart, turns_of_half, twice
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
-from bouncing_ball.periodic.orbits.special import Coordinates, Special
+from bouncing_ball.periodic.orbits.special import Coordinates, Degenerate, Special
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
@@ -54,6 +53,7 @@ _SAME_DURATION = 1e-6
 # Without a value at which a branch ends, it ends at this multiple of the first value of the
 # parameter, or of 1, if the range of the parameter has no end.
 _FARTHEST = 10.0
+_KINDS = (*Special, *Degenerate)
 
 
 def orbits_on(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
@@ -87,8 +87,9 @@ def unrolled(problem: Coordinates, y: np.ndarray, found: Orbit) -> Orbit:
 
 
 @dataclass(frozen=True)
-class Orbits:
-    """Orbits in order, one after another: a branch, or a curve of special orbits.
+class Followed:
+    """Orbits in order, one after another: a branch along one parameter, or a curve of special
+    orbits in two.
 
     ``problem`` gives the unknowns a meaning, and ``branch`` has the points in order and the special
     points; ``branch.end`` gives the reason why the branch ends, in words.
@@ -96,9 +97,6 @@ class Orbits:
 
     problem: Coordinates
     branch: Branch
-
-    kinds: ClassVar[type[StrEnum]]
-    """The kinds of special points."""
 
     def __len__(self) -> int:
         return len(self.branch.points)
@@ -119,8 +117,8 @@ class Orbits:
 
     @property
     def special_points(self) -> list[SpecialPoint]:
-        """The special points of these kinds, in order."""
-        return [each for each in self.branch.special if each.name in list(self.kinds)]
+        """The special points in order, without the ends that have a point but no kind."""
+        return [each for each in self.branch.special if each.name in _KINDS]
 
     @property
     def special(self) -> list[Orbit]:
@@ -138,13 +136,6 @@ class Orbits:
         y = resample(self.problem, self.branch, count)
         tangents = tangent(self.problem.jacobian(y), np.gradient(y, axis=0))
         return replace(self, branch=replace(self.branch, points=y, tangents=tangents))
-
-
-@dataclass(frozen=True)
-class Followed(Orbits):
-    """A branch of orbits with k impacts in m periods along one parameter."""
-
-    kinds = Special
 
 
 def branches_through_points(

@@ -15,7 +15,7 @@ from bouncing_ball.drawing.result import MADE_BY, Result
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches import observables
-from bouncing_ball.periodic.branches.following import Orbits
+from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.saved import KEPT
@@ -57,8 +57,7 @@ class _Orbits(Result):
         ModelError
             If a dimension has been selected away.
         """
-        needed = ("point", "special", *(("impact",) if "impacts" in self.attrs else ()))
-        missing = [name for name in needed if name not in self.dims]
+        missing = [name for name in ("point", "special") if name not in self.dims]
         if missing and MADE_BY in self.attrs:
             raise ModelError(
                 f"a part of the result of {self._maker} without the dimension {missing[0]!r} has "
@@ -146,7 +145,7 @@ def _attributes(problem: OrbitEquations) -> dict[str, Any]:
     return {"impacts": problem.impacts, "periods": int(problem.periods), **fixed}
 
 
-def labelled(found: Orbits, made_by: str, **attributes: str) -> dict[str, Any]:
+def labelled(found: Followed, made_by: str, **attributes: str) -> dict[str, Any]:
     """The variables, coordinates and attributes of a branch or a curve, with phases in [-π, π].
 
     They are the arguments of a dataset, which is made once, because that takes as long as some

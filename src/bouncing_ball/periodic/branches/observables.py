@@ -13,7 +13,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic.branches.following import Orbits, unrolled
+from bouncing_ball.periodic.branches.following import Followed, unrolled
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import columns_of
@@ -81,48 +81,32 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     return {name: getattr(orbit, name) for name in names} | judged
 
 
-def branch_variables(found: Orbits) -> dict[str, Any]:
+def branch_variables(found: Followed) -> dict[str, Any]:
     """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends,
-    as the variables and the coordinates of a dataset, with all that the orbits need to come back.
+    as the variables and the coordinates of a dataset.
 
     Over ``point``, they have each parameter that varies, ``stable``, ``admissible``, ``residual``
     and ``digits_left``, and over (point, impact) the observables of the orbits, with phases that
     pass ±π continuously. The multipliers are over (point, multiplier), ``special_…`` over
     ``special``, of which phases and durations are over (special, impact) too, and ``end_reason``
-    over ``end``. ``special_point`` is the number of the last point before a special orbit.
+    over ``end``. ``special_point`` is the number of the last point before a special orbit. The
+    variables of :mod:`~bouncing_ball.periodic.orbits.saved` are among them, so that the orbits come
+    back.
     """
     special = _special_places(found)
-    orbits = _in_order(found, special)
-    there = orbits[len(found) :]
-    along = columns_of(orbits[: len(found)], "point")
-    # No special orbit has parameters of its own if there is none.
-    empty = {f"special_{name}": ("special", np.empty(0)) for name in _over_points(along)}
-    kept = along | columns_of(there, "special", "special_")
+    orbits = found.with_special
+    if np.any(np.diff(special.order) < 0):
+        count = len(found)
+        orbits = orbits[np.concatenate([np.arange(count), count + special.order])]
     points = np.concatenate([found.branch.points, special.points])
-    reasons = [str(found.branch.start), str(found.branch.end)]
-    observed = _observed(unrolled(found.problem, points, orbits), special.kinds, reasons)
-    observed["special_arclength"] = "special", special.arclength
-    observed["special_point"] = "special", special.before
-    return (empty if not there.size else {}) | kept | observed
-
-
-def _in_order(found: Orbits, special: "_Special") -> Orbit:
-    """The orbits of a branch, and after them its special orbits in their order along it."""
-    count = len(found)
-    if np.all(np.diff(special.order) > 0):
-        return found.with_special
-    return found.with_special[np.concatenate([np.arange(count), count + special.order])]
-
-
-def _over_points(variables: dict[str, Any]) -> list[str]:
-    """The names of the variables with one number for each point."""
-    return [name for name, (dims, _) in variables.items() if dims == ("point",)]
+    ends = [str(found.branch.start), str(found.branch.end)]
+    return _in_columns(orbits, unrolled(found.problem, points, orbits), special, ends)
 
 
 class _Special(NamedTuple):
     """The special points of a branch in the order along it: the grazing orbits are located one kind
-    after another. ``order`` are their numbers among :attr:`.Orbits.special_points`. ``before`` and
-    ``arclength`` are those of :func:`_places`.
+    after another. ``order`` are their numbers among :attr:`.Followed.special_points`. ``before``
+    and ``arclength`` are those of :func:`_places`.
     """
 
     order: np.ndarray
@@ -132,7 +116,7 @@ class _Special(NamedTuple):
     arclength: np.ndarray
 
 
-def _special_places(found: Orbits) -> _Special:
+def _special_places(found: Followed) -> _Special:
     y = found.branch.points
     special = np.array([each.point for each in found.special_points]).reshape(-1, y.shape[-1])
     before, arclength = _places(special, y)
@@ -166,55 +150,59 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
 
 
-def _observed(orbits: Orbit, kinds: list[str], ends: list[str]) -> dict[str, Any]:
-    """Orbits along a branch, of which the last ones are its special orbits of these kinds, and the
-    reasons for its two ends, as in :func:`branch_variables`.
+def _in_columns(orbits: Orbit, ahead: Orbit, special: _Special, ends: list[str]) -> dict[str, Any]:
+    """The variables of :func:`branch_variables`, from the orbits along a branch with its special
+    orbits after them, with phases in [-π, π] and, ``ahead``, with phases that pass ±π.
     """
-    count = orbits.size - len(kinds)
+    count = orbits.size - len(special.kinds)
     data: dict[str, Any] = {}
-    for name in orbits.along:
-        values = _values(orbits, name)
+    for name in ahead.along:
+        values = np.broadcast_to(Balls(ahead.model, ahead.amplitude).values[name], ahead.shape)
         data[name] = "point", values[:count]
         data[f"special_{name}"] = "special", values[count:]
     observed = {
-        name: np.reshape(getattr(orbits, name), (orbits.size, orbits.impacts)) for name in OBSERVED
+        name: np.reshape(getattr(ahead, name), (ahead.size, ahead.impacts)) for name in OBSERVED
     }
     data |= {name: (("point", "impact"), values[:count]) for name, values in observed.items()}
     for name in ("phase", "contact_duration"):
         data[f"special_{name}"] = ("special", "impact"), observed[name][count:]
-    data["stable"] = "point", orbits.is_stable()[:count]
-    data["admissible"] = "point", orbits.is_admissible()[:count]
-    defect = orbits.defect()
+    data["stable"] = "point", ahead.is_stable()[:count]
+    data["admissible"] = "point", ahead.is_admissible()[:count]
+    defect = ahead.defect()
     data["residual"] = "point", defect[:count]
-    data["digits_left"] = "point", orbits.digits_left()[:count]
-    floquet = orbits.multipliers()[:count]
+    data["digits_left"] = "point", ahead.digits_left()[:count]
+    floquet = ahead.multipliers()[:count]
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
-    data["special_kind"] = "special", np.array(kinds, dtype=str)
+    kinds = np.array(special.kinds, dtype=str)
+    data["special_kind"] = "special", kinds
     # Where a release is lost, which is a double zero, rounding decides which release is found.
-    lost = np.array(kinds, dtype=str) == Special.RELEASE_LOST
+    lost = kinds == Special.RELEASE_LOST
     data["special_residual"] = "special", np.where(lost, np.nan, defect[count:])
     data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
     data["special"] = "special", np.arange(len(kinds))
     data["end"] = "end", ["start", "end"]
-    return data
+    data["special_arclength"] = "special", special.arclength
+    data["special_point"] = "special", special.before
+    along = columns_of(orbits[:count], "point")
+    there = columns_of(orbits[count:], "special", "special_")
+    # No special orbit has parameters of its own if there is none.
+    over_points = (name for name, (dims, _) in along.items() if dims == ("point",))
+    none = {f"special_{name}": ("special", np.empty(0)) for name in over_points}
+    # The observables come first, and their phases pass ±π.
+    return data | ({} if len(kinds) else none) | there | along | data
 
 
-def _values(orbit: Orbit, name: str) -> np.ndarray:
-    """The values of a parameter, one for each of a row of orbits."""
-    return np.broadcast_to(Balls(orbit.model, orbit.amplitude).values[name], orbit.shape)
-
-
-def n_t_columns(found: Orbits) -> xr.Dataset:
-    """As :func:`branch_variables` for orbits with one impact, from the unstable to the stable side,
+def n_t_columns(found: Followed) -> xr.Dataset:
+    """:func:`branch_variables` of orbits with one impact, from the unstable to the stable side,
     without an axis of the impacts.
     """
     return _of_one_impact(branch_variables(found))
 
 
-def _of_one_impact(variables: dict[str, Any]) -> xr.Dataset:
-    one = xr.Dataset(variables).isel(impact=0, drop=True)
+def _of_one_impact(columns: dict[str, Any]) -> xr.Dataset:
+    one = xr.Dataset(columns).isel(impact=0, drop=True)
     kinds = one.special_kind.astype(object)
     return one.assign(special_kind=kinds).assign_coords(end=["unstable side", "stable side"])
 
@@ -222,11 +210,8 @@ def _of_one_impact(variables: dict[str, Any]) -> xr.Dataset:
 def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
-    found = columns_of(none, "point") | columns_of(none[:0], "special", "special_")
-    found |= _observed(none, [], [str(error)] * 2)
-    found["special_arclength"] = "special", np.empty(0)
-    found["special_point"] = "special", np.empty(0)
-    return _of_one_impact(found)
+    nowhere = _Special(np.empty(0, int), np.empty((0, 0)), [], np.empty(0, int), np.empty(0))
+    return _of_one_impact(_in_columns(none, none, nowhere, [str(error)] * 2))
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

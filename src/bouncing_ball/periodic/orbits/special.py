@@ -73,6 +73,15 @@ class Special(StrEnum):
     PERIOD_HALVING = "period halving"
 
 
+class Degenerate(StrEnum):
+    """The kinds of points that are special on a curve of special orbits in two parameters."""
+
+    CUSP = "cusp"
+    ONE_TO_ONE = "1:1 resonance"
+    ONE_TO_TWO = "1:2 resonance"
+    GENERALIZED = "generalized period doubling"
+
+
 MEANINGS = {
     Special.SADDLE_NODE: "a multiplier is 1: two orbits merge",
     Special.PERIOD_DOUBLING: "a multiplier is -1: an orbit of twice the period branches off",

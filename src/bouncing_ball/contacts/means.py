@@ -147,7 +147,8 @@ def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     """
     speed = _impact_speed(case, end)
     if not case.is_linear and not _is_of_impact(case.law, speed):
-        linear = replace(case, law=case.equivalent.linear, equivalent=case.equivalent.linear)
+        spring = case.equivalent.linear
+        linear = replace(case, law=spring, equivalent=spring)
         return {NO_CHANGE: linear} | _changed(linear, end)
     found = {"r -0.1 %": _with(case, speed, restitution=1 - _CHANGE)}
     if float(case.equivalent.restitution) * (1 + _CHANGE) <= 1:
@@ -189,8 +190,8 @@ def _with(
     other = SpringDamper.from_restitution(r, ratio, contact.release, measured=True)
     if case.is_linear:
         return replace(case, law=other, equivalent=other)
-    law = _law(case.law, speed, restitution, duration, unit)
-    return replace(case, law=law, equivalent=law if isinstance(law, SpringDamper) else other)
+    law: Any = _law(case.law, speed, restitution, duration, unit)
+    return replace(case, law=law, equivalent=law if case.is_spring_damper else other)
 
 
 def _law(

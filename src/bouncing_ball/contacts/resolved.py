@@ -93,7 +93,7 @@ class ResolvedContact:
     @property
     def is_spring_damper(self) -> bool:
         """Whether the contact is a spring and a damper, which may act on approach only."""
-        return isinstance(self.law, SpringDamper)
+        return self.law is self.equivalent
 
     @property
     def is_linear(self) -> bool:

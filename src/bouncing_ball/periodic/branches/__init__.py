@@ -9,6 +9,6 @@ In reading order:
 ``sticking_curve``  the end of sticking in two parameters
 ``curves``          curves of special orbits in two parameters
 ``observables``     the quantities of orbits, as datasets have them
-``labelled``        branches and curves as datasets that iterate and draw themselves
+``labelled``        branches and curves as datasets that have their orbits and a figure
 ``follow``          ``follow``, which a user calls
 """

@@ -1,4 +1,7 @@
-"""Branches and curves of periodic orbits as labelled datasets that iterate and draw themselves."""
+"""Branches and curves of periodic orbits as labelled datasets that have their orbits and a figure.
+
+A dataset iterates over the names of its variables; its orbits are those of ``states()``.
+"""
 
 from __future__ import annotations
 

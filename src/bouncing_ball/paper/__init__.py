@@ -23,10 +23,10 @@ Eqs.    what                      where
 17      apparent restitution      ``periodic.orbits.impacts.Impacts.apparent_restitution``
 18-20   period of the n-T orbit   ``periodic.orbits.impacts.Impacts.flight_time``
 21-26   the six, written out      ``periodic.one_impact.paper_unknowns.PaperUnknowns``
-21, 22  start of contact          ``models.contacts_and_flights.ContactsAndFlights.start``
-23      end of the contact        ``models.linear_contact.LinearContactDynamics.depart``
+..      start, Eqs. 21 and 22     ``models.contacts_and_flights.ContactsAndFlights.start``
+..      end of contact, Eq. 23    ``models.linear_contact.LinearContactDynamics.depart``
 ..      near a given duration     ``models.linear_contact.LinearContactDynamics.depart_after``
-24-26   return to the start       ``periodic.orbits.problem.OrbitEquations.residual``
+..      return, Eqs. 24-26        ``periodic.orbits.problem.OrbitEquations.residual``
 ..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
 ..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``
 ..      their period doubling     ``periodic.one_impact.spring_damper_bifurcations.period_doubling``

@@ -306,9 +306,15 @@ _WORDS = {
 }
 
 
+# Each mistake asks for it, and it takes longer than the check.
+@cache
+def _whole_schema(model: type[BaseModel]) -> Mapping[str, Any]:
+    return model.model_json_schema()
+
+
 def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str, Any]]:
     """The schemas from that of the whole configuration to that of a key, which comes last."""
-    root = model.model_json_schema()
+    root = _whole_schema(model)
     found = [resolved(root, root)]
     for part in path:
         if isinstance(part, int):

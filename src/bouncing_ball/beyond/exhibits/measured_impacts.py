@@ -31,6 +31,7 @@ from typing import Annotated, Self
 
 import numpy as np
 import xarray as xr
+from pydantic import AfterValidator
 
 from bouncing_ball.accuracy.error_law import VALID_BELOW, first_order, small_parameter
 from bouncing_ball.accuracy.errors import Quantity
@@ -39,7 +40,7 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.measured.curves import CURVES
-from bouncing_ball.measured.experiment import Experiment, experiment
+from bouncing_ball.measured.experiment import Experiment, experiment, experiment_names
 from bouncing_ball.measured.fit import ContactFit
 from bouncing_ball.measured.law_fit import LEVEL, LawFit, Points
 from bouncing_ball.measured.verdicts import (
@@ -145,7 +146,15 @@ VARIABLES = {
 }
 
 COMPARED = (Quantity.MAX_HEIGHT, Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
-Name = Annotated[str, number("name of an experiment of the package")]
+
+
+def _known(name: str) -> str:
+    if name not in experiment_names():
+        raise ValueError(f"must be one of {', '.join(experiment_names())}")
+    return name
+
+
+Name = Annotated[str, number("name of an experiment of the package"), AfterValidator(_known)]
 
 
 class MeasuredImpacts(Parameters):

@@ -107,6 +107,8 @@ SPAN = (*FIG05, "frequency_ratio")
         # Of several families the highest decides how far branches must reach.
         (("paper", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
         (("paper", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
+        # A name that the package does not know.
+        (("beyond", "ext_measured", "experiments"), ["croqet"], "'croqet' must be one of "),
     ],
 )
 def test_a_mistake_is_named_in_one_line(model, keys, value, message):

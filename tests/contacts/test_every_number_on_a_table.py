@@ -420,8 +420,15 @@ def test_every_listed_number(given):
     answer = answered(**asked)
     found = answer.found
     pulls = str(found.case.equivalent.release) == "displacement"
-    mass, n, frequency = asked["mass"], asked["n"], asked["frequency"]
-    own = Own(mass, found.stiffness, found.damping, pulls, frequency, given["acceleration"] * G, n)
+    own = Own(
+        mass=asked["mass"],
+        k=found.stiffness,
+        c=found.damping,
+        pulls=pulls,
+        frequency=asked["frequency"],
+        acceleration=given["acceleration"] * G,
+        n=asked["n"],
+    )
     # The loss that was asked for: of a free impact, or r of the release at δ = 0 (Eq. 16).
     if "damping" in given:
         assert found.damping == given["damping"]
@@ -473,7 +480,7 @@ def test_every_listed_number(given):
     small = []
     for part in (0.02, 0.01):
         weak = Instant(own.r, part * own.corrected.delay, part * own.corrected.load)
-        ends = limits(weak, n, *own.found["restitution"][1], own.lam)
+        ends = limits(weak, own.n, *own.found["restitution"][1], own.lam)
         small.append((simple_limits / np.array(ends) - 1) / part)
     for name, limit in zip(names[4:], 2 * small[1] - small[0], strict=True):
         assert one.law_errors[name] == pytest.approx(limit, rel=5e-3, abs=2e-5), name

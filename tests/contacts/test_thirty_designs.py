@@ -359,8 +359,8 @@ def test_a_time_step_that_is_given(name, step, r):
     assert rise.least == pytest.approx(rises.min(), rel=0.01)
     assert rise.most == pytest.approx(rises.max(), rel=0.01)
     soft = answer.softer
-    k, c = soft.contact.stiffness, soft.contact.damping
-    compare(soft.contact, soft.dropped, Ball(0.5, linear(k, c), pulls, 1e-8))
+    force = linear(soft.contact.stiffness, soft.contact.damping)
+    compare(soft.contact, soft.dropped, Ball(0.5, force, pulls, 1e-8))
     k, c = written(name, answer.engine.softer)
     many = in_steps(scheme, 0.5, k, c, h, np.linspace(1e-6, 1.0, 101), pulls=pulls)
     assert np.abs(many - r).max() <= 1e-3 + 1e-9

@@ -189,7 +189,8 @@ def sampled(mass, k, c, acceleration, pulls, restitution=None, balls=400):
     t = 0.0
     height = np.zeros(balls)
     work = np.zeros(balls)
-    since, until = 60 * PERIOD, 260 * PERIOD
+    since = 60 * PERIOD
+    until = 260 * PERIOD
 
     def push(z, v, t):
         if restitution is not None:
@@ -221,7 +222,8 @@ def sampled(mass, k, c, acceleration, pulls, restitution=None, balls=400):
                 work += np.where(struck, mass * (away - v_after) * speed, 0.0)
             v_after = np.where(struck, away, v_after)
             z_after = np.where(below, table, z_after)
-        z, v = z_after, v_after
+        z = z_after
+        v = v_after
     return height / (until - since), work / (until - since)
 
 

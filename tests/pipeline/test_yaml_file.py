@@ -26,6 +26,7 @@ ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
             "not YAML: while scanning for the next token found character '\\t' that cannot "
             'start any token in "<byte string>", line 3, column 1: ',
         ),
+        (b"a: 1\nb: 2011-02-30\n", "not YAML: day is out of range for month"),
         (b"a: 1\nb: !!python/name:os.system\n", "not YAML: could not determine a constructor"),
     ],
 )

@@ -78,7 +78,10 @@ def parse_yaml(text: str | bytes) -> Any:
 def _content(text: str | bytes) -> Any:
     try:
         return yaml.load(text, Loader=_Loader)
-    except yaml.YAMLError as error:
+    except ConfigurationError:
+        raise
+    # A day that no month has is a ValueError of the reader.
+    except (yaml.YAMLError, ValueError) as error:
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
 
 

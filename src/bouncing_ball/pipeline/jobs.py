@@ -37,7 +37,6 @@ REFERENCE = (
 )
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
-# What makes the dataset of any study cheaper.
 _CONCLUSION = Path("results/logs/conclusion")
 
 

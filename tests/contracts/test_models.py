@@ -29,7 +29,7 @@ from bouncing_ball.paper.claims.witness import nearest
 from bouncing_ball.periodic.branches.following import orbits_along
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.one_impact.start import SearchedOrbits
+from bouncing_ball.periodic.one_impact.searched_orbits import SearchedOrbits
 from bouncing_ball.periodic.orbits.legs import time_to_section
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.orbits.special import bifurcations as events_of
@@ -202,7 +202,8 @@ def test_the_slopes_of_a_duration_are_the_derivatives_of_the_contact(some):
     expected = differences(contact, state, np.full(2, 1e-3))[0]
     dynamics = model.dynamics(lam)
     impact = dynamics.start(*state[:, np.newaxis])
-    found = np.ravel(dynamics.duration_slopes(impact, dynamics.depart(impact)))
+    near = dynamics.depart(impact).duration
+    found = np.ravel(dynamics.depart(impact, near=near).slopes)
     assert np.abs(found - expected).max() < 1e-9 * (1 + np.abs(expected).max())
 
 

@@ -145,8 +145,7 @@ def test_the_bound_on_the_bounces_of_a_ball_that_comes_to_rest_is_not_too_short(
     held = np.flatnonzero((lam * np.sin(phase) < 1) & (lam > 1))
     dynamics = RestitutionDynamics.of(r, lam[held])
     impact = dynamics.start(phase[held], -speed[held])
-    rests = np.ones(held.size)
-    settles = dynamics.settles(impact, rests)
+    settles = dynamics.comes_to_rest(impact)
     monkeypatch.setattr(RestitutionDynamics, "_rests_within", lambda self, impact, left: left < 0)
-    assert np.array_equal(settles, dynamics.settles(impact, rests))
+    assert np.array_equal(settles, dynamics.comes_to_rest(impact))
     assert 0.4 < np.mean(settles) < 1

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from one_branch import continue_branch
 
-from bouncing_ball.numerics.continuation import continue_branch
 from bouncing_ball.numerics.events import Event, domain_limits, locate
 
 

@@ -25,8 +25,8 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact.searched_orbits import SearchedOrbits, restitution_speed
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbits_at as by_formula
-from bouncing_ball.periodic.one_impact.start import SearchedOrbits, restitution_speed
 from bouncing_ball.periodic.orbits.stability import Side
 
 KINDS = [SpringDamper, *LAWS.values()]
@@ -118,7 +118,7 @@ def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(mon
     assert orbit.defect() < 1e-12 * 300
     assert orbit.trace_and_determinant()[0] > 2
     # A walk of a few steps does not arrive, and one of 300 takes seconds.
-    monkeypatch.setattr("bouncing_ball.periodic.one_impact.start._POINTS", 8)
+    monkeypatch.setattr("bouncing_ball.periodic.one_impact.searched_orbits._POINTS", 8)
     with pytest.raises(NoOrbitError, match="none was found, but one may exist"):
         n_t.require_orbit(model, 20, 1000.0, Side.UNSTABLE)
 

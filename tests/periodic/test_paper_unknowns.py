@@ -5,13 +5,13 @@ import pytest
 from bounds_of_branches import parameter_bound
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from one_branch import continue_branch
 from scipy.optimize import brentq
 
 from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.continuation import continue_branch
 from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import orbits_along
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns

@@ -7,8 +7,8 @@ from scipy.optimize import brentq
 from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import corrected_branch, n_t
+from bouncing_ball.periodic.one_impact.searched_orbits import SearchedOrbits, special_on_branch
 from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.one_impact.start import SearchedOrbits, special_on_branch
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 

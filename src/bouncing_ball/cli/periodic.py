@@ -28,7 +28,7 @@ from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import orbits_of_ball as library
-from bouncing_ball.periodic.one_impact.start import restitution_speed
+from bouncing_ball.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 

@@ -31,7 +31,7 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
-from bouncing_ball.periodic.one_impact.start import restitution_speed
+from bouncing_ball.periodic.one_impact.searched_orbits import restitution_speed
 
 # What a contact of a law is not given by, because its parameters follow from a free impact.
 _NOT_OF_A_LAW = ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus")

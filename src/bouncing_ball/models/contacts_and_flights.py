@@ -47,6 +47,15 @@ class Impact(NamedTuple):
         return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
 
 
+class Slopes(NamedTuple):
+    """The derivatives of the durations of contacts by the state at their starts, which is that of
+    :meth:`.ContactsAndFlights.section`.
+    """
+
+    by_phase: np.ndarray
+    by_velocity: np.ndarray
+
+
 class Departure(NamedTuple):
     """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
     the :class:`~bouncing_ball.models.sequence.Status`.
@@ -57,6 +66,7 @@ class Departure(NamedTuple):
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
     ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
     it is None without derivatives.
+    ``slopes`` are those of the durations, of ends near given durations.
     """
 
     phase: np.ndarray
@@ -67,6 +77,7 @@ class Departure(NamedTuple):
     aloft: np.ndarray | float = 0.0
     by: Any = None
     sticks: Any = None
+    slopes: Slopes | None = None
 
     def with_landings(self, which: np.ndarray, start: np.ndarray) -> "Departure":
         """The departures with the times of the landings of the balls with these indices, and with
@@ -85,24 +96,19 @@ class Departure(NamedTuple):
 class ContactsAndFlights(Batch, ABC):
     """The contacts and flights of a law of the impact on a table of amplitude Λ.
 
-    All arrays are one-dimensional with an entry per ball. A model defines ``depart``, ``jacobian``
-    and ``contraction``. A simulation also asks for ``start``, ``fly`` and ``within``, of which the
-    defaults are those of impacts at the table's level without duration.
+    All arrays are one-dimensional with an entry per ball. A model defines how a contact ends,
+    :meth:`depart`, how a flight ends, :meth:`fly`, and the tangent map over both,
+    :meth:`jacobian` and :meth:`contraction`. The other members have defaults for impacts at the
+    table's level without duration:
 
-    The equations of periodic orbits ask for more (:mod:`bouncing_ball.periodic`), with defaults for
-    a model whose impacts begin on the section, at the table's level, and whose contacts are known
-    up to their first ends:
+    * ``start`` and ``within``, how a contact begins and how the ball moves in it;
+    * ``section``, ``at_section`` and ``section_lag``, the coordinates of the tangent map, which are
+      others than those at the start of a contact in the corrected model alone;
+    * ``comes_to_rest``, and ``release_function``, whose first zero is the end of a contact.
 
-    * ``section``, ``at_section``, ``section_lag`` and ``gap_at_start``, if the states of orbits are
-      others than those at the starts of contacts. Only the corrected model has them, whose section
-      is at the instants.
-    * ``depart_after``, ``selects``, ``settles`` and ``duration_slopes``, if the model
-      :attr:`continues` a contact or a rest beyond its first end. Then a duration is an unknown of
-      an orbit wherever ``selects`` says so, and the orbit changes smoothly also where an earlier
-      end appears. Linear contacts have them, and the rests on the table of the instantaneous and
-      of the corrected model.
-    * ``after``, the motion beyond the end of a contact, and ``release_function``, whose first zero
-      is the end, to locate releases that are lost or too early.
+    A model that :attr:`continues` has other ends of its contacts than the first ones, those near
+    given durations. They depend smoothly on the state also where an earlier end appears. Linear
+    contacts have them, and the rests on the table of the instantaneous and of the corrected model.
     """
 
     law: Any
@@ -112,7 +118,7 @@ class ContactsAndFlights(Batch, ABC):
     forgets: ClassVar[bool] = False
     """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
     continues: ClassVar[bool] = False
-    """Whether :meth:`depart_after` can continue a contact or a rest beyond its first end."""
+    """Whether :meth:`depart` can continue a contact or a rest beyond its first end."""
 
     @property
     def contact(self) -> FiniteContact | None:
@@ -132,10 +138,20 @@ class ContactsAndFlights(Batch, ABC):
         return impact.level or self.setting.level(impact.phase, self.amplitude)
 
     @abstractmethod
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+    def depart(
+        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    ) -> Departure:
         """The ends of the contacts that start with these impacts; with ``differentiate`` also which
         balls stick, and what :meth:`jacobian` needs.
+
+        With ``near`` they are the ends nearest to these durations, with what :meth:`jacobian`
+        needs, and with the slopes of the durations. They are the first ends unless the model
+        :attr:`continues` contacts.
         """
+
+    def comes_to_rest(self, impact: Impact) -> np.ndarray:
+        """Whether the balls come to rest on the table before it lifts them off again."""
+        return self.depart(impact, differentiate=True).sticks
 
     def within(
         self, impact: Impact, departure: Departure, time: np.ndarray
@@ -185,6 +201,16 @@ class ContactsAndFlights(Batch, ABC):
         """The state of an impact on the Poincaré section: a phase and a relative velocity."""
         return impact.phase, impact.velocity
 
+    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """The impacts with these states, in the coordinates of :meth:`section`."""
+        return self.start(phase, velocity)
+
+    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray | float, np.ndarray | float]:
+        """κ of the section, where flights have δ + κ δ′ = 0 if they arrive with δ′, and
+        d(κ δ′)/dδ′; both are 0 if the section is the table's level.
+        """
+        return 0.0, 0.0
+
     @abstractmethod
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -204,68 +230,11 @@ class ContactsAndFlights(Batch, ABC):
         monodromy would decide about stability.
         """
 
-    @property
-    def clock(self) -> Any:
-        """Frequency of the contacts over that of the table, 1 for instants. Durations of contacts
-        times the clock are of order one.
-        """
-        return 1.0
-
-    # For periodic orbits only.
-
-    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """The impacts with these states, in the coordinates of :meth:`section`."""
-        return self.start(phase, velocity)
-
-    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray | float, np.ndarray | float]:
-        """κ of the section, where flights have δ + κ δ′ = 0 if they arrive with δ′, and
-        d(κ δ′)/dδ′; both are 0 if the section is the table's level.
-        """
-        return 0.0, 0.0
-
-    def gap_at_start(self, impact: Impact) -> np.ndarray:
-        """δ of the flight that ends with each impact, at the start of the contact."""
-        return impact.displacement
-
-    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The ends of the contacts nearest to given durations, with their derivatives.
-
-        They are the first ends, as in :meth:`depart`, unless the model :attr:`continues` contacts.
-        """
-        return self.depart(impact, differentiate=True)
-
-    def selects(self, impact: Impact, duration: np.ndarray) -> bool:
-        """Whether :meth:`depart_after` must be told these durations of contacts, because their
-        ends, or their rests on the table, follow from them.
-        """
-        return self.continues and bool(np.any(duration > 0))
-
-    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
-        """Whether balls rest on the table after these impacts where :meth:`depart_after` says so
-        for these durations, and nowhere else; always, if there is no rest.
-        """
-        return np.ones(impact.phase.shape, dtype=bool)
-
-    def duration_slopes(
-        self, impact: Impact, departure: Departure
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the durations of contacts with respect to φ and δ′ at their starts.
-
-        They are needed only where the model :attr:`continues` contacts.
-        """
-        raise NotImplementedError(f"{type(self).__name__} does not continue its contacts")
-
-    def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ a time after the starts of contacts, whether they have ended or not.
-
-        They are needed only of linear contacts, whose motion goes on beyond its end.
-        """
-        raise NotImplementedError(f"{type(self).__name__} does not continue its contacts")
-
     def release_function(
         self, impact: Impact, departure: Departure
     ) -> Callable[[np.ndarray], np.ndarray] | None:
         """δ + κ δ′ within contacts as a function of the times since their starts, of shape (...,
-        contacts); None if impacts are instants, and for laws without a κ.
+        contacts), whose first upward zero is the release; None if impacts are instants, and for
+        laws without a κ.
         """
         return None

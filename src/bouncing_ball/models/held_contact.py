@@ -245,10 +245,15 @@ class HeldContactDynamics(LinearContactDynamics):
         """What moves the balls in contact."""
         return held_by(self.law, self.setting)
 
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The end of each contact, permanent contact, or a flight that never ends."""
-        departure = super().depart(impact, differentiate=differentiate)
-        if not departure.flight.may_miss:
+    def depart(
+        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    ) -> Departure:
+        """The end of each contact, permanent contact, or a flight that never ends.
+
+        Ends near given durations are not examined for flights that never end.
+        """
+        departure = super().depart(impact, near=near, differentiate=differentiate)
+        if near is not None or not departure.flight.may_miss:
             return departure
         going = np.flatnonzero(departure.status == Status.BOUNCING)
         start, resumed = self.take(going).resumption(departure.flight.take(going))
@@ -261,10 +266,14 @@ class HeldContactDynamics(LinearContactDynamics):
         unit = largest(response(self.oscillator.coefficients(waveform), waveform.orders, lag))
         return HeldMotion(flight, lag, self.amplitude * unit)
 
-    def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ a time after the starts of contacts, whether they have ended or not."""
+    def within(
+        self, impact: Impact, departure: Departure, time: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times since the starts of contacts, of shape (..., contacts), whether the
+        contacts have ended or not.
+        """
         flight = gap_in_contact(self.law, self.setting, impact, self.amplitude)
-        displacement, velocity, _, _ = flight.gap(duration)
+        displacement, velocity, _, _ = flight.gap(time)
         return displacement, velocity
 
     def _released(self, impact: Impact, departure: Departure) -> Released:

@@ -25,7 +25,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.contacts_and_flights import Departure, Impact, Slopes
 from bouncing_ball.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
@@ -239,23 +239,32 @@ class LinearContactDynamics(ResumingDynamics):
         """What moves the balls in contact: its ``loss`` and its ``damped_frequency``."""
         return self.law
 
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The end of each contact, or permanent contact if it is proved never to end."""
+    def depart(
+        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    ) -> Departure:
+        """The end of each contact, or permanent contact if it is proved never to end.
+
+        With ``near`` it is the end near this duration, also beyond an earlier end.
+        """
         motion = self._motion(impact)
+        if near is not None:
+            departure = self._ended(impact, motion, nearest_zero(motion, near))
+            released = self._released(impact, departure)
+            # Through the release condition.
+            slopes = Slopes(released.by_phase.phase - _ONE, released.by_velocity.phase)
+            return departure._replace(by=released, slopes=slopes)
         end = first_zero(motion, motion.earliest_release())
         # If the ball just reaches the table's level, rounding may give it a downward velocity.
         return self._ended(impact, motion, end._replace(rate=np.maximum(end.rate, _ZERO)))
 
-    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The ends of the contacts near given durations, also beyond an earlier end."""
-        motion = self._motion(impact)
-        departure = self._ended(impact, motion, nearest_zero(motion, duration))
-        return departure._replace(by=self._released(impact, departure))
-
-    def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ a time after the starts of contacts, whether they have ended or not."""
+    def within(
+        self, impact: Impact, departure: Departure, time: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times since the starts of contacts, of shape (..., contacts), whether the
+        contacts have ended or not.
+        """
         start = impact.displacement, impact.velocity, impact.phase
-        state = self.law.flow(duration, *start, self.amplitude)
+        state = self.law.flow(time, *start, self.amplitude)
         return state.displacement, state.velocity
 
     def release_function(
@@ -264,11 +273,6 @@ class LinearContactDynamics(ResumingDynamics):
         """δ + κ δ′ within contacts, in closed form."""
         motion = self._motion(impact)
         return lambda time: motion(time).value
-
-    @property
-    def clock(self) -> np.ndarray | float:
-        """ϖ, the frequency of the contact over that of the table."""
-        return self.law.frequency_ratio
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """exp(-LD), because areas contract in contact at the rate L, which is 2ζϖ in the paper."""
@@ -300,13 +304,6 @@ class LinearContactDynamics(ResumingDynamics):
         # oscillation. A longer contact therefore ends because the load changes.
         sticks = duration * self.oscillator.damped_frequency > _TURN
         return Departure(phase, duration, flight, status, sticks=sticks)
-
-    def duration_slopes(
-        self, impact: Impact, departure: Departure
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the durations with respect to φ and δ′, through the release condition."""
-        by_phase, by_velocity = departure.by or self._released(impact, departure)
-        return by_phase.phase - _ONE, by_velocity.phase
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray

@@ -27,12 +27,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.contacts_and_flights import Departure, Impact, Slopes
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.sticking import lifted, pressed, stay
-from bouncing_ball.numerics.arrays import pick
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -120,8 +119,17 @@ class RestitutionDynamics(Dynamics):
         # A ball that rests on the table has no impact speed; its r has no effect.
         return self.rebound(np.maximum(-impact.velocity, _SLOW))
 
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
+    def depart(
+        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    ) -> Departure:
+        """The flight after each impact (Eq. 2), or the rest on the table after chattering.
+
+        With ``near`` it is the rest where this duration is positive, and the flight elsewhere. The
+        bounces before the rest are left out then, also if they would last beyond the lift-off
+        (:meth:`comes_to_rest`): the state at the lift-off does not depend on them.
+        """
+        if near is not None:
+            return self._rested(impact, near > 0)
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
         level = self.table_at(impact)
@@ -137,34 +145,26 @@ class RestitutionDynamics(Dynamics):
             departure = departure.with_landings(going, start)
         return lifted(departure, self.amplitude, setting) if differentiate else departure
 
-    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The rest on the table up to the lift-off where the duration is positive, otherwise the
-        flight.
+    def _rested(self, impact: Impact, rests: np.ndarray) -> Departure:
+        """The rest on the table up to the lift-off where ``rests`` says so, otherwise the flight.
 
-        The bounces before the rest are left out, also if they would last beyond the lift-off
-        (:meth:`settles`): the state at the lift-off does not depend on them.
+        A rest lasts until a fixed phase, so that the slope of its duration by φ is -1.
         """
         level = self.table_at(impact)
         r, _ = self._rebound_of(impact)
         none = np.zeros(impact.phase.shape)
         velocity = -r * impact.velocity
         flight = self.setting.flight(none, velocity, impact.phase, level, self.amplitude)
-        rests = self._left(impact, flight, duration > 0, none)
-        return lifted(rests, self.amplitude, self.setting)
+        departure = lifted(self._left(impact, flight, rests, none), self.amplitude, self.setting)
+        return departure._replace(slopes=Slopes(np.where(departure.sticks, -1.0, 0.0), none))
 
-    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
-        """Whether the bounces before each rest, which has a positive duration, end before the next
-        lift-off, so that the ball comes to rest.
+    def comes_to_rest(self, impact: Impact) -> np.ndarray:
+        """Whether the bounces after each impact end before the next lift-off.
 
         Next to the limit this takes the more bounces, the nearer r is to 1: some 300 for r = 0.9.
         """
-        balls = np.flatnonzero(duration > 0)
-        if balls.size < duration.size:
-            settled = np.ones(duration.shape, dtype=bool)
-            if balls.size:
-                settled[balls] = self.take(balls).settles(pick(impact, balls), duration[balls])
-            return settled
-        settled = np.zeros(duration.shape, dtype=bool)
+        balls = np.arange(impact.phase.size)
+        settled = np.zeros(balls.shape, dtype=bool)
         lift = self.setting.lift_off(impact.phase, self.amplitude)
         left = np.where(lift.never, np.nan, np.mod(lift.phase - impact.phase, 2 * np.pi))
         for leg in self.legs(impact, differentiate=True):
@@ -224,13 +224,6 @@ class RestitutionDynamics(Dynamics):
         by_phase = Deviation(free, none, none)
         by_velocity = Deviation(none, none, -slope * free)
         return self.over_flight((by_phase, by_velocity), departure, after, passed)
-
-    def duration_slopes(
-        self, impact: Impact, departure: Departure
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """-1 and 0 for a rest, which lasts until the lift-off at a fixed phase, otherwise 0."""
-        none = np.zeros(impact.phase.shape)
-        return np.where(departure.sticks, -1.0, none), none
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """r d(r v)/dv, which is r² for a constant r; 0 if the ball sticks."""

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.models.contact import ContactSpan, FiniteContact
+from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import Unloaded, land
@@ -87,25 +87,6 @@ class ResumingDynamics(Dynamics):
     def contact(self) -> FiniteContact:
         """The law of the contacts."""
         return self.law
-
-    def within(
-        self, impact: Impact, departure: Departure, time: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ s ≤ D since the starts of contacts, of shape (..., contacts)."""
-        which = np.broadcast_to(np.arange(impact.phase.size), time.shape).ravel()
-        spans = ContactSpan(
-            displacement=impact.displacement,
-            velocity=impact.velocity,
-            phase=impact.phase,
-            amplitude=np.broadcast_to(self.amplitude, impact.phase.shape),
-            duration=departure.duration,
-            release_displacement=departure.flight.displacement,
-            release_velocity=departure.flight.velocity,
-            setting=self.setting,
-        )
-        found = self.law.take(which).during(pick(spans, which), time.ravel())
-        displacement, velocity = (x.reshape(time.shape) for x in found)
-        return displacement, velocity
 
     def resumption(self, flight: Any) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""

@@ -187,75 +187,6 @@ def continue_branches(
     return [errors[k] if k in errors else ways[k].branch() for k in range(len(starts))]
 
 
-def _branch(found: Branch | ContinuationError) -> Branch:
-    """A branch, unless it is an error, which is raised."""
-    if isinstance(found, ContinuationError):
-        raise found
-    return found
-
-
-def continue_branch(
-    problem: Problem,
-    start: np.ndarray,
-    *,
-    increasing: bool = True,
-    towards: np.ndarray | None = None,
-    events: Sequence[Event] = (),
-    control: StepControl = StepControl(),
-    max_points: int = 2000,
-) -> Branch:
-    """Follow the branch through ``start`` in one direction.
-
-    Parameters
-    ----------
-    problem : Problem
-    start : ndarray, shape (N + 1,)
-        A solution or an approximation to it, which is corrected at fixed parameter.
-    increasing : bool
-        Whether the parameter increases at the start.
-    towards : ndarray, shape (N + 1,), optional
-        A direction in place of ``increasing``: the first step makes at most a right angle with it.
-        At a fold, where the parameter stands still, only this decides.
-    events : sequence of Event
-        Events to be located; a terminal event ends the branch exactly at its zero.
-    control : StepControl
-    max_points : int
-        Number of points after which the branch is left unfinished.
-
-    Returns
-    -------
-    Branch
-        The branch from ``start`` on, with the reason for its end.
-
-    Raises
-    ------
-    ContinuationError
-        If there is no solution near ``start``, if it lies outside the domain, or if the Jacobian is
-        not defined there.
-
-    Examples
-    --------
-    The circle x² + p² = 1 turns in p at (0, 1):
-
-    >>> class Circle:
-    ...     def residual(self, y):
-    ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
-    ...
-    ...     def jacobian(self, y):
-    ...         return 2 * y[..., np.newaxis, :]
-    >>> turn = Event("turn", lambda y: y[..., 0])
-    >>> start = np.array([1.0, 0.0])
-    >>> found = continue_branch(Circle(), start, increasing=True, events=[turn], max_points=30)
-    >>> [np.abs(special.point.round(12)).tolist() for special in found.special]
-    [[0.0, 1.0]]
-    """
-    if towards is None:
-        towards = np.eye(np.size(start))[-1] * (1.0 if increasing else -1.0)
-    tested = WithEvents(problem, events)
-    (found,) = continue_branches(lambda _: tested, [start], [towards], control, max_points)
-    return _branch(found)
-
-
 def continue_all_both_ways(
     rows_of: RowsOf,
     starts: Sequence[np.ndarray],
@@ -302,9 +233,49 @@ def continue_both_ways(
 ) -> Branch:
     """Follow the branch through ``start`` in both directions, as one branch.
 
-    The branch is oriented such that the parameter increases at ``start``. Arguments and errors are
-    those of :func:`continue_branch`.
+    Parameters
+    ----------
+    problem : Problem
+    start : ndarray, shape (N + 1,)
+        A solution or an approximation to it, which is corrected at fixed parameter.
+    events : sequence of Event
+        Events to be located; a terminal event ends the branch exactly at its zero.
+    control : StepControl
+    max_points : int
+        Number of points to one side after which the branch is left unfinished.
+
+    Returns
+    -------
+    Branch
+        With the reasons for its ends, oriented such that the parameter increases at ``start``.
+
+    Raises
+    ------
+    ContinuationError
+        If there is no solution near ``start``, if it lies outside the domain, or if the Jacobian is
+        not defined there.
+
+    Examples
+    --------
+    The circle x² + p² = 1 turns in p at (0, 1), and with x < 0 an event ends the branch:
+
+    >>> class Circle:
+    ...     def residual(self, y):
+    ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
+    ...
+    ...     def jacobian(self, y):
+    ...         return 2 * y[..., np.newaxis, :]
+    >>> turn = Event("turn", lambda y: y[..., 0])
+    >>> end = Event("end", lambda y: y[..., 0] + 0.6, terminal=True)
+    >>> found = continue_both_ways(Circle(), np.array([1.0, 0.0]), events=[turn, end])
+    >>> turns = [special.point for special in found.special if special.name == "turn"]
+    >>> np.abs(turns).round(12).tolist()
+    [[0.0, 1.0], [0.0, 1.0]]
+    >>> found.points[[0, -1]].round(12).tolist()
+    [[-0.6, -0.8], [-0.6, 0.8]]
     """
     tested = WithEvents(problem, events)
     (found,) = continue_all_both_ways(lambda _: tested, [start], control, max_points)
-    return _branch(found)
+    if isinstance(found, ContinuationError):
+        raise found
+    return found

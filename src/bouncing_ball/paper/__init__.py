@@ -25,7 +25,6 @@ Eqs.    what                      where
 21-26   the six, written out      ``periodic.one_impact.paper_unknowns.PaperUnknowns``
 ..      start, Eqs. 21 and 22     ``models.contacts_and_flights.ContactsAndFlights.start``
 ..      end of contact, Eq. 23    ``models.linear_contact.LinearContactDynamics.depart``
-..      near a given duration     ``models.linear_contact.LinearContactDynamics.depart_after``
 ..      return, Eqs. 24-26        ``periodic.orbits.problem.OrbitEquations.residual``
 ..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
 ..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``

@@ -55,3 +55,30 @@ def test_without_dissipation_an_orbit_is_neutral_and_has_no_fold(stiffness):
     families = np.array([1, 2, 3])
     assert not np.any(n_t.orbit(model, families, 0.5).is_stable())
     assert np.all(np.isnan(n_t.saddle_node(model, families).amplitude))
+
+
+def linearised_cycle(instant, n, lam, phase):
+    """Trace and determinant of a cycle whose instants are at the phase ψ, in closed form: see
+    :mod:`bouncing_ball.periodic.one_impact.corrected_branch`.
+    """
+    x, y = lam * np.cos(phase), lam * np.sin(phase)
+    half = n * np.pi
+    r, delay = instant.restitution, instant.delay
+    by_phase = -(1 + r) * y - instant.load * x
+    speed = half + x - delay * (1 - y)
+    rest = 2 * half - delay
+    trace = 1 - r + (rest * (by_phase + r) - delay) / speed
+    determinant = (rest * r - delay - delay * by_phase) / speed - r
+    return trace, determinant
+
+
+@pytest.mark.parametrize("side", list(Side))
+@pytest.mark.parametrize("release", RELEASES)
+def test_trace_and_determinant_have_a_closed_form(release, side):
+    contact = SpringDamper(20.0, 0.1359, release)
+    n = np.array([1, 2, 3])
+    orbit = n_t.orbit(CorrectedModel.of_contact(contact), n, 2.5, side)
+    instant = contact.signature(1.0)
+    expected = linearised_cycle(instant, n, 2.5, orbit.phase + instant.delay)
+    for found, known in zip(orbit.trace_and_determinant(), expected, strict=True):
+        assert found == pytest.approx(known, rel=1e-13, abs=1e-13)

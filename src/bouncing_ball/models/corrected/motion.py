@@ -22,7 +22,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, Impact
+from bouncing_ball.models.contacts_and_flights import Departure, Impact, Slopes
 from bouncing_ball.models.corrected import impact as corrected_map
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Dynamics
@@ -69,21 +69,23 @@ class CorrectedDynamics(Dynamics):
         hit = corrected_map.impact(self.law, self.amplitude, instant, arrival)
         return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The end of each contact, or of the rest on the table that follows it."""
+    def depart(
+        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    ) -> Departure:
+        """The end of each contact, or of the rest on the table that follows it.
+
+        With ``near`` it is the one of the two that is nearest to this duration, also where the
+        other one is that of the ball.
+        """
         departure = self._released(impact)
+        if near is not None:
+            departure = stay(departure, self._rests(departure, near), self.amplitude)
+            departure = lifted(departure, self.amplitude)
+            return departure._replace(slopes=_slopes(impact, departure))
         start, leaves = emerge(departure.flight)
         departure = departure._replace(aloft=np.where(leaves, start, 0.0))
         departure = stay(departure, ~leaves, self.amplitude)
         return lifted(departure, self.amplitude) if differentiate else departure
-
-    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The end of each contact, or of the rest on the table after it: the one that is nearest to
-        the duration, also where the other one is that of the ball (:meth:`settles`).
-        """
-        released = self._released(impact)
-        departure = stay(released, self._rests(released, duration), self.amplitude)
-        return lifted(departure, self.amplitude)
 
     def _released(self, impact: Impact) -> Departure:
         """The ends of the contacts, and the flights from there, also of balls that do not rise."""
@@ -105,28 +107,6 @@ class CorrectedDynamics(Dynamics):
         lift = self.setting.lift_off(released.phase, self.amplitude)
         rest = np.where(lift.never, np.inf, lift.wait)
         return duration > released.duration + rest / 2
-
-    def selects(self, impact: Impact, duration: np.ndarray) -> bool:
-        """Whether there is a rest after a contact; the contacts themselves have one end."""
-        return bool(np.any(self._rests(self._released(impact), duration)))
-
-    def settles(self, impact: Impact, duration: np.ndarray) -> np.ndarray:
-        """Whether the balls that do not rise above the table after their contacts are those whose
-        durations are those of a rest.
-        """
-        released = self._released(impact)
-        _, leaves = emerge(released.flight)
-        return leaves != self._rests(released, duration)
-
-    def duration_slopes(
-        self, impact: Impact, departure: Departure
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Those of D(v), or of t_c(v) - ψ for a rest, which lasts until a fixed phase."""
-        instant = impact.known.instant
-        rests = departure.sticks
-        none = np.zeros(impact.phase.shape)
-        by_speed = np.where(rests, instant.d_delay, instant.d_duration)
-        return np.where(rests, -1.0, none), -by_speed
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The start of the next contact, and the time from the last start to it."""
@@ -263,9 +243,12 @@ class CorrectedDynamics(Dynamics):
         displacement = hit.height + (start - since / 2) * since - y
         return np.where(rests, 0.0, displacement), np.where(rests, 0.0, start - since - x)
 
-    def gap_at_start(self, impact: Impact) -> np.ndarray:
-        """δ of the flight, which passes the table's level about a t_c²/2 from there."""
-        hit = impact.known
-        delay = hit.instant.delay
-        _, y = table(impact.phase, self.amplitude)
-        return hit.height - (hit.arrival + delay / 2) * delay - y
+
+def _slopes(impact: Impact, departure: Departure) -> Slopes:
+    """The derivatives of the durations by ψ and by -v: those of D(v), or of t_c(v) - ψ for a rest,
+    which lasts until a fixed phase.
+    """
+    instant = impact.known.instant
+    rests = departure.sticks
+    by_speed = np.where(rests, instant.d_delay, instant.d_duration)
+    return Slopes(np.where(rests, -1.0, 0.0), -by_speed)

@@ -10,5 +10,5 @@ derivatives, :mod:`.collocation` answers questions about them, :mod:`.motion` si
 them, and :mod:`.steady_contact` finds the largest Λ at which a ball stays on the table.
 :mod:`bouncing_ball.models.instant` holds the numbers by which a short contact is an instantaneous
 impact, and :mod:`.signature` derives them for a law. The n-T orbits on a law begin in
-:mod:`bouncing_ball.periodic.one_impact.start`.
+:mod:`bouncing_ball.periodic.one_impact.searched_orbits`.
 """

@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.flight import Rise
@@ -37,6 +38,7 @@ from bouncing_ball.models.resumption import (
     of_slow_balls,
 )
 from bouncing_ball.models.sequence import Status
+from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
 
 # Panels of two periods of the table on a contact with up to some twenty oscillations in one, and
@@ -62,27 +64,30 @@ class ContactDynamics(ResumingDynamics):
     # the few long contacts are then computed together.
     block: ClassVar[int] = 1 << 16
 
-    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+    def depart(
+        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    ) -> Departure:
         """The end of each contact. Where no end was found, the contact is permanent if a steady
         contact at Λ holds the ball, and the status is undecided otherwise.
 
         If the contact also ends at p = 0, a slow ball that the load pulls meets no force there. Its
         contact then has the duration 0, and the ball continues its flight below p = 0.
+
+        The ends are the first ones also near given durations. Which balls stick is not computed
+        then, because it costs a second contact.
         """
+        if near is not None:
+            return self._departed(self._not_too_fast(impact), differentiate=True)
         departure = self._departed(impact, differentiate)
         return self._with_sticking(impact, departure) if differentiate else departure
 
-    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The first ends, with their derivatives.
-
-        A periodic orbit does not need to know which balls stick, which costs a second contact.
-        Next to an end of a branch Newton's method leaps to speeds at which damped contacts take
-        thousands of panels: no end is computed there.
+    def _not_too_fast(self, impact: Impact) -> Impact:
+        """The impacts without the speeds, to which Newton's method leaps next to an end of a
+        branch, at which damped contacts take thousands of panels.
         """
         strongest = 1 + self.setting.strength(self.amplitude)
         known = np.abs(impact.velocity) <= _FASTEST * strongest
-        slower = impact._replace(velocity=np.where(known, impact.velocity, np.nan))
-        return self._departed(slower, differentiate=True)
+        return impact._replace(velocity=np.where(known, impact.velocity, np.nan))
 
     def _departed(self, impact: Impact, differentiate: bool) -> Departure:
         """The ends of the contacts, without the marks of the balls that stick."""
@@ -107,6 +112,25 @@ class ContactDynamics(ResumingDynamics):
             status=status,
             by=end,
         )
+
+    def within(
+        self, impact: Impact, departure: Departure, time: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ s ≤ D since the starts of contacts, of shape (..., contacts)."""
+        which = np.broadcast_to(np.arange(impact.phase.size), time.shape).ravel()
+        spans = ContactSpan(
+            displacement=impact.displacement,
+            velocity=impact.velocity,
+            phase=impact.phase,
+            amplitude=np.broadcast_to(self.amplitude, impact.phase.shape),
+            duration=departure.duration,
+            release_displacement=departure.flight.displacement,
+            release_velocity=departure.flight.velocity,
+            setting=self.setting,
+        )
+        found = self.law.take(which).during(pick(spans, which), time.ravel())
+        displacement, velocity = (x.reshape(time.shape) for x in found)
+        return displacement, velocity
 
     def release_function(
         self, impact: Impact, departure: Departure

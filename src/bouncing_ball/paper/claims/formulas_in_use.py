@@ -35,7 +35,6 @@ _TOLERANCE = 0.01
 _OF_ORBITS = (
     "models.contacts_and_flights.ContactsAndFlights.start",
     "models.linear_contact.LinearContactDynamics.depart",
-    "models.linear_contact.LinearContactDynamics.depart_after",
     "periodic.orbits.problem.OrbitEquations.residual",
     "periodic.one_impact.paper_unknowns.PaperUnknowns",
     "periodic.one_impact.spring_damper_branch.branch_point",

@@ -81,8 +81,8 @@ class SpringDamperBranch(OrbitsOfModel):
         setting = self.model.setting
         if setting is PAPER:
             return found
-        # The model of such an orbit is one of a contact, which has a setting.
-        return replace(found, model=replace(found.model, setting=setting))  # type: ignore[call-arg]
+        of_contact = cast(ContactModel, found.model)
+        return replace(found, model=replace(of_contact, setting=setting))
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node."""

@@ -92,37 +92,6 @@ def instant_phase(
     return np.arctan2(lift if stable_side else -lift, side) - turned
 
 
-def trace_and_determinant(
-    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
-    """Trace and determinant of the linearised cycle whose instants are at the phase ψ.
-
-    ``amplitude`` and ``phase`` are Λ and ψ; both results have the broadcast shape of all arguments.
-
-    Examples
-    --------
-    Without delay and load sensitivity, the results are those of the restitution model:
-
-    >>> amplitude = 2 * np.pi / 3
-    >>> trace, det = trace_and_determinant(2, Instant(0.0, 0.5, 0.0, 0.0), amplitude, 0.0)
-    >>> round(float(trace), 14), round(float(det), 14)
-    (1.25, 0.25)
-    """
-    lam = np.asarray(amplitude, dtype=float)
-    x = lam * np.cos(phase)
-    y = lam * np.sin(phase)
-    half = np.asarray(n) * np.pi
-    here, _ = instant.tangent(half + x, 1 - y)
-    r = np.asarray(here.restitution)
-    delay = np.asarray(here.delay)
-    by_phase = -(1 + r) * y - instant.load * x
-    speed = half + x - delay * (1 - y)
-    rest = 2 * half - delay
-    trace = 1 - r + (rest * (by_phase + r) - delay) / speed
-    determinant = (rest * r - delay - delay * by_phase) / speed - r
-    return trace, determinant
-
-
 def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray]:
     """Λ and ψ of the period doubling; NaN where the stable side has no period doubling.
 

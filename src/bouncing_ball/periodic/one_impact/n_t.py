@@ -2,10 +2,10 @@
 
 They follow from the closed form of the model's branch if there is one
 (:mod:`~bouncing_ball.periodic.one_impact.closed_forms`), and otherwise from a search that starts
-from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.start`). On another table, beside
-a drag or a spring, they are zeros of an equation for the phase, or are found from such zeros
-(:mod:`~bouncing_ball.periodic.one_impact.other_settings`). A branch of n-T orbits begins at one of
-these orbits, and :func:`orbits_of` alone decides how it is found.
+from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.searched_orbits`). On another
+table, beside a drag or a spring, they are zeros of an equation for the phase, or are found from
+such zeros (:mod:`~bouncing_ball.periodic.one_impact.other_settings`). A branch of n-T orbits begins
+at one of these orbits, and :func:`orbits_of` alone decides how it is found.
 """
 
 from enum import StrEnum
@@ -26,7 +26,7 @@ from bouncing_ball.periodic.one_impact.closed_forms import (
 )
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
 from bouncing_ball.periodic.one_impact.other_settings import OrbitsOfContact, OrbitsOfRigidBall
-from bouncing_ball.periodic.one_impact.start import SearchedOrbits
+from bouncing_ball.periodic.one_impact.searched_orbits import SearchedOrbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Side
 

@@ -36,7 +36,7 @@ from bouncing_ball.models.waveform import Waveform, turned
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
-from bouncing_ball.periodic.one_impact.start import restitution_speed
+from bouncing_ball.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
@@ -248,12 +248,12 @@ class OrbitsOfContact(OrbitsOneByOne):
         speed, instant = restitution_speed(n, model)
         rigid = OrbitsOfRigidBall(RestitutionModel(float(instant.restitution), model.place))
         near = rigid.orbits(n, amplitude)
-        first = _solved(model, n, amplitude, near.phase, near.impact_velocity, instant)
+        first = _orbits_near(model, n, amplitude, near.phase, near.impact_velocity, instant)
         yield _distinct(model, n, amplitude, [first])
         count = _STARTS * int(model.place.waveform.orders[-1])
         phase = 2 * np.pi * (np.arange(count) + 0.5) / count - np.pi
         start = amplitude * model.place.waveform.velocity(phase) - float(speed)
-        more = _solved(model, n, amplitude, phase, start, instant)
+        more = _orbits_near(model, n, amplitude, phase, start, instant)
         followed = np.flatnonzero(more.is_admissible()) if more.size else slice(None)
         yield _distinct(model, n, amplitude, [first, more[followed]])
 
@@ -266,7 +266,7 @@ class OrbitsOfContact(OrbitsOneByOne):
         return Orbit.of(self.model, n, np.nan, np.nan)
 
 
-def _solved(
+def _orbits_near(
     model: Model,
     n: int,
     amplitude: float,

@@ -43,7 +43,7 @@ class PaperUnknowns:
     equations : OrbitEquations
         The equations with one impact, along Λ.
     clock : float or array
-        ϖ.
+        ϖ of contacts whose durations are unknowns, which are of the order of 1/ϖ, otherwise 1.
 
     Examples
     --------
@@ -62,7 +62,10 @@ class PaperUnknowns:
     @classmethod
     def of(cls, orbit: Orbit) -> "PaperUnknowns":
         """The equations of given n-T orbits."""
-        return cls(orbit.problem(LAMBDA), orbit.model.dynamics(1.0).clock)
+        equations = orbit.problem(LAMBDA)
+        dynamics = orbit.model.dynamics(1.0)
+        oscillates = equations.selects and dynamics.contact is not None
+        return cls(equations, dynamics.law.frequency_ratio if oscillates else 1.0)
 
     def take(self, which: Any) -> Self:
         """The equations of some orbits of a row."""

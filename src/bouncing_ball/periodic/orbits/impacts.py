@@ -22,7 +22,13 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
-from bouncing_ball.periodic.orbits.legs import Legs, lag_of, time_to_section, without_force
+from bouncing_ball.periodic.orbits.legs import (
+    Legs,
+    lag_of,
+    selects_ends,
+    time_to_section,
+    without_force,
+)
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 if TYPE_CHECKING:
@@ -379,7 +385,7 @@ class Impacts(Batch):
             impacts=self.impacts,
             turns=self.turns,
             along=along,
-            selects=dynamics.selects(impact, durations),
+            selects=selects_ends(dynamics, impact, durations),
             resumes=np.broadcast_to(self.resumes, (self.impacts,)),
         )
 

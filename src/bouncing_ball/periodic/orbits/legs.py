@@ -146,13 +146,12 @@ class Legs:
             height = self.departure.flight.lowest(passed - duration)
         return height.reshape(self.duration.shape)
 
-    @cached_property
+    @property
     def duration_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of the durations by θ and by v, for a model that continues its contacts."""
         if self.dynamics is None:
             return self.duration, self.duration
-        with np.errstate(all="ignore"):
-            by_phase, by_velocity = self.dynamics.duration_slopes(self.impact, self.departure)
+        by_phase, by_velocity = self.departure.slopes
         return by_phase.reshape(self.duration.shape), by_velocity.reshape(self.duration.shape)
 
     def _jacobian(self, near: bool) -> Jacobian:
@@ -249,3 +248,41 @@ def time_to_section(dynamics: Dynamics, impact: Impact) -> np.ndarray:
     if phase is impact.phase:
         return np.zeros(phase.shape)
     return reduce_angle(phase - impact.phase)
+
+
+def gap_at_start(dynamics: Dynamics, impact: Impact) -> np.ndarray:
+    """δ of the flight that ends with each impact, at the start of the contact.
+
+    It is 0, or that of a resumption, unless the contact starts before the section.
+    """
+    phase, _ = dynamics.section(impact)
+    if phase is impact.phase:
+        return impact.displacement
+    now = np.zeros(phase.shape)
+    gap, _ = dynamics.within(impact, dynamics.depart(impact, near=now), now)
+    return gap
+
+
+def selects_ends(dynamics: Dynamics, impact: Impact, duration: np.ndarray) -> bool:
+    """Whether the ends of these contacts follow from their durations, so that the durations are
+    unknowns of an orbit: linear contacts, and contacts with rests on the table after them.
+    """
+    if not dynamics.continues or not np.any(duration > 0):
+        return False
+    if dynamics.contact is not None:
+        return True
+    return bool(dynamics.depart(impact, near=duration).sticks.any())
+
+
+def rests_as_expected(dynamics: Dynamics, impact: Impact, duration: np.ndarray) -> np.ndarray:
+    """Whether the balls come to rest on the table where these durations are those of a rest, and
+    nowhere else; always, if there is no rest.
+    """
+    alike = np.ones(duration.shape, dtype=bool)
+    lasting = np.flatnonzero(duration > 0)
+    if dynamics.contact is not None or not lasting.size:
+        return alike
+    part, start, expected = dynamics.kept(lasting, impact, duration)
+    rests = part.depart(start, near=expected).sticks
+    alike[lasting] = part.comes_to_rest(start) == rests
+    return alike

@@ -62,7 +62,8 @@ class _LostRelease:
             return np.full((*y.shape[:-1], y.shape[-1]), np.nan)
         impact = equations.impact(dynamics, y)
         duration = equations.durations(y).ravel()
-        displacement, velocity = dynamics.after(impact, duration)
+        departure = dynamics.depart(impact, near=duration)
+        displacement, velocity = dynamics.within(impact, departure, duration)
         setting = dynamics.setting
         phase = impact.phase + duration
         level = setting.level(phase, dynamics.amplitude)

@@ -23,7 +23,7 @@ from bouncing_ball.periodic.orbits import stability
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.highest import about_highest
 from bouncing_ball.periodic.orbits.impacts import Impacts
-from bouncing_ball.periodic.orbits.legs import time_to_section
+from bouncing_ball.periodic.orbits.legs import gap_at_start, time_to_section
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.simulation import is_admissible
 
@@ -99,7 +99,7 @@ class Orbit(Impacts):
     def _landing_gap(self) -> np.ndarray:
         """δ of the flights at the impacts with which they end, shape (..., k)."""
         dynamics, impact = self._start
-        gap = dynamics.gap_at_start(impact).reshape(*self.shape, self.impacts)
+        gap = gap_at_start(dynamics, impact).reshape(*self.shape, self.impacts)
         return np.roll(gap, -1, axis=-1)
 
     @property

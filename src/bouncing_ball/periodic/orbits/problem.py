@@ -24,7 +24,7 @@ After a release by force a contact may resume below the level of the table, with
 section of the corrected model is such a line below the level too, with κ = -t_c(-δ′): a ball
 arrives there some time after its landing, also where it lands slowly.
 
-If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
+If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, which
 Newton's method finds, and nothing else depends on it: its equation is that D_i is the duration of
 the contact. The equations of such a model are smooth also where a contact grazes the release.
@@ -291,7 +291,7 @@ class OrbitEquations:
             return Legs.unknown(shape)
         interval = self.intervals(y).ravel()
         impact = self.impact(dynamics, y)
-        departure = dynamics.depart_after(impact, self.durations(y).ravel())
+        departure = dynamics.depart(impact, near=self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
         lag = self._lag(dynamics, _of_next(self.resuming), shape)

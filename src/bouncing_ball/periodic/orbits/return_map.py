@@ -66,7 +66,7 @@ def returned(
             next_lag = lag_of(dynamics, whole & equations.resuming[after])
             start = dynamics.at_section(reduce_angle(phases[i] + turned), velocity)
             impact = without_force(start, lag)
-            departure = dynamics.depart_after(impact, np.full(len(aside), lasts[i]))
+            departure = dynamics.depart(impact, near=np.full(len(aside), lasts[i]))
             due = interval[i] - turned
             for _ in range(_ROUNDS):
                 landing = landed(dynamics, impact, departure, departure.duration, due, next_lag)

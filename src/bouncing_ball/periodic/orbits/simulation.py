@@ -10,7 +10,13 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.balls import Balls
-from bouncing_ball.periodic.orbits.legs import lag_of, time_to_section, without_force
+from bouncing_ball.periodic.orbits.legs import (
+    lag_of,
+    rests_as_expected,
+    selects_ends,
+    time_to_section,
+    without_force,
+)
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 
 # Relative to its length, and to the speeds of its impacts, a leg of the simulation differs from
@@ -50,7 +56,7 @@ def simulated(
         after, passed = leg.fly()
         velocities.append(float(dynamics.section(leg.impact)[1][0]))
         durations.append(float(leg.departure.duration[0]))
-        selects |= dynamics.selects(leg.impact, leg.departure.duration)
+        selects |= selects_ends(dynamics, leg.impact, leg.departure.duration)
         resumes.append(bool(leg.impact.displacement[0] < 0))
         later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, leg.impact)
         last = phases[-1] + float(later[0])
@@ -102,7 +108,7 @@ def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     if equations.selects and dynamics.forgets:
         # The bounces before a rest belong to the leg in which the ball comes to rest.
         early = leg.departure.sticks & (expected == 0)
-        leg.departure = leg.dynamics.depart_after(start, np.where(early, np.nan, expected))
+        leg.departure = leg.dynamics.depart(start, near=np.where(early, np.nan, expected))
     possible, expected = leg.keep(leg.bouncing(), possible, expected)
     after, passed = leg.fly()
     part = leg.dynamics
@@ -116,5 +122,5 @@ def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     alike = (after.displacement < 0) == resumes
     same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
     same[possible] &= np.abs(faster) < _SAME * np.maximum(np.abs(before), np.abs(next_velocity))
-    same[possible] &= part.settles(leg.impact, expected)
+    same[possible] &= rests_as_expected(part, leg.impact, expected)
     return np.all(same.reshape(shape), axis=-1)

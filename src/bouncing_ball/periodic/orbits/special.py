@@ -29,6 +29,7 @@ from bouncing_ball import datasets
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.periodic.orbits.legs import rests_as_expected
 from bouncing_ball.periodic.orbits.lost_release import rise_of_release
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.release import heights_within
@@ -125,10 +126,11 @@ def sticking(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     if dynamics is None or not dynamics.forgets:
         return np.ones(y.shape[:-1])
     known = np.flatnonzero(np.isfinite(legs.duration.ravel()))
-    settles = np.ones(legs.duration.shape, dtype=bool)
+    alike = np.ones(legs.duration.shape, dtype=bool)
     durations = equations.durations(y).ravel()[known]
-    settles.ravel()[known] = dynamics.take(known).settles(pick(legs.impact, known), durations)
-    return np.where(settles.all(axis=-1), 1.0, -1.0)
+    there = dynamics.take(known)
+    alike.ravel()[known] = rests_as_expected(there, pick(legs.impact, known), durations)
+    return np.where(alike.all(axis=-1), 1.0, -1.0)
 
 
 def opening_rate(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Orbits and bifurcations of models without a closed form: where a branch begins.
+"""Orbits and bifurcations of models without a closed form, by a search.
 
 A search starts from the orbit of the corrected restitution model whose signature is that of an
 impact at the speed of the restitution model's orbit. Newton's method on the equations of the
@@ -38,8 +38,8 @@ _ROUNDS = 6
 _SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
 _TRIES = 5
 _EXTENDED = NewtonSettings(max_iterations=25)
-# A branch is followed from Λ times this factor, with this step control, for at most this many
-# points.
+# A branch is followed from Λ times this factor, for at most this many points. Its steps are long,
+# because only the order of its special points is wanted, each of which is located.
 _ABOVE = 1.3
 _STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300

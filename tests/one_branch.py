@@ -1,0 +1,19 @@
+"""A single branch to one side, of problems whose last unknown is the parameter itself."""
+
+import numpy as np
+
+from bouncing_ball.numerics.branch import ContinuationError
+from bouncing_ball.numerics.continuation import continue_branches
+from bouncing_ball.numerics.steps import StepControl, WithEvents
+
+
+def continue_branch(
+    problem, start, *, increasing=True, events=(), control=StepControl(), max_points=2000
+):
+    """The branch from ``start`` on, where the parameter increases or decreases at first."""
+    towards = np.eye(np.size(start))[-1] * (1.0 if increasing else -1.0)
+    tested = WithEvents(problem, events)
+    (found,) = continue_branches(lambda _: tested, [start], [towards], control, max_points)
+    if isinstance(found, ContinuationError):
+        raise found
+    return found

@@ -21,6 +21,7 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import KuwabaraKono, Tsuji
+from bouncing_ball.models.laws.loaded import under
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -284,7 +285,7 @@ def test_the_ball_is_held_in_contact_and_above_the_table_in_flight(some):
     if isinstance(law, ContactLaw):
         depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
         angle = orbit.phase + share * orbit.contact_duration
-        assert np.all(law.under(1 - orbit.amplitude * np.sin(angle)).grip(depth, rate) > 0)
+        assert np.all(under(law, 1 - orbit.amplitude * np.sin(angle)).grip(depth, rate) > 0)
     time = float(orbit.contact_duration) + share * float(orbit.flight_time)
     gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
     rising = gap > 0

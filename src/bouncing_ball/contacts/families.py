@@ -16,6 +16,7 @@ from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.loaded import under
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.periodic.one_impact import n_t
@@ -236,7 +237,7 @@ def can_carry(law: ContactLaw, n: np.ndarray, amplitude: float) -> np.ndarray:
     """
     period = 2 * math.pi * n
     deepest = period * period / 4 + 2 * amplitude
-    force = law.under(1 + amplitude).force(deepest, period + amplitude)
+    force = under(law, 1 + amplitude).force(deepest, period + amplitude)
     return np.asarray(force >= 1)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import scipy
 
 from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.loaded import under
 from bouncing_ball.models.laws.march import march
 from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.scales import rest, scales
@@ -66,7 +67,7 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
     """
     length, rate = (float(x[0]) for x in scales(law, np.array([speed]), np.ones(1)))
     unit = length / rate
-    loaded = law.under(1.0)
+    loaded = under(law, 1.0)
 
     def fall(_: float, state: np.ndarray) -> list[float]:
         p, v = state * [length, rate]
@@ -123,7 +124,7 @@ def greatest_loads(
 
     def loads(times: np.ndarray) -> np.ndarray:
         p, rate, load = motion(times)
-        return np.array([p, law.under(load).force(np.maximum(p, 0.0), rate)])
+        return np.array([p, under(law, load).force(np.maximum(p, 0.0), rate)])
 
     tops = loads(times).argmax(axis=1)
     found = []

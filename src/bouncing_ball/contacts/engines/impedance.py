@@ -45,6 +45,7 @@ from bouncing_ball.models.damping import Release, check_positive, damping_ratio
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.laws.force_law import NUMBER, Unit
+from bouncing_ball.models.laws.loaded import LoadedLaw
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -63,7 +64,7 @@ class _Piece(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Impedance(OscillatorLaw):
+class Impedance(LoadedLaw, OscillatorLaw):
     """A spring-damper on which only the share 1 - d of the load acts.
 
     Parameters
@@ -105,9 +106,6 @@ class Impedance(OscillatorLaw):
         "midpoint": NUMBER,
         "power": NUMBER,
     }
-    release = Release.FORCE
-    lag: ClassVar[None] = None
-    also_at_surface: ClassVar[bool] = True
 
     def __post_init__(self):
         super().__post_init__()

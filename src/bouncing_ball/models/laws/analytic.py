@@ -13,6 +13,7 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.loaded import under
 
 # The steps of the differences relative to the argument, near the optimum ε^(1/3) for a function of
 # one scale, and the imaginary step.
@@ -38,7 +39,7 @@ def require_analytic(law: ForceLaw) -> None:
     kind = type(law)
     if kind in _FOUND:
         return
-    one = law.flat(law.shape).take(0).under(1.0)
+    one = under(law.flat(law.shape).take(0), 1.0)
     depth, rate = (x.ravel() for x in np.meshgrid(_DEPTHS, _RATES))
     what = f"the force of {law.name}"
     compare(what, "p", lambda p: one.force(p, rate), depth)

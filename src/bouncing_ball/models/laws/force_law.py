@@ -1,7 +1,8 @@
 """The law of the contact force, the rule that ends the contact, and the root m.
 
-The numerical methods of contacts need nothing else of a law. How balls move on it follows from
-them, in :class:`~bouncing_ball.models.laws.contact_law.ContactLaw`.
+The numerical methods of contacts need nothing else of a law, unless its force depends on the load
+(:mod:`~bouncing_ball.models.laws.loaded`). How balls move on it follows from them, in
+:class:`~bouncing_ball.models.laws.contact_law.ContactLaw`.
 
 The penetration p = -δ of the ball into the table obeys ::
 
@@ -101,19 +102,6 @@ class ForceLaw(Batch, ABC):
         """
         return 0.0 if self.release.at_surface else None
 
-    also_at_surface: ClassVar[bool] = False
-    """Whether a contact that is released by force ends at p = 0, too, whichever comes first.
-
-    A ball that the force would pull at p = 0 then meets no force there. m is 1.
-    """
-
-    def under(self, load: Any) -> "ForceLaw":
-        """The law whose force and grip are those under a load a; the law itself by default.
-
-        The law itself has those without a load. a broadcasts with p and p′, and may be complex.
-        """
-        return self
-
     feels_start_speed: ClassVar[bool] = False
     """Whether the force depends on the speed at the start of the contact, see :meth:`started`."""
 
@@ -135,13 +123,6 @@ class ForceLaw(Batch, ABC):
         the shape to which the arguments broadcast.
         """
         return np.ones_like(penetration)
-
-    def continued(self, penetration: np.ndarray, side: np.ndarray) -> Self:
-        """The law in a row of states, continued smoothly beyond the next kink where it can be.
-
-        ``side`` is the sign of :meth:`kink`, which rounding makes uncertain at a kink itself.
-        """
-        return self
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Grip function: positive in contact, zero at release; of the shape to which p and p′

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.loaded import under
 from bouncing_ball.models.laws.panel import (
     IMAGINARY_STEP,
     Panel,
@@ -44,7 +45,7 @@ def at_end(
     depth = panel.root[:-1] ** m
     rate = panel.rate[:-1]
     load = load_of(start, panel.time[:-1])
-    slopes = slopes_of(law.under(load).force, depth, rate)
+    slopes = slopes_of(under(law, load).force, depth, rate)
 
     def column(rows):
         return rows[:, :, np.newaxis]
@@ -52,7 +53,7 @@ def at_end(
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
     # The share of the load that the force carries.
-    carried = np.imag(law.under(load + IMAGINARY_STEP).force(depth, rate)) / IMAGINARY_STEP.imag
+    carried = np.imag(under(law, load + IMAGINARY_STEP).force(depth, rate)) / IMAGINARY_STEP.imag
     felt = lever * (1 - carried.T)
     if start.amplitude.ndim == 1:
         by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
@@ -103,8 +104,8 @@ def at_release(
     lever = lever_of(m, root)
     angle = start.phase + panel.time[-1]
     load = load_of(start, panel.time[-1])
-    loaded = law.under(load)
-    more = law.under(load + IMAGINARY_STEP)
+    loaded = under(law, load)
+    more = under(law, load + IMAGINARY_STEP)
     grip_by_root = np.imag(grip_of(loaded, m, root + IMAGINARY_STEP, rate)) / IMAGINARY_STEP.imag
     grip_by_rate = np.imag(grip_of(loaded, m, root, rate + IMAGINARY_STEP)) / IMAGINARY_STEP.imag
     grip_by_load = np.imag(grip_of(more, m, root, rate)) / IMAGINARY_STEP.imag

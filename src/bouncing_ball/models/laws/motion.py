@@ -27,6 +27,7 @@ from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.flight import Rise
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.loaded import LoadedLaw, under
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.models.laws.panel import Start, slopes_of
 from bouncing_ball.models.laws.scales import rest
@@ -148,10 +149,12 @@ class ContactDynamics(ResumingDynamics):
 
     def _meets_no_force(self, impact: Impact, depth: np.ndarray) -> np.ndarray:
         """Whether a ball at the surface meets no force, because the load pulls it."""
+        if not isinstance(self.law, LoadedLaw):
+            return np.zeros_like(depth, dtype=bool)
         level = self.setting.level(impact.phase, self.amplitude)
         load = 1 - self.setting.at_rest(impact.phase, level, self.amplitude)[1]
         grip = self.law.under(load).grip(depth, -impact.velocity)
-        return (depth == 0) & (grip < 0) & self.law.also_at_surface
+        return (depth == 0) & (grip < 0)
 
     def _ends(
         self, impact: Impact, depth: np.ndarray, free: np.ndarray, differentiate: bool
@@ -237,7 +240,7 @@ def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarr
     rate = -flight.velocity
     slopes = slopes_of(law.grip, depth, rate)
     lag = slopes.by_rate / slopes.by_penetration
-    by_load = law.under(1.0).grip(depth, rate) - law.grip(depth, rate)
+    by_load = under(law, 1.0).grip(depth, rate) - law.grip(depth, rate)
     fast = leaves_fast(flight, lag, by_load / slopes.by_penetration)
     return of_slow_balls(
         flight, np.flatnonzero(~fast), lambda slow, which: _sampled(slow, law.take(which))
@@ -249,7 +252,7 @@ def _sampled(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
 
     def held(time):
         displacement, rate, second, _ = flight.gap(time)
-        return law.under(-second).grip(np.maximum(-displacement, 0.0), -rate) > 0
+        return under(law, -second).grip(np.maximum(-displacement, 0.0), -rate) > 0
 
     rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]

@@ -13,6 +13,7 @@ import scipy
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.loaded import LoadedLaw
 
 # Limit and tolerance of Newton's method for ln p, which takes one step for a power law and a few
 # for a sum of powers.
@@ -77,10 +78,10 @@ def rest(law: ForceLaw) -> float:
     """
     weight = np.ones(1)
     deepest = float(depth(law, 0 * weight, 0.0, weight)[0])
-    loaded = law.under(1.0)
-    if loaded is law:
+    if not isinstance(law, LoadedLaw):
         return deepest
     # The load adds to the force, so that the ball at rest lies less deep.
+    loaded = law.under(1.0)
 
     def surplus(p: float) -> float:
         return loaded.force(p * weight, 0 * weight)[0] - 1

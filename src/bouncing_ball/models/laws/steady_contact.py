@@ -32,6 +32,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.loaded import LoadedLaw, under
 from bouncing_ball.models.laws.scales import depth, rest
 from bouncing_ball.models.waveform import SINE, Waveform
 
@@ -77,8 +78,8 @@ class _Steady(NamedTuple):
 
     def grip(self, p: np.ndarray, u: np.ndarray, load: Any) -> np.ndarray:
         """The grip over that at rest."""
-        full = self.law.under(1.0).grip(np.array(self.unit), np.array(0.0))
-        return self.law.under(load).grip(p, u) / full
+        full = under(self.law, 1.0).grip(np.array(self.unit), np.array(0.0))
+        return under(self.law, load).grip(p, u) / full
 
     def state(self, time: ArrayLike, y: np.ndarray, z: np.ndarray):
         """p, p′ and the load; z has φ and Λ."""
@@ -89,7 +90,7 @@ class _Steady(NamedTuple):
     def rates(self, time: ArrayLike, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """The rates of change of y."""
         p, u, load = self.state(time, y, z)
-        return np.array([u, load - self.law.under(load).force(p, u)]) / self.unit
+        return np.array([u, load - under(self.law, load).force(p, u)]) / self.unit
 
     def release(self, first: np.ndarray, z: np.ndarray) -> tuple[Any, Any]:
         """The grip at the start and its rate of change."""
@@ -102,7 +103,7 @@ class _Steady(NamedTuple):
     def is_held(self, found: Any, z: np.ndarray) -> bool:
         """Whether a solution was found that never releases the ball."""
         held = self.grip(*self.state(found.x, found.y, z))
-        if self.law.root > 1 or self.law.also_at_surface:
+        if self.law.root > 1 or isinstance(self.law, LoadedLaw):
             held = np.minimum(held, found.y[0])
         return bool(found.success and np.min(held) > -_SLACK)
 
@@ -188,7 +189,7 @@ def permanent_contact(law: ForceLaw, table: Waveform = SINE) -> float:
     if law.permanent_contact is not None and table.is_sine:
         return float(law.permanent_contact)
     # If the contact that touches the surface is held throughout, the grip vanishes later.
-    for at_surface in (True, False) if law.also_at_surface else (False,):
+    for at_surface in (True, False) if isinstance(law, LoadedLaw) else (False,):
         with np.errstate(all="ignore"):
             found = _touching(law, at_surface, table)
             if np.isfinite(found) and not _holds(law, _ABOVE * found, table):

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.loaded import LoadedLaw, under
 from bouncing_ball.models.laws.panel import (
     IMAGINARY_STEP,
     NODES,
@@ -150,7 +151,11 @@ class Sweeps:
         linearised: bool = False,
     ) -> None:
         self.m = m or law.root
-        self.law = law.continued(now.root**self.m, now.side) if law.has_kink else law
+        self.law = law
+        # Whether the contact may end at p = 0 before the grip vanishes.
+        self.also_at_surface = isinstance(law, LoadedLaw)
+        if isinstance(law, LoadedLaw) and law.has_kink:
+            self.law = law.continued(now.root**self.m, now.side)
         self.start = start
         self.now = now
         self.until = until
@@ -177,7 +182,7 @@ class Sweeps:
         self.is_newton = (law.root == 1 and count == NODES) or linearised
         self.kind = _NEWTON if self.is_newton else _PICARD
         # Under any load at first, because the slopes need not be exact.
-        self.loaded = self.law.under(start.weight)
+        self.loaded = under(self.law, start.weight)
         if self.is_newton:
             self.slopes = slopes_of(self.loaded.force, now.root, now.rate)
 
@@ -217,7 +222,7 @@ class Sweeps:
             lever_of(self.m, inside, self.lever)
             self._integrate(self.now.time, self.lever, self.time)
             self.load = load_of(self.start, self.time[:-1])
-            self.loaded = self.law.under(self.load)
+            self.loaded = under(self.law, self.load)
         if self.m > 1:
             np.subtract(self.load, self.loaded.root_force(inside, rate), out=self.push)
             self.push *= self.lever
@@ -239,7 +244,7 @@ class Sweeps:
         # Most laws are the same under any load, which need not be computed for them.
         if self.loaded is self.law:
             return self.law
-        return self.law.under(load_of(self.start, time))
+        return under(self.law, load_of(self.start, time))
 
     def ahead(self, root: np.ndarray, rate: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Functions that are positive up to the end of a panel, one in each row.
@@ -250,7 +255,7 @@ class Sweeps:
         law = self.law
         if self.until is None:
             rows = [grip_of(self._loaded_at(time), self.m, root, rate)]
-            if law.also_at_surface:
+            if self.also_at_surface:
                 rows.append(root)
         else:
             rows = [self.until - time]
@@ -335,7 +340,7 @@ class Sweeps:
         none = np.zeros_like(self.last)
         # The kink function is the last of the functions, and q the second.
         turned = self.last & (self.first == self.functions - 1) if law.has_kink else none
-        surfaced = self.first == 1 if law.also_at_surface and until is None else none
+        surfaced = self.first == 1 if self.also_at_surface and until is None else none
         error = self._error()
         good = self.reached & self._held() & (self.change <= _ENOUGH)
         good &= error <= self.kind.spectrum

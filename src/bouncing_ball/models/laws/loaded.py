@@ -1,0 +1,62 @@
+"""Laws whose force depends on the load of the ball, as that of MuJoCo's impedance does.
+
+The load is the acceleration a that the ball has towards the table without a contact. The force of
+most laws is the same under any load. The numerical methods call :func:`under`, which accepts any
+law, and what is done for a :class:`LoadedLaw` only depends on its class.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.force_law import ForceLaw
+
+
+@dataclass(frozen=True, repr=False)
+class LoadedLaw(ForceLaw):
+    """A law whose force depends on the load of the ball, with m = 1.
+
+    Its contact ends at the surface or where the grip vanishes, whichever comes first. A ball at the
+    surface that the load would pull meets no force there. The force and the grip without a load are
+    those of the law itself. A subclass defines :meth:`under`, and, if its force has kinks,
+    :meth:`continued`.
+    """
+
+    root: ClassVar[int] = 1
+    release = Release.FORCE
+    lag: ClassVar[None] = None
+
+    @abstractmethod
+    def under(self, load: Any) -> Self:
+        """The law whose force and grip are those under a load a.
+
+        a broadcasts with p and p′, and may be complex.
+        """
+
+    def continued(self, penetration: np.ndarray, side: np.ndarray) -> Self:
+        """The law in a row of states, continued smoothly beyond the next kink of each; by default
+        the law itself.
+
+        ``side`` is the sign of :meth:`~.ForceLaw.kink`, which rounding makes uncertain at a kink.
+        """
+        return self
+
+
+def under(law: ForceLaw, load: Any) -> ForceLaw:
+    """The law whose force and grip are those under a load a: the law itself if it is no
+    :class:`LoadedLaw`.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.engines.impedance import Impedance
+    >>> from bouncing_ball.models.laws.hertzian import Tsuji
+    >>> float(under(Impedance(2.0, 0.5, 0.75), 4.0).force(1.0, -2.0))
+    3.0
+    >>> law = Tsuji(100.0, 0.1)
+    >>> under(law, 4.0) is law
+    True
+    """
+    return law.under(load) if isinstance(law, LoadedLaw) else law

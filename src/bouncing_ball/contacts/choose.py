@@ -1,4 +1,8 @@
-"""The second question: how stiff must a contact be for a restitution coefficient to be enough?"""
+"""The second question: how stiff must a contact be for a restitution coefficient to be enough?
+
+It is enough if the restitution model deviates from the contact by the tolerance at most, relative
+to the value on the contact (:func:`~bouncing_ball.accuracy.errors.deviation`).
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -102,6 +106,9 @@ class Choice:
 def choose_contact(table: Table, contact: Contact, question: Question | None = None) -> Choice:
     """The most compliant contact for which the restitution model is within a tolerance.
 
+    The tolerance is relative to the value on the contact, as that of
+    :func:`bouncing_ball.assess_contact`.
+
     Parameters
     ----------
     table : Table
@@ -196,7 +203,7 @@ def _of_law(
         return resolve(one, table, [n], written)
 
     def surplus(logarithm: float) -> float:
-        """ln |e/ε|, or that of a large error where the contact has no orbit."""
+        """ln |d/ε| of the deviation d, or that of a large one where the contact has no orbit."""
         try:
             (found,) = families(case_of(logarithm), [n])
         except NoOrbitError:

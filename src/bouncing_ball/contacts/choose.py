@@ -23,6 +23,7 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
 from bouncing_ball.contacts.verdict import judged_choice
 from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
+from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
@@ -158,7 +159,7 @@ def choose(
     if plain.is_stiff:
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
     if plain.law_unless_spring_damper is not None:
-        return _of_law(contact, table, question, written)
+        return _of_law(contact, plain.rule, table, question, written)
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)
     if not plain.rule.is_linear:
@@ -185,15 +186,16 @@ _CLOSE = 1e-4
 
 
 def _of_law(
-    contact: Contact, table: TableMotion, question: Question, written: str | None
+    contact: Contact, rule: Release, table: TableMotion, question: Question, written: str | None
 ) -> Choice:
     """The contact of a law whose free impact, at the speed of the orbit, is the longest one near
     that of the linear contact for which the restitution model is within the tolerance.
 
-    The error grows about as the duration: the secant method in logarithms needs a few steps.
+    The search answers how long an impact with this r may take;
+    :func:`~bouncing_ball.contacts.resolve.resolve` finds the law with this r and each duration. The
+    error grows about as the duration: the secant method in logarithms needs a few steps.
     """
-    release = str(contact.by_stiffness_and_loss(written).rule)
-    measured = replace(contact.with_measured_restitution(), law=None, release=release)
+    measured = replace(contact.with_measured_restitution(), law=None, release=str(rule))
     linear = choose(replace(measured, radius=None), table, question)
     n = linear.n
     quantity = question.quantity

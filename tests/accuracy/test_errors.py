@@ -8,7 +8,10 @@ from bouncing_ball.accuracy.errors import (
     OF_LIMITS,
     OF_ORBITS,
     Quantity,
+    as_deviation,
+    deviation,
     modulus,
+    paper_error,
     relative_errors,
     values,
 )
@@ -61,3 +64,12 @@ def test_elastic_impacts_leave_nothing_to_be_relative_to():
     exact = ContactModel(SpringDamper(np.array([10.0, 100.0]), 0.0))
     (error,) = relative_errors(exact, [RestitutionModel(1.0)], 1, 0.8, ["saddle_node"])[0]
     assert np.all(np.isinf(modulus(error)))
+
+
+def test_the_error_of_the_paper_and_the_deviation_have_other_references():
+    exact = np.array([2.0, 0.5, 1.0])
+    simple = np.array([1.0, 1.0, 0.0])
+    error = paper_error(exact=exact, simple=simple)
+    assert error.tolist() == [1.0, -0.5, np.inf]
+    assert deviation(exact=exact, simple=simple).tolist() == [-0.5, 1.0, -1.0]
+    assert as_deviation(error).tolist() == [-0.5, 1.0, -1.0]

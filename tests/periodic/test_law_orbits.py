@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 import bouncing_ball
 from bouncing_ball.accuracy.error_law import first_order
-from bouncing_ball.accuracy.errors import OF_ORBITS, relative
+from bouncing_ball.accuracy.errors import OF_ORBITS, paper_error
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.law_balls import contact_law
 from bouncing_ball.contacts.named_laws import LAWS, law_named
@@ -69,7 +69,9 @@ def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name
         instant = Instant(*(float(x[0]) for x in impact.known.instant))
         rigid = n_t.require_orbit(RestitutionModel(float(instant.restitution)), 1, 1.0)
         simple, left = (
-            np.array([relative(getattr(orbit, q), getattr(one, q)) for q in OF_ORBITS])
+            np.array(
+                [paper_error(exact=getattr(orbit, q), simple=getattr(one, q)) for q in OF_ORBITS]
+            )
             for one in (rigid, corrected)
         )
         expected = first_order(1, instant, 1.0)

@@ -1,5 +1,9 @@
 r"""The error of the restitution model, to first order in the contact duration.
 
+It is the paper's error (Eqs. 37-38), relative to the value of the restitution model
+(:func:`~bouncing_ball.accuracy.errors.paper_error`). The deviation from the contact is to first
+order the same with the other sign.
+
 The corrected model (:mod:`bouncing_ball.periodic.one_impact.corrected_branch`) differs from the
 exact model in the second order, and from the restitution model in the first order, through
 the delay t_c and the load sensitivity σ. The first-order error of the
@@ -79,10 +83,11 @@ def _of_orbit(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> tuple[np.
 
 
 def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
-    """Relative first-order errors of the restitution model at its orbit on the stable side.
+    """First-order errors of the restitution model at its orbit on the stable side.
 
-    Errors are relative to the value of the restitution model. The error of the saddle-node is
-    therefore infinite at r = 1, and that of the phase at the saddle-node, where this value is 0.
+    They are the paper's, relative to the value of the restitution model. The error of the
+    saddle-node is therefore infinite at r = 1, and that of the phase at the saddle-node, where this
+    value is 0.
 
     Parameters
     ----------
@@ -211,7 +216,7 @@ def remainder(
     n, instant, amplitude
         As in :func:`first_order`.
     error : ndarray, shape (quantity, ...)
-        Signed relative errors of the ``quantities``; NaN where an error is missing.
+        The paper's errors of the ``quantities``; NaN where an error is missing.
     quantities : iterable of Quantity
 
     Raises
@@ -242,7 +247,7 @@ def coefficients(
     amplitude: ArrayLike,
     release: Release = Release.DISPLACEMENT,
 ) -> ByQuantity:
-    """K of each quantity for a linear contact: relative error K/ϖ + O(1/ϖ²).
+    """K of each quantity for a linear contact: the paper's error is K/ϖ + O(1/ϖ²).
 
     Parameters
     ----------
@@ -293,7 +298,7 @@ def law_thresholds(
 def permanent_contact_coefficient(
     damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> np.ndarray:
-    """K₂ of the permanent contact: relative error K₂/ϖ² + O(1/ϖ⁴).
+    """K₂ of the permanent contact: the paper's error is K₂/ϖ² + O(1/ϖ⁴).
 
     Examples
     --------

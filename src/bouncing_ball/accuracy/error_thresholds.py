@@ -58,7 +58,7 @@ def error_thresholds(
     amplitude : float or array
         Excitation amplitude Λ > 0 of the stable orbit.
     tolerance : float or array
-        Largest modulus of the relative error.
+        Largest modulus of this error.
     quantities : sequence of str, optional
         The quantities compared; by default all: "max_height", "bounce_velocity", "phase",
         "apparent_restitution", "saddle_node", "period_doubling" and "permanent_contact".

@@ -1,8 +1,18 @@
-r"""The quantities by which models are compared, and the errors of simple models (Eqs. 37-38).
+r"""The quantities by which models are compared, and the relative errors of simple models.
 
-The error of a quantity is ``(q_SD - q)/q``, where q is the value in a simple model, which is the
-restitution model in the paper. The paper compares the greatest height (Eq. 37) and the threshold of
-permanent contact (Eq. 38), and uses the modulus of the error; here the error is signed.
+There are two relative errors of a quantity, with its value q_SD in the exact model, on the contact,
+and its value q in a simple model, which is the restitution model in the paper::
+
+    e = (q_SD - q)/q       the paper's error (Eqs. 37-38), positive where the model predicts less
+    d = (q - q_SD)/q_SD    the deviation from the contact, positive where the model predicts more
+
+They are :func:`paper_error` and :func:`deviation`. ``d = -e/(1 + e)``, which is
+:func:`as_deviation`: to first order they differ in their sign alone.
+The paper compares the greatest height (Eq. 37) and the threshold of permanent contact (Eq. 38), and
+uses the modulus of the error; here both are signed. The replication, the error law, thresholds and
+the studies beyond the paper have the paper's error. An engineer's contact
+(:mod:`bouncing_ball.contacts`) is the truth for a model, so that its errors and its tolerance are
+deviations.
 """
 
 from collections.abc import Iterable, Sequence
@@ -92,18 +102,51 @@ def values(
     return np.stack(np.broadcast_arrays(*map(value, quantities)))
 
 
-def relative(value: ArrayLike, reference: ArrayLike) -> np.ndarray:
-    """Signed relative differences of values from a reference, over the reference.
+def paper_error(*, exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
+    """The paper's error ``(q_SD - q)/q`` of simple values q, over the simple value (Eqs. 37-38).
 
-    The errors of simple models have the simple value as their reference, and the errors of a
-    prediction the true value. The result is NaN where a value is missing, and for 0/0. It is
-    infinite where the reference is 0, for example for the saddle-node at r = 1.
+    Of positive values it is positive where the simple model predicts less. It is NaN where a value
+    is missing, and for 0/0, and infinite where the simple value is 0, for example for the
+    saddle-node at r = 1.
 
     Examples
     --------
-    >>> relative([1.5, 1.0], [1.0, 0.0]).tolist()
+    >>> paper_error(exact=[1.5, 1.0], simple=[1.0, 0.0]).tolist()
     [0.5, inf]
     """
+    return _relative(exact, simple)
+
+
+def deviation(*, exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
+    """The deviation ``(q - q_SD)/q_SD`` of simple values q from exact ones, over the exact value.
+
+    Of positive values it is positive where the simple model predicts more. It is NaN where a value
+    is missing, and for 0/0, and infinite where the exact value is 0.
+
+    Examples
+    --------
+    >>> deviation(exact=[1.5, 1.0], simple=[3.0, 0.0]).tolist()
+    [1.0, -1.0]
+    """
+    return _relative(simple, exact)
+
+
+def as_deviation(error: ArrayLike) -> np.ndarray:
+    """The :func:`deviation` d = -e/(1 + e) of which the paper's error (:func:`paper_error`) is e.
+
+    An infinite e, with a simple value of 0, has d = -1.
+
+    Examples
+    --------
+    >>> as_deviation([-0.5, 1.0, np.inf]).tolist()
+    [1.0, -0.5, -1.0]
+    """
+    paper = np.asarray(error, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.isinf(paper), -1.0, -paper / (1 + paper))
+
+
+def _relative(value: ArrayLike, reference: ArrayLike) -> np.ndarray:
     base = np.asarray(reference, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
         return (np.asarray(value, dtype=float) - base) / base
@@ -127,7 +170,7 @@ def relative_errors(
     amplitude: ArrayLike,
     quantities: Sequence[str] = OF_IMPACTS,
 ) -> np.ndarray:
-    """Signed relative errors of simple models, shape (model, quantity, ...).
+    """The paper's errors of simple models (:func:`paper_error`), shape (model, quantity, ...).
 
     Parameters
     ----------
@@ -159,5 +202,5 @@ def relative_errors(
     for k, model in enumerate(simple):
         found = values(model, n, amplitude, quantities)
         for q in range(len(quantities)):
-            errors[k, q] = relative(wanted[q], found[q])
+            errors[k, q] = paper_error(exact=wanted[q], simple=found[q])
     return errors

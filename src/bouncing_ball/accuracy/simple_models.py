@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.accuracy.errors import (
     OF_IMPACTS,
     OF_ORBITS,
-    relative,
+    paper_error,
     relative_errors,
     values,
 )
@@ -63,9 +63,9 @@ def errors(
     amplitude: ArrayLike,
     quantities: Sequence[str] = OF_IMPACTS,
 ) -> np.ndarray:
-    """Signed relative errors of both simple models on contacts, shape (model, quantity, ...).
+    """The paper's errors of both simple models on contacts, shape (model, quantity, ...).
 
-    The arguments are those of :func:`relative_errors`, and the models those of
+    The arguments are those of :func:`.errors.relative_errors`, and the models those of
     :func:`exact_and_simple_models`, in the order of :data:`SIMPLE`.
 
     Examples
@@ -78,8 +78,8 @@ def errors(
 
 
 def orbit_errors(orbit: Orbit) -> np.ndarray:
-    """Errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN where there
-    is no orbit.
+    """The paper's errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN
+    where there is no orbit.
 
     They equal :func:`errors` at the Λ of the orbits.
 
@@ -95,7 +95,12 @@ def orbit_errors(orbit: Orbit) -> np.ndarray:
         values(x, orbit.n, orbit.amplitude, OF_ORBITS)
         for x in exact_and_simple_models(orbit.law)[1:]
     )
-    return np.stack([[*map(relative, exact, each)] for each in simple])
+    return np.stack(
+        [
+            [paper_error(exact=true, simple=one) for true, one in zip(exact, each, strict=True)]
+            for each in simple
+        ]
+    )
 
 
 def simple_models(contact: SpringDamper) -> tuple[RestitutionModel, CorrectedModel]:
@@ -158,11 +163,11 @@ def search(
     ratios : ndarray, shape (N,)
         Increasing grid of ϖ.
     tolerance : float or array_like, shape (tolerance,)
-        The tolerated relative errors.
+        The tolerated moduli of the error that ``measure`` gives.
     quantities : sequence of str
     measure : callable
-        The error that is tolerated, as a function of the paper's error (Eqs. 37-38); by default
-        the paper's.
+        The error that is tolerated, as a function of the paper's error (Eqs. 37-38): by default
+        the paper's, and with :func:`.errors.as_deviation` the deviation from the contact.
     simple : callable
         The simple models of contacts; by default those of :func:`simple_models`.
 

@@ -23,7 +23,7 @@ Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
 
 ErrorsAtRatios = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
-"""Signed relative errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
+"""Signed errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
 RATIOS = np.geomspace(1.0, 1e6, 97)
 """ϖ at which errors are scanned, from contacts that last a considerable part of the table's period
 to contacts stiffer than those of any simulation. The steps are fine, so that two crossings hardly

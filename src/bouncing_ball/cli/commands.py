@@ -205,9 +205,10 @@ COMMANDS = {
     "error-law": Command(
         purpose="the error K/ϖ of the restitution model to first order",
         text=(
-            "The error of the restitution model, relative to the contact, is K/ϖ to first order. "
-            "To this order the error falls to ε at the frequency ratio ϖ = |K|/ε. This is an "
-            "estimate and no bound."
+            "The difference of the contact from the restitution model, relative to the restitution "
+            "model (Eqs. 37-38), is K/ϖ to first order. The deviation of the model relative to the "
+            "contact, as in design, is to this order the same with the other sign. To this order "
+            "both fall to ε at the frequency ratio ϖ = |K|/ε. This is an estimate and no bound."
         ),
         examples=("error-law --amplitude 1 --restitution 0.65",),
         program=_error_law,
@@ -301,7 +302,8 @@ COMMANDS = {
         purpose="whether a restitution coefficient is enough, or which contact is needed",
         text=(
             "With a stiffness, the answer says whether a restitution coefficient is good enough "
-            "for this contact. Without one, it gives the contact that a simulation needs. Give "
+            "for this contact. Without one, it gives the contact that a simulation needs. Errors "
+            "are relative to the contact, positive where a model predicts too much. Give "
             'numbers with units, such as "50 Hz"; a plain number is in SI units.'
         ),
         examples=(

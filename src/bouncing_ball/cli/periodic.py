@@ -209,11 +209,11 @@ def error_law_options(parser: Parser) -> None:
 
 
 def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:
-    """The coefficient K of each quantity, whose relative error has the modulus K/ϖ + O(1/ϖ²).
+    """The coefficient K of each quantity, whose error has the modulus K/ϖ + O(1/ϖ²).
 
-    The restitution model has the r of a free impact on the contact. The sign in ``signed`` is that
-    of the relative error, exact value minus restitution model. A quantity without a first-order law
-    is null.
+    The error is the paper's (Eqs. 37-38): exact value minus restitution model, relative to the
+    restitution model, which has the r of a free impact on the contact. The sign in ``signed`` is
+    that of this error. A quantity without a first-order law is null.
 
     Raises
     ------

@@ -1,4 +1,9 @@
-"""The first question: is a restitution coefficient good enough for a contact on a table?"""
+"""The first question: is a restitution coefficient good enough for a contact on a table?
+
+The contact is the truth: the error of a model is its deviation from the contact,
+``(q - q_SD)/q_SD`` with the value q_SD on the contact
+(:func:`~bouncing_ball.accuracy.errors.deviation`).
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -189,6 +194,9 @@ class Assessment:
 @suggesting
 def assess_contact(table: Table, contact: Contact, question: Question | None = None) -> Assessment:
     """Whether the restitution model is good enough for a contact on a vibrating table.
+
+    The tolerance and all errors of the answer are relative to the values on the contact; those of
+    the paper, and of :func:`bouncing_ball.error_thresholds`, are relative to the restitution model.
 
     Parameters
     ----------

@@ -1,4 +1,8 @@
-"""The second question: how stiff must a contact be for a restitution coefficient to be enough?"""
+"""The second question: how stiff must a contact be for a restitution coefficient to be enough?
+
+It is enough if the restitution model deviates from the contact by the tolerance at most, relative
+to the value on the contact (:func:`~bouncing_ball.accuracy.errors.deviation`).
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,6 +23,7 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
 from bouncing_ball.contacts.verdict import judged_choice
 from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
+from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
@@ -102,6 +107,9 @@ class Choice:
 def choose_contact(table: Table, contact: Contact, question: Question | None = None) -> Choice:
     """The most compliant contact for which the restitution model is within a tolerance.
 
+    The tolerance is relative to the value on the contact, as that of
+    :func:`bouncing_ball.assess_contact`.
+
     Parameters
     ----------
     table : Table
@@ -151,7 +159,7 @@ def choose(
     if plain.is_stiff:
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
     if plain.law_unless_spring_damper is not None:
-        return _of_law(contact, table, question, written)
+        return _of_law(contact, plain.rule, table, question, written)
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)
     if not plain.rule.is_linear:
@@ -178,15 +186,16 @@ _CLOSE = 1e-4
 
 
 def _of_law(
-    contact: Contact, table: TableMotion, question: Question, written: str | None
+    contact: Contact, rule: Release, table: TableMotion, question: Question, written: str | None
 ) -> Choice:
     """The contact of a law whose free impact, at the speed of the orbit, is the longest one near
     that of the linear contact for which the restitution model is within the tolerance.
 
-    The error grows about as the duration: the secant method in logarithms needs a few steps.
+    The search answers how long an impact with this r may take;
+    :func:`~bouncing_ball.contacts.resolve.resolve` finds the law with this r and each duration. The
+    error grows about as the duration: the secant method in logarithms needs a few steps.
     """
-    release = str(contact.by_stiffness_and_loss(written).rule)
-    measured = replace(contact.with_measured_restitution(), law=None, release=release)
+    measured = replace(contact.with_measured_restitution(), law=None, release=str(rule))
     linear = choose(replace(measured, radius=None), table, question)
     n = linear.n
     quantity = question.quantity
@@ -196,7 +205,7 @@ def _of_law(
         return resolve(one, table, [n], written)
 
     def surplus(logarithm: float) -> float:
-        """ln |e/ε|, or that of a large error where the contact has no orbit."""
+        """ln |d/ε| of the deviation d, or that of a large one where the contact has no orbit."""
         try:
             (found,) = families(case_of(logarithm), [n])
         except NoOrbitError:

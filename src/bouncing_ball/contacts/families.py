@@ -1,4 +1,8 @@
-"""The n-T families of a case: orbits, margins, loads and errors in every model."""
+"""The n-T families of a case: orbits, margins, loads and errors in every model.
+
+All errors here are deviations from the contact, ``(q - q_SD)/q_SD``
+(:func:`~bouncing_ball.accuracy.errors.deviation`), and not the paper's.
+"""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +12,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from bouncing_ball.accuracy import error_law, errors
-from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
+from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, deviation
 from bouncing_ball.contacts.needed import finite
 from bouncing_ball.contacts.rebounds import greatest_loads
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -24,8 +28,8 @@ from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 ErrorsByQuantity = dict[str, float | None]
-"""Relative errors by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None where one
-of the values does not exist, or that of the contact is zero."""
+"""Deviations from the contact by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None
+where one of the values does not exist, or that of the contact is zero."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +61,11 @@ class ComparedOrbit:
 
     ``exists``, ``is_stable`` and ``is_admissible`` refer to the orbit of the exact model, which
     comes first in ``standing``. ``values`` has each quantity in every model, the exact one first,
-    in m, in m/s or without a unit. All errors are relative to the exact value and have a sign,
-    positive where the model predicts too much: ``errors`` are those of the restitution model,
-    ``corrected_errors`` those of the corrected model, and ``law_errors`` those that the error law
-    gives for the restitution model; ``law_holds`` tells whether the law holds.
+    in m, in m/s or without a unit. All errors are deviations from the exact value, relative to it
+    (:func:`~bouncing_ball.accuracy.errors.deviation`), and have a sign, positive where the model
+    predicts too much: ``errors`` are those of the restitution model, ``corrected_errors`` those of
+    the corrected model, and ``law_errors`` those that the error law gives for the restitution
+    model; ``law_holds`` tells whether the law holds.
     """
 
     n: int
@@ -119,11 +124,11 @@ def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
 
 
 def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
-    it holds, shape (n,).
+    """The deviations of the restitution model from the contact that the error law predicts, shape
+    (quantity, n), and whether it holds, shape (n,).
 
-    They are errors against the contact, which to first order are those of the law with the other
-    sign. The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
+    The law has the paper's error e. To its order the deviation -e/(1 + e) is -e. The error of the
+    permanent contact, K₂/ϖ², is known for the linear contact only.
 
     Examples
     --------
@@ -136,19 +141,19 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     """
     lam = case.table.amplitude
     contact = case.equivalent
-    predicted = np.full((len(Quantity), n.size), np.nan)
+    of_paper = np.full((len(Quantity), n.size), np.nan)
     holds = np.zeros(n.size, dtype=bool)
     there = n_t.orbit(case.models["restitution"], n, lam).exists
     instant = case.instant(n[there])
-    predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
+    of_paper[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
     is_small = error_law.small_parameter(n[there], instant, lam) < error_law.VALID_BELOW
     # If the r of a contact law depends on the speed, it equals the r of the restitution model at
     # one speed only.
     holds[there] = is_small & case.has_its_restitution(n[there])
     if case.is_linear:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
-        predicted[-1] = second / contact.frequency_ratio**2
-    return -predicted, holds
+        of_paper[-1] = second / contact.frequency_ratio**2
+    return -of_paper, holds
 
 
 def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
@@ -294,7 +299,7 @@ def _family(
     orbit = orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(case.law, orbit)
-    restitution, corrected = map(_by_quantity, relative(values[1:], values[0]))
+    restitution, corrected = map(_by_quantity, deviation(exact=values[0], simple=values[1:]))
     in_si = values * _units(case.table)
     return ComparedOrbit(
         n=n,

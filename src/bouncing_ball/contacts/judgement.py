@@ -1,8 +1,9 @@
 """Whether the restitution model is good enough for a contact: the facts that decide it.
 
 A contact is judged on a periodic orbit, or on the motion on which a ball ends if none stays on the
-orbit. The sentences on these facts are in :mod:`bouncing_ball.contacts.verdict` and
-:mod:`bouncing_ball.contacts.verdict_on_motion`.
+orbit. All errors are deviations of a model from the contact, relative to the value on the contact
+(:func:`~bouncing_ball.accuracy.errors.deviation`). The sentences on these facts are in
+:mod:`bouncing_ball.contacts.verdict` and :mod:`bouncing_ball.contacts.verdict_on_motion`.
 """
 
 import math
@@ -11,7 +12,7 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import NamedTuple
 
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import deviation
 from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.means import NO_CHANGE, Mean
 from bouncing_ball.contacts.motion import FinalMotion
@@ -33,7 +34,8 @@ class OrbitJudgement:
     """The judgement on a contact by an orbit.
 
     The model is good enough if its orbit agrees with the exact one in existence, admissibility and
-    stability, and if the error of the quantity that is needed is within the tolerance.
+    stability, and if it deviates from the contact in the quantity that is needed by the tolerance
+    at most.
     """
 
     family: ComparedOrbit
@@ -52,12 +54,12 @@ class OrbitJudgement:
 
     @property
     def error(self) -> float | None:
-        """The error of the restitution model; None without a value to compare."""
+        """The deviation of the restitution model; None without a value to compare."""
         return self.family.errors[self.needed.quantity]
 
     @property
     def corrected_error(self) -> float | None:
-        """The error of the corrected restitution model; None without a value to compare."""
+        """The deviation of the corrected restitution model; None without a value to compare."""
         return self.family.corrected_errors[self.needed.quantity]
 
     @property
@@ -99,7 +101,7 @@ class Basis(Enum):
 
 
 class SensitiveMean(NamedTuple):
-    """The mean that small changes decide about, and the ends of its relative errors with them."""
+    """The mean that small changes decide about, and the ends of its deviations with them."""
 
     name: str
     low: float
@@ -123,7 +125,7 @@ class MotionJudgement:
         no ball rests above Λ = 1, also if its motion is undecided.
     basis : Basis
     least, most : float
-        Bounds of the relative error that decides.
+        Bounds of the modulus of the deviation that decides.
     spread : SensitiveMean, optional
         The mean that small changes decide about.
     """
@@ -168,7 +170,7 @@ def judged_by_motion(
         return replace(found, basis=basis)
     if motion.greatest is not None:
         true, predicted = motion.greatest.values()
-        error = abs(float(relative(predicted, true)))
+        error = abs(float(deviation(exact=true, simple=predicted)))
         return replace(found, basis=Basis.GREATEST_HEIGHT, least=error, most=error)
     if motion.mean_error is None:
         return found

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import deviation
 from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.errors import ModelError
@@ -91,7 +91,9 @@ def compared_means(
     most: int | None,
     first: FirstImpact,
 ) -> dict[str, Any]:
-    """Means of both models, in m and W, and the relative errors of the second model."""
+    """Means of both models, in m and W, and the deviations of the second model's from the first's,
+    relative to these.
+    """
     sampling = _sampling(case)
     balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
     without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
@@ -337,10 +339,10 @@ def _estimate(end: Ending, sums: np.ndarray) -> Estimate:
 def _error_of_means(
     exact: Estimate, simple: Estimate, factor: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Relative errors of the simple model's means against the exact ones, and their half-widths:
-    standard errors times a factor.
+    """Deviations of the simple model's means from the exact ones, relative to these, and their
+    half-widths: standard errors times a factor.
     """
-    error = relative(simple.mean, exact.mean)
+    error = deviation(exact=exact.mean, simple=simple.mean)
     spread = np.hypot(simple.error, (1 + error) * exact.error) / np.abs(exact.mean)
     return error, factor * spread
 

@@ -34,13 +34,14 @@ class FinalMotion:
     three values for the restitution model. For motions that repeat in the same way in both models
     there is then the ``greatest`` height in each model; for other motions there are means over
     time of the height and of the power that the table transfers, over a number of ``balls``, with
-    the signed relative errors of the restitution model. ``is_laid`` tells whether the ball was
-    laid on the table, because no model has an orbit on which a ball can arrive, and ``is_common``
-    whether it is the motion on which most balls end, because few end on the orbit. ``changes`` has
-    the relative errors of the means if r, k or g change by a thousandth; "r -0.1 %" and the like
-    are the names of these changes. The r of a contact law is changed at the mean speed of the
-    impacts of this motion. For a law that no impact determines, such as an impedance, they are
-    those of the linear contact with its r and duration, also without a change; they are None if
+    the signed deviations of the restitution model from the contact, relative to the value on the
+    contact (:func:`~bouncing_ball.accuracy.errors.deviation`). ``is_laid`` tells whether the ball
+    was laid on the table, because no model has an orbit on which a ball can arrive, and
+    ``is_common`` whether it is the motion on which most balls end, because few end on the orbit.
+    ``changes`` has these deviations of the means if r, k or g change by a thousandth; "r -0.1 %"
+    and the like are the names of these changes. The r of a contact law is changed at the mean speed
+    of the impacts of this motion. For a law that no impact determines, such as an impedance, they
+    are those of the linear contact with its r and duration, also without a change; they are None if
     that contact has another kind of motion.
 
     The mean height is the mean over time of the height of the ball above the middle of the table,

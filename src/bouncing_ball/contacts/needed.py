@@ -1,4 +1,4 @@
-"""The frequency ratio ϖ that a tolerance needs, from a root of the exact error over ϖ."""
+"""The frequency ratio ϖ that a tolerance needs, from a root of the exact deviation over ϖ."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.accuracy.error_law import law_thresholds
-from bouncing_ball.accuracy.errors import OF_ORBITS, Quantity
+from bouncing_ball.accuracy.errors import OF_ORBITS, Quantity, as_deviation
 from bouncing_ball.accuracy.simple_models import search
 from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.errors import NoOrbitError
@@ -17,11 +17,13 @@ from bouncing_ball.models.spring_damper import SpringDamper
 class Needed:
     """The frequency ratio above which the error of a quantity stays within a tolerance ε.
 
-    The error is relative to the value on the contact.
+    The error is the deviation (q - q_SD)/q_SD from the value q_SD on the contact
+    (:func:`~bouncing_ball.accuracy.errors.deviation`).
 
     ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
     tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
-    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact. A value that does not exist is None,
+    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact; to this order it does not matter
+    against which of both values the error is taken. A value that does not exist is None,
     and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
     """
 
@@ -39,23 +41,6 @@ def finite(value: float | np.ndarray) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def against_contact(error: np.ndarray) -> np.ndarray:
-    """The error of a simple model against the contact, (q - q_SD)/q_SD, from that of the paper.
-
-    The paper divides by the value of the simple model: its error is e = (q_SD - q)/q (Eq. 37), so
-    that the error against the contact is -e/(1 + e). Both are the same to first order, but for
-    the sign.
-
-    Examples
-    --------
-    >>> against_contact(np.array([-0.5, 1.0, np.inf])).tolist()
-    [1.0, -0.5, -1.0]
-    """
-    paper = np.asarray(error, dtype=float)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(np.isinf(paper), -1.0, -paper / (1 + paper))
-
-
 NO_ORBIT = "no orbit"
 """A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 
@@ -70,7 +55,7 @@ def needed(
     quantity : str
         One of :class:`~bouncing_ball.accuracy.errors.Quantity`.
     tolerance : float
-        Largest relative error allowed, against the contact (:func:`against_contact`).
+        Largest modulus of the deviation from the contact that is allowed.
     contact : SpringDamper
     n : int
     amplitude : float
@@ -79,7 +64,7 @@ def needed(
     Examples
     --------
     Without damping the threshold is Λ_SD = 1 - 1/ϖ², for which the restitution model has 1, so
-    that its error is 1/(ϖ² - 1):
+    that it deviates by 1/(ϖ² - 1):
 
     >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
     >>> round(found.frequency_ratio**2, 9), round(found.by_law, 12)
@@ -110,7 +95,7 @@ def needed(
         ratios=RATIOS,
         tolerance=tolerance,
         quantities=(quantity,),
-        measure=against_contact,
+        measure=as_deviation,
     )
     simple, corrected = found.threshold[:, 0, 0]
     status, corrected_status = found.status[:, 0, 0]

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.contacts.engines.engine import Engine
 from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.motion import FinalMotion
@@ -89,7 +88,8 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     where = engine.at_depth(case.given.engine_parameters, family.greatest_compression)
-    off = float(relative(family.max_height, spring.max_height * case.table.length))
+    without = spring.max_height * case.table.length
+    off = float((family.max_height - without) / without)
     return (
         f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, {where}, "
         f"the ball bounces {shown(abs(off), '%')} {'higher' if off > 0 else 'lower'} than with them"

@@ -3,10 +3,10 @@
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.errors import as_deviation
 from bouncing_ball.accuracy.simple_models import SIMPLE, search
 from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.assess import Assessment
-from bouncing_ball.contacts.needed import against_contact
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -22,8 +22,9 @@ _BEFORE, _SHOWN = 0.75, 3.0
 def chart_and_motion(design: Assessment) -> xr.Dataset:
     """The validity chart over r, heights over one cycle, and the gap in one contact, in SI units.
 
-    The dataset has ``needed`` (simple, restitution), the ϖ needed; ``table`` (time,) and ``ball``
-    (model, time); and ``gap`` (model, since). Values are NaN where there is no orbit or threshold.
+    The dataset has ``needed`` (simple, restitution), the ϖ from which on a model deviates from the
+    contact by the tolerance at most; ``table`` (time,) and ``ball`` (model, time); and ``gap``
+    (model, since). Values are NaN where there is no orbit or threshold.
     """
     table = design.case.table
     rule = design.case.equivalent.linear.release
@@ -43,7 +44,7 @@ def chart_and_motion(design: Assessment) -> xr.Dataset:
         ratios=RATIOS,
         tolerance=asked.tolerance,
         quantities=(asked.quantity,),
-        measure=against_contact,
+        measure=as_deviation,
     )
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]

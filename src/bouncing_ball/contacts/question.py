@@ -35,8 +35,8 @@ class Question:
     quantity
         Name of the quantity that must be accurate.
     tolerance
-        Largest relative error of the restitution model's quantity against the contact's, such as
-        "5 %" or 0.05.
+        Largest error of the restitution model's quantity against the contact's, relative to that of
+        the contact, such as "5 %" or 0.05.
     balls
         Largest number of balls whose means over time are compared if the motion does not repeat.
         By default it takes about a second.

@@ -46,7 +46,7 @@ def rises(law: ContactLaw, speed: np.ndarray) -> np.ndarray:
     """
     dynamics = law.dynamics(np.zeros(speed.size))
     impact = dynamics.start(np.zeros(speed.size), -np.asarray(speed, dtype=float))
-    departure = dynamics.depart(impact)
+    departure = next(dynamics.legs(impact)).departure
     flight = departure.flight
     height = flight.displacement + flight.velocity**2 / 2
     return np.where(departure.status == Status.BOUNCING, np.maximum(height, 0.0), 0.0)

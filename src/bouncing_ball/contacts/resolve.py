@@ -211,7 +211,8 @@ def first_stable_family(
 def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> ResolvedContact:
     """The case with the linear contact that has the r and duration of a law at the impact speed.
 
-    This speed v = 2πn/(1 + r(v)) is that of the first stable family of the restitution model.
+    Here the law is known, and its r and duration are sought: at the speed v = 2πn/(1 + r(v)) of the
+    first stable family of the restitution model.
 
     Examples
     --------

@@ -1,4 +1,8 @@
-"""The sentences on the judgement of a contact by an orbit, and on a contact that was chosen."""
+"""The sentences on the judgement of a contact by an orbit, and on a contact that was chosen.
+
+The error in a sentence is the deviation of a model from the contact, relative to the value on the
+contact (:func:`~bouncing_ball.accuracy.errors.deviation`).
+"""
 
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
@@ -68,7 +72,7 @@ def said_of_orbit(
 
 def _prediction(family: ComparedOrbit, needed: Needed) -> str:
     """A clause with the values of a quantity in the restitution model and on the contact, and the
-    error of the model.
+    deviation of the model.
     """
     exact, predicted, *_ = family.values[needed.quantity].values()
     both = in_place_of(predicted, exact, _UNITS.get(Quantity(needed.quantity), ""))

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import deviation
 from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.judgement import Basis, MotionJudgement
 from bouncing_ball.contacts.means import NO_CHANGE, Mean
@@ -80,7 +80,7 @@ def _found(judged: MotionJudgement) -> str:
         )
     if motion.greatest is not None:
         true, predicted = motion.greatest.values()
-        off = signed(float(relative(predicted, true)))
+        off = signed(float(deviation(exact=true, simple=predicted)))
         both_heights = in_place_of(predicted, true, "m")
         return f"for the greatest height of this motion it predicts {both_heights}, {off}"
     means = {"height": motion.mean_height, "power": motion.mean_power}

@@ -24,7 +24,7 @@ from installed_engines import LAST_SEEN, missing, only_if_installed
 from pandas import DataFrame
 
 from bouncing_ball import corrected, limits, rigid, spring_damper
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import paper_error
 from bouncing_ball.accuracy.simple_models import SIMPLE
 from bouncing_ball.beyond.exhibits.engine_steps import (
     VARIABLES,
@@ -140,7 +140,8 @@ def bounces(name, case, found, skipped, kept):
     above, spent = RUN[name](trial)
     ball = above - amplitude * np.cos(trial.times)
     first = np.searchsorted(trial.times, period * np.arange(skipped, cycles))
-    return relative(exact.max_height, np.maximum.reduceat(ball, first)), spent / cycles
+    heights = np.maximum.reduceat(ball, first)
+    return paper_error(exact=exact.max_height, simple=heights), spent / cycles
 
 
 def simulated(name, case, steps):

@@ -25,7 +25,7 @@ from bouncing_ball.accuracy.errors import (
     OF_ORBITS,
     Quantity,
     modulus,
-    relative,
+    paper_error,
     values,
 )
 from bouncing_ball.accuracy.simple_models import SIMPLE, exact_and_simple_models
@@ -162,7 +162,7 @@ def largest_error(
             values(one, nodes.n, nodes.amplitude, [quantity])[0]
             for one in compared_models(plan, row, model, ratio, r)
         )
-        size = modulus(relative(exact, simple))
+        size = modulus(paper_error(exact=exact, simple=simple))
         best = int(size.argmax())
         # A value that passes through zero makes the relative error infinite.
         passes_zero = bool(np.any(simple < 0) and np.any(simple > 0))

@@ -28,7 +28,7 @@ import xarray as xr
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.errors import Quantity, relative, values
+from bouncing_ball.accuracy.errors import Quantity, paper_error, values
 from bouncing_ball.accuracy.simple_models import SIMPLE
 from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.contacts.named_laws import LAWS
@@ -195,7 +195,7 @@ class CalibratedContacts:
         one = self.orbit
         simple = n_t.orbit(RestitutionModel(one.restitution), one.n, one.amplitude).max_height
         exact = self.along(ratios, lambda orbits: orbits.max_height)
-        return np.abs(relative(exact, simple))
+        return np.abs(paper_error(exact=exact, simple=simple))
 
     def threshold(self, ratios: np.ndarray, error: np.ndarray, tolerance: float) -> float:
         """The π/(D + κ) at which the error of the greatest height is the tolerance.
@@ -240,8 +240,8 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, np.ndarray]:
         exact = orbits.model
         wanted = values(exact, n, lam, QUANTITIES)
         constant = values(rigid, n, lam, QUANTITIES)[:, np.newaxis]
-        corrected = corrected_values(exact, n, lam, QUANTITIES)
-        return np.array([relative(wanted, constant), relative(wanted, corrected)])
+        simple = constant, corrected_values(exact, n, lam, QUANTITIES)
+        return np.array([paper_error(exact=wanted, simple=each) for each in simple])
 
     contacts = CalibratedContacts(name, parameters)
     ratios = parameters.frequency_ratio.grid()

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from pydantic import AfterValidator, Field, Strict
 
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import paper_error
 from bouncing_ball.accuracy.simple_models import SIMPLE, errors
 from bouncing_ball.contacts.engines.impacts import restitution_in_steps
 from bouncing_ball.contacts.engines.scheme import Scheme
@@ -185,7 +185,8 @@ def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
     drawn = np.broadcast_to(drawn, (impacts, len(Scheme), orbit.size, len(p.steps), p.balls))
     every = orbit[:, np.newaxis, np.newaxis]
     heights = greatest_heights(every, drawn)[p.transient :]
-    return np.sqrt(np.mean(relative(every.max_height, heights) ** 2, axis=(0, -1)))
+    error = paper_error(exact=every.max_height, simple=heights)
+    return np.sqrt(np.mean(error**2, axis=(0, -1)))
 
 
 def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
@@ -196,7 +197,8 @@ def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
     of_simple = errors(orbit.law, orbit.n, orbit.amplitude, ["max_height"])[:, 0]
     restitution = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
     heights = greatest_heights(orbit, restitution)
-    of_simulation = np.max(np.abs(relative(orbit.max_height, heights)), axis=0)
+    error = paper_error(exact=orbit.max_height, simple=heights)
+    of_simulation = np.max(np.abs(error), axis=0)
     return np.array([*of_simple, of_simulation])
 
 

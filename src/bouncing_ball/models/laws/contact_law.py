@@ -241,7 +241,11 @@ class OscillatorLaw(ContactLaw):
     def with_impact(self, restitution: float, duration: float, speed: float) -> Self | None:
         """The law with another ϖ and ζ, whose free impact of speed v has these r and D.
 
-        They must be near those of this law: Newton's method takes the slopes of the linear contact.
+        The search answers which of the contacts beside this one has another impact at a known
+        speed, with all other parameters kept;
+        :func:`~bouncing_ball.models.laws.law_of_impact.law_of_impact` answers which of all laws of
+        a kind has it. r and D must be near those of this law: Newton's method takes the slopes of
+        the linear contact.
 
         Raises
         ------

@@ -73,6 +73,9 @@ def law_of_impact(
 ) -> Law:
     """The law whose free impact of speed v has the restitution r and the duration D.
 
+    The search answers which of all laws of a kind has an impact at a known speed. It has one
+    unknown, the group, whose r it meets; D then follows in closed form.
+
     Parameters
     ----------
     kind : type of ContactLaw

@@ -36,9 +36,11 @@ def orbit_of_law(
     """The n-T orbits at Λ on contacts whose free impacts have r and D at the orbit's impact speed.
 
     The restitution and the duration of a law may depend on the speed. To compare models, r and D
-    are therefore prescribed at the impact speed of the orbit in question. A secant iteration finds
-    this speed. The unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so
-    that the orbits of one round are the guesses of the next.
+    are therefore prescribed at the impact speed of the orbit in question. The search answers at
+    which speed v the orbit hits the table on the law that has r and D at v, by a secant iteration;
+    :func:`~bouncing_ball.models.laws.law_of_impact.law_of_impact` has the law of each v. The
+    unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so that the orbits
+    of one round are the guesses of the next.
 
     Parameters
     ----------

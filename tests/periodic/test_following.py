@@ -169,6 +169,23 @@ def test_a_branch_ends_where_the_map_of_the_corrected_model_jumps():
     assert found.residual.max() < 1e-12
 
 
+def test_a_branch_is_followed_although_newtons_method_meets_speeds_without_an_impact():
+    """An impact on this law at a thousand times the speeds of the orbits would not end."""
+    law = bouncing_ball.contact_law("hunt-crossley", stiffness=100.0, damping=0.2)
+    ball = bouncing_ball.corrected(law)
+    parent = bouncing_ball.follow(bouncing_ball.orbit(ball, n=1, amplitude=0.9), to=2.0)
+    doubled = bouncing_ball.follow(parent.first("period doubling"))
+    assert str(doubled.end_reason[1].values).startswith("release lost")
+    assert doubled.residual.max() < 1e-12
+    stable = next(
+        orbit for orbit in doubled.states() if orbit.is_stable() and orbit.amplitude > 1.2
+    )
+    start = {"phase": stable.phase[0], "velocity": stable.impact_velocity[0]}
+    motion = bouncing_ball.simulate(ball, amplitude=stable.amplitude, **start, impacts=40)
+    turns = motion.time.values[::2] / (4 * np.pi)
+    assert np.abs(turns - np.arange(20)).max() < 1e-10
+
+
 def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
     case = FOUND[-2]
     orbit = found_orbit(case)

@@ -62,6 +62,16 @@ def test_an_overdamped_contact_that_pulls_has_no_signature(refusal):
         Signature(SpringDamper(10.0, 1.5))(np.ones(1))
 
 
+def test_where_impacts_do_not_end_the_signature_is_refused_or_unknown(refusal):
+    """d = -p' c grows with the speed, until the contact holds the ball."""
+    signature = Signature(HuntCrossley(100.0, 0.2))
+    with refusal(ModelError, "a free impact of speed 1e+20 does not end"):
+        signature(np.array([1.0, 1e20]))
+    found = signature.where_known(np.array([1.0, 1e20, np.nan]))
+    assert np.isnan(found.delay).tolist() == [False, True, True]
+    assert found.restitution[0] == signature(1.0).restitution
+
+
 def test_an_overdamped_contact_that_does_not_pull_has_the_signature_of_its_roots():
     """p = (e^{at} - e^{bt})/(a - b) with the roots a and b, up to p″ = 0, where the force ends."""
     omega, zeta = 10.0, 1.5

@@ -19,6 +19,7 @@ All quantities are dimensionless; all functions broadcast.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -28,8 +29,7 @@ from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.numerics.elementary import sine_and_cosine
 
-# Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each iteration
-# multiplies the error by a factor a dt_c/dv, of the order of a D/v.
+# Steps of Newton's method for ψ = φ + t_c(v), for laws whose delay depends on the speed.
 _ITERATIONS = 30
 _SETTLED = 1e-15
 
@@ -50,7 +50,12 @@ class Hit(NamedTuple):
     instant: Instant
 
 
-def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival: ArrayLike) -> Hit:
+def impact(
+    signature: Callable[[np.ndarray], Instant],
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    arrival: ArrayLike,
+) -> Hit:
     """The impact at a phase ψ of the table, with the absolute velocity p before it.
 
     Examples
@@ -98,9 +103,13 @@ def meeting(
     lam, phi, z = (np.asarray(x, dtype=float) for x in (amplitude, phase, velocity))
     delay = signature(lam * sine_and_cosine(phi)[1] - z).delay
     for _ in range(0 if signature.is_constant else _ITERATIONS):
-        before = delay
-        delay = signature(lam * sine_and_cosine(phi + delay)[1] - (z - delay)).delay
-        if np.all((np.abs(delay - before) <= _SETTLED * delay) | np.isnan(delay)):
+        sine, cosine = sine_and_cosine(phi + delay)
+        instant = signature(lam * cosine - (z - delay))
+        # The speed changes by the load.
+        slope = 1 - instant.d_delay * (1 - lam * sine)
+        step = (instant.delay - delay) / slope
+        delay = delay + step
+        if np.all((np.abs(step) <= _SETTLED * delay) | np.isnan(delay)):
             break
     return phi + delay, z - delay
 

@@ -66,7 +66,7 @@ class CorrectedDynamics(Dynamics):
         """Impacts whose instants are at phases ψ, with the given relative velocity before them."""
         instant = reduce_angle(phase)
         arrival = velocity + table(instant, self.amplitude)[0]
-        hit = corrected_map.impact(self.law, self.amplitude, instant, arrival)
+        hit = corrected_map.impact(self.law.where_known, self.amplitude, instant, arrival)
         return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 
     def depart(
@@ -212,7 +212,7 @@ class CorrectedDynamics(Dynamics):
 
     def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """-t_c and -d(v t_c)/dv at v = -δ′: the ball is below the table by h = v t_c(v)."""
-        instant = self.law(-velocity)
+        instant = self.law.where_known(-velocity)
         return -instant.delay, instant.d_delay * velocity - instant.delay
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:

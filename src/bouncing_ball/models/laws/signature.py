@@ -83,10 +83,7 @@ def computed(law: ForceLaw, speed: ArrayLike) -> Instant:
     end = contacts(law, v, weight=0.0)
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
-        raise ModelError(
-            f"{law.name}: a free impact of speed {lost:.3g} does not end within a dozen "
-            "oscillations, because the law is adhesive or damped too strongly"
-        )
+        raise _unending(law.name, lost)
     by_speed = end.jacobian[..., 2, 1]
     by_load = end.jacobian[..., 2, 3]
     r = -end.rate / v
@@ -98,6 +95,13 @@ def computed(law: ForceLaw, speed: ArrayLike) -> Instant:
         load=load,
         duration=end.duration[()],
         d_restitution=(-by_speed - r) / v,
+    )
+
+
+def _unending(name: str, speed: float) -> ModelError:
+    return ModelError(
+        f"{name}: a free impact of speed {speed:.3g} does not end within a dozen oscillations, "
+        "because the law is adhesive or damped too strongly"
     )
 
 
@@ -117,14 +121,17 @@ def _panel(law: ForceLaw | type[ForceLaw], number: int, width: float) -> np.ndar
     """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4).
 
     Of a law, panels divide ln v; of a kind of laws, they divide the logarithm of the group, and the
-    numbers are in units of the scales.
+    numbers are in units of the scales. They are NaN if an impact of the panel does not end.
     """
     x = np.polynomial.chebyshev.chebpts1(_NODES)
     at = np.exp((number + (x + 1) / 2) * width)
-    if isinstance(law, type):
-        instant = computed(law.of_scales(at, 1.0, 1.0), 1.0)
-    else:
-        instant = computed(law, at)
+    try:
+        if isinstance(law, type):
+            instant = computed(law.of_scales(at, 1.0, 1.0), 1.0)
+        else:
+            instant = computed(law, at)
+    except ModelError:
+        return np.full((_NODES, 4), np.nan)
     return np.polynomial.chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
 
 
@@ -230,6 +237,25 @@ class Signature(Batch):
         """The signature at speeds v > 0 of the continued flight at the instant.
 
         Its fields have the shape to which the speeds and the law broadcast.
+
+        Raises
+        ------
+        ModelError
+            If an impact at one of the speeds, or near it, does not end.
+        """
+        found = self.where_known(speed)
+        if self.is_constant:
+            return found
+        v = np.broadcast_to(np.asarray(speed, dtype=float), np.shape(found.delay))
+        lost = np.isnan(found.delay) & ~np.isnan(v)
+        if lost.any():
+            raise _unending(self.law.name, v[lost][0])
+        return found
+
+    def where_known(self, speed: ArrayLike) -> Instant:
+        """The signature at the speeds at which impacts end, NaN at others.
+
+        Newton's method for orbits tries speeds that no ball has.
         """
         v = np.asarray(speed, dtype=float)
         if self._known is not None:

@@ -121,7 +121,11 @@ class RestitutionDynamics(Dynamics):
         return self.rebound(np.maximum(-impact.velocity, _SLOW))
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
+        """The flight after each impact, or the rest on the table after chattering.
+
+        The impact turns δ′ into -r δ′, with δ′ = z′ - w′. In the paper, in metres and seconds, this
+        is ẏ⁺ - ẇ = -r (ẏ⁻ - ẇ) (Eq. 2).
+        """
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
         level = self.table_at(impact)

@@ -2,7 +2,8 @@
 
 :mod:`.claims.as_printed` has the formulas as the paper prints them, in its order, as far
 as they are checked. The library computes with its equations in these functions and classes of
-``bouncing_ball``, and :mod:`.claims.formulas_in_use` compares each of them with the printed form:
+``bouncing_ball``. The docstring of each shows the equation as the paper writes it, and what its
+symbols are in the code. :mod:`.claims.formulas_in_use` compares each with the printed form:
 
 ======= ========================= ==================================================================
 Eqs.    what                      where
@@ -13,10 +14,11 @@ Eqs.    what                      where
 6       phase of the n-T orbit    ``periodic.one_impact.restitution_branch.phase``
 7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
 8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
-9       rest on the table         ``models.setting.lift_off_phase``
-..      its largest Λ, Λ_CR       ``models.permanent_contact.RESTITUTION_THRESHOLD``
+9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
+..      where a ball lifts off    ``models.setting.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``
+..      with its A and B          ``models.linear_contact.ClosedFormMotion``
 14, 15  flight after it           ``periodic.orbits.orbit.Orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
@@ -45,10 +47,9 @@ the threshold that follows from them (Eqs. 32 and 33). The row of these equation
 printed form of the last one. Eqs. 18 and 20 are conditions, which n-T orbits meet because they have
 one impact in n periods; the function is that of Eq. 19. Eq. 8 is the period doubling of Holmes'
 map: its function gives it for that map, and by default that of the exact return map. The release
-(Eq. 23) is searched on the motion of Eq. 12 as the class ``ClosedFormMotion`` of the linear contact
-writes it.
+(Eq. 23) is searched on the motion of Eq. 12 with its A and B.
 
-Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
+Eqs. 1-3 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
 Eqs. 21-26, are written out where they are in the unknowns of the paper. The paper solves them by
 continuation; at a given duration of the contact they are linear, so that the library also has
 their solutions in closed form. The force release, at which the contact force vanishes, is a variant

@@ -234,7 +234,14 @@ def bounce_velocity(impact_velocity, n, duration):
 
 
 def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
-    """Eq. 31: relative displacement in permanent contact, with τ + φ as the time.
+    """Eq. 31: relative displacement in permanent contact, with τ + φ as the time::
+
+        δ = z - w                                                                  (28)
+        δ″ + 2ζϖ δ′ + ϖ² δ = -1 - w″                                               (29)
+        δ = -1/ϖ² + χ₁Λ sin(τ + φ) + χ₂Λ cos(τ + φ)                                (30)
+        δ = -1/ϖ² + Λ/γ [(ϖ² - 1) sin(τ + φ) - 2ζϖ cos(τ + φ)]                     (31)
+
+    with χ₁ = (ϖ² - 1)/γ, χ₂ = -2ζϖ/γ and γ = (ϖ² - 1)² + (2ζϖ)².
 
     Examples
     --------

@@ -105,7 +105,7 @@ class Claim:
     decide : callable
         A function of the datasets that returns a
         :class:`~bouncing_ball.paper.claims.verdict.Finding`, or a mapping of findings by reading;
-        with ``printed``, it returns numbers instead.
+        with ``printed``, it may return the number instead.
     printed : str
         The number with the digits that the paper prints; empty if the claim is not a number.
     condition, remark : str
@@ -149,9 +149,12 @@ class Claim:
             found = _answer(self.id, self.decide, data)
         except NotAsked as reason:
             return Finding(np.nan, Verdict.NOT_ASKED, self.printed), str(reason)
-        if self.printed:
-            found = against_print(found, self.printed)
-        readings = {"": found} if isinstance(found, Finding) else found
+        if isinstance(found, Finding):
+            readings = {"": found}
+        elif self.printed:
+            readings = {"": against_print(found, self.printed)}
+        else:
+            readings = found
         first, *others = readings.values()
         if all(other.verdict is first.verdict for other in others):
             if self.definition and first.verdict is Verdict.REPRODUCED:

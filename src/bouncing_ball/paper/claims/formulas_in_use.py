@@ -26,6 +26,7 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as rigid
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.restitution_branch import ImpactMap
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
@@ -71,6 +72,22 @@ def largest_defect(*defects) -> float:
     """
     moduli = [np.abs(x) for x in defects]
     return float(np.max([np.max(x) if np.size(x) else np.nan for x in moduli]))
+
+
+def random_orbits(rng: np.random.Generator, samples: int) -> tuple[Orbit, np.ndarray]:
+    """Stable n-T orbits of random contacts, at random Λ somewhat above their saddle-nodes.
+
+    There are at most ``samples``, because a compliant contact with strong damping may have no
+    saddle-node.
+    """
+    omega = np.exp(rng.uniform(0.7, 5, samples))
+    zeta = rng.uniform(0.01, 0.5, samples)
+    n = rng.integers(1, 4, samples)
+    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n).amplitude
+    there = np.isfinite(fold)
+    lam = fold[there] + rng.uniform(0.05, 0.5, np.sum(there))
+    model = ContactModel(SpringDamper(omega[there], zeta[there]))
+    return n_t.orbit(model, n[there], lam), lam
 
 
 def forms_in_use(rng: np.random.Generator, samples: int) -> Mapping[str, InUse]:
@@ -194,21 +211,11 @@ def _contact(rng, samples) -> Rows:
 
 def _contact_orbits(rng, samples) -> Rows:
     """Eqs. 12 to 15 and 17 to 27: the n-T orbits of the spring-damper model."""
-    omega = np.exp(rng.uniform(0.7, 5, samples))
-    zeta = rng.uniform(0.01, 0.5, samples)
-    n = rng.integers(1, 4, samples)
-    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n)
-    # A compliant contact with strong damping may have no saddle-node, or no period doubling.
-    there = np.isfinite(fold.amplitude)
-    omega = omega[there]
-    zeta = zeta[there]
-    n = n[there]
-    contact = SpringDamper(omega, zeta)
-    model = ContactModel(contact)
-    node = n_t.saddle_node(model, n)
-    doubling = n_t.period_doubling(model, n)
-    lam = node.amplitude + rng.uniform(0.05, 0.5, n.size)
-    orbit = n_t.orbit(model, n, lam)
+    orbit, lam = random_orbits(rng, samples)
+    contact = orbit.law
+    omega = contact.frequency_ratio
+    zeta = contact.damping_ratio
+    n = orbit.n
     phase = orbit.phase
     impact = orbit.impact_velocity
     end = orbit.contact_duration
@@ -222,7 +229,7 @@ def _contact_orbits(rng, samples) -> Rows:
     rise, rate, *_ = contact.flow(time, 0.0, closing, phase, lam)
     flow = held(time) - (rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time))
 
-    dynamics = model.dynamics(lam)
+    dynamics = orbit.model.dynamics(lam)
     ended = dynamics.depart(dynamics.start(phase, closing)).duration
     height, _ = held(end)
     level = lam * np.sin(phase + end)
@@ -234,7 +241,10 @@ def _contact_orbits(rng, samples) -> Rows:
     )
     equations = PaperUnknowns.of(orbit)
     point = equations.point(orbit)
+    node = n_t.saddle_node(orbit.model, n)
     node_test = Bifurcation.SADDLE_NODE.test(*node.trace_and_determinant())
+    # Some of these contacts have no period doubling.
+    doubling = n_t.period_doubling(orbit.model, n)
     doubling_test = Bifurcation.PERIOD_DOUBLING.test(*doubling.trace_and_determinant())
     return {
         "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.claims.verdict import largest_number
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -197,9 +196,3 @@ def permanent_contact_error(data: Data) -> float:
     grid = np.log(error.frequency_ratio.values)
     where = np.log(PERMANENT_CONTACT)
     return float(np.interp(where, grid, error.values, left=np.nan, right=np.nan))
-
-
-def route_disagreement(data: Data) -> tuple[float, xr.DataArray]:
-    """The largest disagreement of continuation and formula, and its budget."""
-    both = data["witness"].sel(comparison="continuation and formula")
-    return largest_number(both.disagreement), both.budget

@@ -2,10 +2,9 @@
 
 These are Eqs. 2-8, 10-17, 19, 21 and 22, 27, 31 and 33-38. There are no functions of the others:
 Eqs. 1, 9, 28-30 and 32, and the conditions of Eqs. 18, 20 and 23-26, which say that two of these
-functions are equal. The functions are used only for the checks of
-:mod:`~bouncing_ball.paper.claims.formulas` and
-:mod:`~bouncing_ball.paper.claims.formulas_in_use`; no other result is computed from them. All
-quantities are dimensionless except those of Eq. 10, and the functions broadcast.
+functions are equal. Only the claims use these functions, to check them and to compare other results
+with them; the figures and Table 1 are computed by the library. All quantities are dimensionless
+except those of Eq. 10, and the functions broadcast.
 """
 
 import numpy as np

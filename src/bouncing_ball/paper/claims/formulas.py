@@ -27,6 +27,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import (
     InUse,
+    corrected_period_doubling,
     forms_in_use,
     largest_defect,
     random_orbits,
@@ -143,7 +144,7 @@ def _restitution_orbits(rng, r) -> Checks:
     at_fold = Orbit.of(model, n, fold, 0.0 * r).trace_and_determinant()
 
     doubling = printed.period_doubling(n, r)
-    corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
+    corrected = corrected_period_doubling(n, r)
     turned = np.arccos(along / corrected)
     at_doubling = Orbit.of(model, n, corrected, turned).trace_and_determinant()
     # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.

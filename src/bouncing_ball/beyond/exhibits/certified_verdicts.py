@@ -14,9 +14,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.claims.claim import Claim, Data
+from bouncing_ball.paper.claims.claim import Claim
 from bouncing_ball.paper.claims.claims import CLAIMS, judged_claims
-from bouncing_ball.paper.claims.parameters import Digests
+from bouncing_ball.paper.claims.parameters import Data, Digests
 from bouncing_ball.paper.claims.verdict import (
     Finding,
     Verdict,

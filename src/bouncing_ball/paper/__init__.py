@@ -1,7 +1,23 @@
 """The replication: each figure and table (:mod:`.exhibits`), and each claim (:mod:`.claims`).
 
-:mod:`.claims.as_printed` has the formulas as the paper prints them, in its order, as far
-as they are checked. The library computes with its equations in these functions and classes of
+Less than half of the lines here show how each figure, number and verdict comes about. They are an
+afternoon of reading, some four hours at ten lines a minute:
+
+1. two hours for the figures and Table 1: the table in :mod:`.exhibits` leads to the module of each.
+   :mod:`.exhibits.restitution_model` is the easiest, :mod:`.exhibits.continuation_of_orbits` the
+   longest;
+2. half an hour for the formulas, beside the paper: :mod:`.claims.as_printed` has them in its order;
+3. an hour and a half for the claims, in the order of the paper: :mod:`.claims.impact_models`,
+   :mod:`.claims.periodic_orbits` and :mod:`.claims.both_models`, and the numbers that decide them,
+   :mod:`.claims.evidence`. One can also look them up, starting from ``figures/claims.md``.
+
+The rest need not be read. In :mod:`.exhibits`, the modules ``…_figures`` draw datasets and compute
+nothing, and ``orbit_parameters`` refuses parameters for which there is no orbit. In :mod:`.claims`,
+``claim``, ``claims``, ``parameters``, ``verdict`` and ``tables`` decide, count and list the claims,
+and ``formulas``, ``formulas_in_use``, ``witness`` and ``forensics`` compute formulas, orbits and
+Table 1 once more, for those who doubt a number in the tables with these names in ``figures``.
+
+The library computes with the equations of the paper in the following functions and classes of
 ``bouncing_ball``. The docstring of each shows the equation as the paper writes it, and what its
 symbols are in the code. :mod:`.claims.formulas_in_use` compares each with the printed form:
 

@@ -94,7 +94,8 @@ class RestitutionDynamics(Dynamics):
 
     Examples
     --------
-    The map satisfies both lines of Eq. 5. Here the first impact, at τ₀ = 0.3, turns δ′ = -2 into 1:
+    The map satisfies both lines of Eq. 5, shown at the top of this module. The first impact, at
+    τ₀ = 0.3, turns δ′ = -2 into 1:
 
     >>> r, amplitude, start = 0.5, 1.2, 0.3
     >>> v = 1 + amplitude * np.cos(start)

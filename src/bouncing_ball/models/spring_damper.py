@@ -89,7 +89,7 @@ class SpringDamper(OscillatorLaw):
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The force over the weight, ϖ² p + 2ζϖ p′; without p′ < 0 if the damper acts on approach.
 
-        The penetration is p = w - z. With it the paper's ball in contact obeys ::
+        The penetration is p = w - z, and z″ = f - 1 with this force f. In the paper ::
 
             m ÿ + c (ẏ - ẇ) + k (y - w) = -m g              (10)
             z″ + 2ζϖ (z′ - w′) + ϖ² (z - w) = -1            (11)

@@ -18,8 +18,9 @@ and ``formulas``, ``formulas_in_use``, ``witness`` and ``forensics`` compute for
 Table 1 once more, for those who doubt a number in the tables with these names in ``figures``.
 
 The library computes with the equations of the paper in the following functions and classes of
-``bouncing_ball``. The docstring of each shows the equation as the paper writes it, and what its
-symbols are in the code. :mod:`.claims.formulas_in_use` compares each with the printed form:
+``bouncing_ball``. The docstring of each, or of its module, shows the equation as the paper writes
+it and what its symbols are in the code. :mod:`.claims.formulas_in_use` compares each with the
+printed form:
 
 ======= ========================= ==================================================================
 Eqs.    what                      where

@@ -15,12 +15,14 @@ import bouncing_ball.paper.exhibits
 ROWS = re.findall(r"^([\d, -]+|\.\.) +\S.*``([\w.]+)``.*$", bouncing_ball.paper.__doc__, flags=re.M)
 
 
+def numbers(text):
+    """The numbers of equations in the first column of a row."""
+    parts = [part.partition("-") for part in text.strip(". ").split(",") if part]
+    return [k for low, _, high in parts for k in range(int(low), int(high or low) + 1)]
+
+
 def test_the_index_of_equations_has_each_equation_once():
-    parts = [
-        part.partition("-") for text, _ in ROWS for part in text.strip(". ").split(",") if part
-    ]
-    numbers = [k for low, _, high in parts for k in range(int(low), int(high or low) + 1)]
-    assert sorted(numbers) == list(range(1, 39))
+    assert sorted(k for text, _ in ROWS for k in numbers(text)) == list(range(1, 39))
 
 
 @pytest.mark.parametrize("place", [place for _, place in ROWS])
@@ -33,6 +35,19 @@ def test_what_each_place_of_the_index_of_equations_names_is_written_there(place)
     # A function or a class knows its module; a number does not.
     module = there.__module__ if isinstance(there, type) else there.__name__
     assert getattr(found, "__module__", module) == module
+
+
+def test_each_equation_is_shown_where_the_index_leads():
+    shown: dict[str, str] = {}
+    of = ""
+    for text, place in ROWS:
+        # A row without equations belongs to the one before.
+        of = text.strip(". ") or of
+        shown[of] = shown.get(of, "") + resolve_name(f"bouncing_ball.{place}").__doc__
+    for of, docstrings in shown.items():
+        for k in numbers(of):
+            # As (7) beside the equation, or as Eq. 7 in a sentence.
+            assert re.search(rf"\({k}\)|Eqs?\. [\d, -]*\b{k}\b", docstrings), k
 
 
 def test_each_module_of_the_index_of_figures_exists():

@@ -172,6 +172,15 @@ def relative_errors(
 ) -> np.ndarray:
     """The paper's errors of simple models (:func:`paper_error`), shape (model, quantity, ...).
 
+    In the paper, with the spring-damper model (SD) as the exact and the restitution model (CR) as
+    the simple one::
+
+        |max z_SD - max z_CR| / max z_CR = 0.01   at ϖ_h,1%      (37)
+        |Λ_SD - Λ_CR| / Λ_CR = 0.01               at ϖ_PC,1%     (38)
+
+    Here the left sides have a sign, and they are those of ``max_height`` and ``permanent_contact``
+    among the quantities.
+
     Parameters
     ----------
     exact : Model

@@ -155,6 +155,9 @@ def search(
 ) -> Search:
     """Thresholds and zeros of the errors of simple models, for linear contacts.
 
+    The thresholds of the paper are ϖ_h,1% and ϖ_PC,1%, the ϖ at which the errors of the greatest
+    height (Eq. 37) and of Λ_CR (Eq. 38) are 0.01.
+
     Parameters
     ----------
     zeta, n, amplitude : array_like

@@ -126,7 +126,11 @@ class ContactsAndFlights(Batch, ABC):
         return None
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """First impacts, which start at phases φ with δ′ at the table's level (Eqs. 21, 22)."""
+        """First impacts, which start at phases φ with δ′ at the table's level.
+
+        In the paper they start at τ_i = 0 with z = Λ sin φ (Eq. 21) and z′ = z′_i (Eq. 22), that is
+        with δ = 0 and δ′ = z′_i - Λ cos φ.
+        """
         return self.with_table(Impact.at_level(phase, velocity))
 
     def with_table(self, impact: Impact) -> Impact:

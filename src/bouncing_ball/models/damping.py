@@ -300,10 +300,11 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Restitution coefficient of a free linear contact.
 
-    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`. For the
-    force release r is greater, because the contact ends before its force pulls the ball. If the
-    damper acts on approach only, ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that. Both also
-    rebound from an overdamped contact, whose ζ = cosh β: ``r = exp(-2ζβ/sinh β)``, and its root.
+    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`, with α = 0 for the
+    displacement release of Eq. 16. For the force release r is greater, because the contact ends
+    before its force pulls the ball. If the damper acts on approach only,
+    ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that. Both also rebound from an overdamped
+    contact, whose ζ = cosh β: ``r = exp(-2ζβ/sinh β)``, and its root.
 
     Parameters
     ----------

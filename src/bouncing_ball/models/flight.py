@@ -73,6 +73,15 @@ class Above(NamedTuple):
 class Flight(Motion):
     """The motion y = -δ of balls in flight; its first upward zero is the landing.
 
+    In the paper, a flight since τ₀ is ::
+
+        z′ = -(τ - τ₀) + z′₀                                (4)
+        z  = -(τ - τ₀)²/2 + (τ - τ₀) z′₀ + z₀
+
+    Eq. 1 is the same in metres and seconds, with g, and Eq. 3 the first line at the next impact.
+    Here s = τ - τ₀, δ = z - w and v = z′₀ - w′₀ with the table's w = Λ sin τ: the ball has landed
+    where δ = 0.
+
     Parameters
     ----------
     displacement, velocity : array

@@ -118,6 +118,13 @@ class ContactMotion(Motion):
 class ClosedFormMotion(ContactMotion):
     """The motion y away from the resonance, as the sum of the transient and the steady part: δ of
     Eq. 12 with its constants A and B, and for the force release δ + κ δ′.
+
+    For δ the steady part is that of Eq. 12 less the table, with β and χ - 1 = (ϖ² - 1)/γ::
+
+        δ = z - Λ sin(s + φ) = e^{-ζϖs} (A cos ϖ_d s + B sin ϖ_d s) - 1/ϖ² + C sin s + D cos s
+        C sin s + D cos s = βΛ cos(s + φ) + (χ - 1)Λ sin(s + φ)
+
+    A, B, C and D are ``a``, ``b``, ``sine`` and ``cosine``.
     """
 
     def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
@@ -244,7 +251,9 @@ class LinearContactDynamics(ResumingDynamics):
     ) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end.
 
-        With ``near`` it is the end near this duration, also beyond an earlier end.
+        It is the first τ_b > 0 with z(τ_b) = Λ sin(τ_b + φ), that is δ = 0 (Eq. 23), and for the
+        force release with δ + κ δ′ = 0. With ``near`` it is the end near this duration, also beyond
+        an earlier end.
         """
         motion = self._motion(impact)
         if near is not None:

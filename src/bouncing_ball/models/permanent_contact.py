@@ -4,13 +4,9 @@ A ball that rests on the table of the restitution model stays there as long as t
 acceleration does not exceed gravity, up to ``Λ_CR = 1`` (Eq. 9).
 
 In the spring-damper model, the displacement δ of a ball that never leaves oscillates about -1/ϖ²
-(Eq. 31). It stays below zero, where the contact would end, up to ::
-
-    Λ_SD = √γ/ϖ² = √(1 + (4ζ² - 2)/ϖ² + 1/ϖ⁴),     γ = (ϖ² - 1)² + (2ζϖ)²     (Eq. 33)
-
-For ζ < 1/√2, Λ_SD falls with ϖ from ∞ to its minimum 2ζ√(1 - ζ²) (Eq. 36) and then rises to 1.
-Each threshold between the minimum and 1 therefore belongs to two frequency ratios, ϖ₋ and ϖ₊
-(Eqs. 34-35).
+(Eq. 31). It stays below zero, where the contact would end, up to Λ_SD (Eqs. 32-33). For ζ < 1/√2,
+Λ_SD falls with ϖ from ∞ to its minimum 2ζ√(1 - ζ²) (Eq. 36) and then rises to 1. Each threshold
+between the minimum and 1 therefore belongs to two frequency ratios, ϖ₋ and ϖ₊ (Eqs. 34-35).
 
 With the force release, a contact ends where δ + κ δ′ = 0, and δ + κ δ′ oscillates instead of δ. The
 threshold is then ``Λ_F = Λ_SD/√(1 + κ²)``, which is not in the paper.
@@ -27,13 +23,21 @@ from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release, check_damping, check_positive
 
 RESTITUTION_THRESHOLD = 1.0
-"""Λ_CR, at which the greatest acceleration of the table equals that of gravity (Eq. 9)."""
+"""Λ_CR. A ball at rest stays on the table if ``|w″| = |Λ sin τ| ≤ 1`` at all times, that is for
+Λ ≤ 1 (Eq. 9)."""
 
 
 def permanent_contact_threshold(
     frequency_ratio: ArrayLike, damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> np.ndarray:
-    """Largest Λ of permanent contact: Λ_SD(ϖ) (Eq. 33) or, with the force release, Λ_F(ϖ).
+    """Largest Λ of permanent contact: Λ_SD(ϖ) or, with the force release, Λ_F(ϖ).
+
+    In the paper, the steady motion stays below the table's level if ::
+
+        -1/ϖ² + Λ/√γ ≤ 0,   γ = (ϖ² - 1)² + (2ζϖ)²          (32)
+        Λ ≤ Λ_SD = √γ/ϖ² = √(1 + (4ζ² - 2)/ϖ² + 1/ϖ⁴)       (33)
+
+    The code has γ/ϖ⁴ as (1 - 1/ϖ²)² + (2ζ/ϖ)², which loses no digits near ϖ = 1.
 
     Raises
     ------

@@ -93,7 +93,8 @@ class RestitutionDynamics(Dynamics):
 
     Examples
     --------
-    The map satisfies both lines of Eq. 5. Here the first impact, at τ₀ = 0.3, turns δ′ = -2 into 1:
+    The map satisfies both lines of Eq. 5, shown at the top of this module. The first impact, at
+    τ₀ = 0.3, turns δ′ = -2 into 1:
 
     >>> r, amplitude, start = 0.5, 1.2, 0.3
     >>> v = 1 + amplitude * np.cos(start)
@@ -122,7 +123,10 @@ class RestitutionDynamics(Dynamics):
     def depart(
         self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
     ) -> Departure:
-        """The flight after each impact (Eq. 2), or the rest on the table after chattering.
+        """The flight after each impact, or the rest on the table after chattering.
+
+        The impact turns δ′ into -r δ′, with δ′ = z′ - w′. In the paper, in metres and seconds, this
+        is ẏ⁺ - ẇ = -r (ẏ⁻ - ẇ) (Eq. 2).
 
         With ``near`` it is the rest where this duration is positive, and the flight elsewhere. The
         bounces before the rest are left out then, also if they would last beyond the lift-off

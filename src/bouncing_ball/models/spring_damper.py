@@ -89,6 +89,11 @@ class SpringDamper(OscillatorLaw):
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The force over the weight, ϖ² p + 2ζϖ p′; without p′ < 0 if the damper acts on approach.
 
+        The penetration is p = w - z, and z″ = f - 1 with this force f. In the paper ::
+
+            m ÿ + c (ẏ - ẇ) + k (y - w) = -m g              (10)
+            z″ + 2ζϖ (z′ - w′) + ϖ² (z - w) = -1            (11)
+
         Examples
         --------
         >>> [float(SpringDamper(2.0, 0.25, rule).force(1.0, -3.0)) for rule in Release]
@@ -324,7 +329,17 @@ class SpringDamper(OscillatorLaw):
     ) -> ContactFlow:
         """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
 
-        If the damper acts on approach only, this is the motion up to the greatest penetration.
+        If the damper acts on approach only, this is the motion up to the greatest penetration. The
+        paper has the absolute height, from the start of the contact at τ = 0, and Eq. 13 is its
+        derivative::
+
+            z = e^{-ζϖτ} (A cos ϖ_d τ + B sin ϖ_d τ) - 1/ϖ² + βΛ cos(τ + φ) + χΛ sin(τ + φ)    (12)
+            ϖ_d = ϖ √(1 - ζ²),                    γ = (ϖ² - 1)² + (2ζϖ)²
+            χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ,          β = -2ζϖ/γ
+
+        Here τ = s and δ = z - Λ sin(s + φ); δ₀ and δ′₀ at s = 0 determine A and B, which do not
+        appear (:mod:`bouncing_ball.models.linear_flow`). The class ``ClosedFormMotion`` in
+        :mod:`bouncing_ball.models.linear_contact` has them.
 
         Parameters
         ----------

@@ -1,8 +1,26 @@
 """The replication: each figure and table (:mod:`.exhibits`), and each claim (:mod:`.claims`).
 
-:mod:`.claims.as_printed` has the formulas as the paper prints them, in its order, as far
-as they are checked. The library computes with its equations in these functions and classes of
-``bouncing_ball``, and :mod:`.claims.formulas_in_use` compares each of them with the printed form:
+Less than half of the lines here show how each figure, number and verdict comes about. They are an
+afternoon of reading, some four hours at ten lines a minute:
+
+1. two hours for the figures and Table 1: the table in :mod:`.exhibits` leads to the module of each.
+   :mod:`.exhibits.restitution_model` is the easiest, :mod:`.exhibits.continuation_of_orbits` the
+   longest;
+2. half an hour for the formulas, beside the paper: :mod:`.claims.as_printed` has them in its order;
+3. an hour and a half for the claims, in the order of the paper: :mod:`.claims.impact_models`,
+   :mod:`.claims.periodic_orbits` and :mod:`.claims.both_models`, and the numbers that decide them,
+   :mod:`.claims.evidence`. One can also look them up, starting from ``figures/claims.md``.
+
+The rest need not be read. In :mod:`.exhibits`, the modules ``…_figures`` draw datasets and compute
+nothing, and ``orbit_parameters`` refuses parameters for which there is no orbit. In :mod:`.claims`,
+``claim``, ``claims``, ``parameters``, ``verdict`` and ``tables`` decide, count and list the claims,
+and ``formulas``, ``formulas_in_use``, ``witness`` and ``forensics`` compute formulas, orbits and
+Table 1 once more, for those who doubt a number in the tables with these names in ``figures``.
+
+The library computes with the equations of the paper in the following functions and classes of
+``bouncing_ball``. The docstring of each, or of its module, shows the equation as the paper writes
+it and what its symbols are in the code. :mod:`.claims.formulas_in_use` compares each with the
+printed form:
 
 ======= ========================= ==================================================================
 Eqs.    what                      where
@@ -13,10 +31,11 @@ Eqs.    what                      where
 6       phase of the n-T orbit    ``periodic.one_impact.restitution_branch.phase``
 7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
 8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
-9       rest on the table         ``models.setting.lift_off_phase``
-..      its largest Λ, Λ_CR       ``models.permanent_contact.RESTITUTION_THRESHOLD``
+9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
+..      where a ball lifts off    ``models.setting.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``
+..      with its A and B          ``models.linear_contact.ClosedFormMotion``
 14, 15  flight after it           ``periodic.orbits.orbit.Orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
@@ -44,10 +63,9 @@ the threshold that follows from them (Eqs. 32 and 33). The row of these equation
 printed form of the last one. Eqs. 18 and 20 are conditions, which n-T orbits meet because they have
 one impact in n periods; the function is that of Eq. 19. Eq. 8 is the period doubling of Holmes'
 map: its function gives it for that map, and by default that of the exact return map. The release
-(Eq. 23) is searched on the motion of Eq. 12 as the class ``ClosedFormMotion`` of the linear contact
-writes it.
+(Eq. 23) is searched on the motion of Eq. 12 with its A and B.
 
-Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
+Eqs. 1-3 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
 Eqs. 21-26, are written out where they are in the unknowns of the paper. The paper solves them by
 continuation; at a given duration of the contact they are linear, so that the library also has
 their solutions in closed form. The force release, at which the contact force vanishes, is a variant

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.claims import parameters
 from bouncing_ball.paper.claims.claim import Claim, claim, formula
 from bouncing_ball.paper.claims.claims import judged_claims, tally
 from bouncing_ball.paper.claims.parameters import NotAsked, PaperData, digest, of_dataset
@@ -63,11 +62,8 @@ PARAMETERS = {
 NAMES = ("n", "cases", "span", "tolerances")
 
 
-@pytest.fixture(autouse=True)
-def papers(monkeypatch):
-    """The digest of the parameters of the small dataset."""
-    digests = {"fig": (digest(of_dataset(PARAMETERS, NAMES)), *NAMES)}
-    monkeypatch.setattr(parameters, "PAPER", digests)
+# The digest of the parameters of the small dataset.
+DIGESTS = {"fig": (digest(of_dataset(PARAMETERS, NAMES)), *NAMES)}
 
 
 @pytest.fixture
@@ -82,8 +78,13 @@ def data():
     return {"fig": fig, "formulas": rows.assign_coords(formula=["Eq. 1"])}
 
 
+def judged(claims, data):
+    """The verdicts on claims that require the parameters of the small dataset."""
+    return judged_claims(claims, data, DIGESTS)
+
+
 def row(claim: Claim, data):
-    result = judged_claims([claim], data).isel(claim=0)
+    result = judged([claim], data).isel(claim=0)
     return {name: values.item() for name, values in result.data_vars.items() if not values.dims}
 
 
@@ -109,7 +110,7 @@ def test_a_printed_number_is_judged_by_its_last_digit(data):
 
 
 def test_a_statement_that_fails_is_explained_by_checks_that_hold(data):
-    result = judged_claims([rising], data)
+    result = judged([rising], data)
     found = row(rising, data)
     assert (found["verdict"], found["found"], found["required"]) == ("contradicted", -0.25, "> 0")
     assert found["condition"] == "it rises everywhere"
@@ -142,7 +143,7 @@ def test_a_definition_is_checked_and_not_counted_as_reproduced(data):
     assert row(rising, data)["verdict"] == "reproduced"
     found = row(sure, data)
     assert (found["verdict"], found["found"], found["explained"]) == ("definition", 0.25, True)
-    assert tally(judged_claims([sure], data)) == "1 statements: 1 definition"
+    assert tally(judged([sure], data)) == "1 statements: 1 definition"
 
 
 def test_each_claim_is_counted_in_its_group(data):
@@ -181,11 +182,11 @@ def test_with_other_parameters_a_claim_is_not_asked(data, change):
     assert said in found["reason"]
     assert (found["verdict"], found["explained"]) == ("not asked", True)
     assert np.isnan([found["found"], found["limit"]]).all()
-    result = judged_claims([rising], data)
+    result = judged([rising], data)
     assert not result.explanation_holds.item()
     assert result.explanation_checks.item() == found["reason"]
     with pytest.raises(NotAsked):
-        PaperData(data)["fig"]
+        PaperData(data, DIGESTS)["fig"]
 
 
 def test_a_parameter_that_is_missing_is_another_one(data):
@@ -211,7 +212,7 @@ def test_the_paper_parameters_are_no_more_than_required(data):
 def test_what_is_missing_is_an_error_in_one_line(data, change, said, one_line):
     change(data)
     with pytest.raises(ModelError) as error:
-        judged_claims([rising], data)
+        judged([rising], data)
     one_line(error, said)
     assert str(error.value).startswith(("'rises': ", "'it turns': "))
 
@@ -220,9 +221,9 @@ def test_the_tally_counts_verdicts_by_group_without_restatements(data):
     some = [rising, two_readings, height_threshold, right]
     formulas = "1 formulas: 1 reproduced"
     lines = [formulas, "1 printed numbers: 1 reproduced", "1 statements: 1 contradicted"]
-    assert tally(judged_claims(some, data)).splitlines() == lines
+    assert tally(judged(some, data)).splitlines() == lines
     data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
-    assert tally(judged_claims(some, data)).endswith(", 1 without explanation")
+    assert tally(judged(some, data)).endswith(", 1 without explanation")
     data["fig"].attrs["n"] = 2
     of_figure = ["1 printed numbers: 1 not asked", "1 statements: 1 not asked"]
-    assert tally(judged_claims(some, data)).splitlines() == [formulas, *of_figure]
+    assert tally(judged(some, data)).splitlines() == [formulas, *of_figure]

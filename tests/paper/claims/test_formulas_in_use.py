@@ -218,7 +218,12 @@ def test_a_wrong_edit_shows_in_the_row_of_its_formula(edit, copy, disagreeing, w
 def test_the_index_of_equations_names_the_functions_that_are_compared():
     index = {name for name in re.findall(r"``([\w.]+)``", paper.__doc__) if "." in name}
     used = {name for text in typed(formulas)(PARAMETERS).used.values for name in text.split(", ")}
-    assert index - {"paper.claims.as_printed.steady_displacement"} == used - {""}
+    # The first is a printed form itself; `LinearContactDynamics.depart` computes with the second.
+    apart = {
+        "paper.claims.as_printed.steady_displacement",
+        "models.linear_contact.ClosedFormMotion",
+    }
+    assert index - apart == used - {""}
 
 
 def test_every_row_with_a_form_in_use_has_a_wrong_edit():

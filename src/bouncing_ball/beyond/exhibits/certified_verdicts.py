@@ -1,12 +1,12 @@
 """The verdicts on the printed numbers of the paper, decided by certified intervals.
 
 The ledger of claims (:mod:`bouncing_ball.paper.claims`) compares printed numbers with numbers in
-double precision. Here the same verdict compares them with the intervals that are proved to contain
+double precision. Here the same verdicts compare them with the intervals that are proved to contain
 the exact numbers, so that a printed number is reproduced only if the whole interval rounds to it,
 and contradicted only if nothing in it does. A difference between both ledgers stops the run.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -14,10 +14,16 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.claims.claim import Claim, Data
+from bouncing_ball.paper.claims.claim import Claim
 from bouncing_ball.paper.claims.claims import CLAIMS, judged_claims
-from bouncing_ball.paper.claims.parameters import Digests
-from bouncing_ball.paper.claims.verdict import Verdict
+from bouncing_ball.paper.claims.parameters import Data, Digests
+from bouncing_ball.paper.claims.verdict import (
+    Finding,
+    Verdict,
+    against_print,
+    agreement,
+    decimals,
+)
 
 PARAMETERS: Digests = {
     "ext_proofs": ("6c52359c", "n", "restitution", "frequency_ratio", "thresholds", "apparent"),
@@ -49,11 +55,39 @@ def certified_interval(data: Data, claim: str) -> np.ndarray:
     return np.array([float(text), np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
 
 
+def interval_against_print(interval: Iterable[float], printed: str) -> Finding:
+    """The finding on a number with limits between which it certainly lies, shape (3,).
+
+    The verdict is the one that all numbers between the limits have, so that the printed number is
+    reproduced only if all of them round to it and contradicted only if none does; if they have
+    several verdicts, nothing is decided. Limits are compared exactly.
+
+    Raises
+    ------
+    ModelError
+        If the limits are infinite or do not contain the number.
+
+    Examples
+    --------
+    >>> [str(interval_against_print([82.4, 82.3, x], "82").verdict) for x in (82.5, 82.6)]
+    ['reproduced', 'not decided']
+    """
+    value, low, high = map(float, interval)
+    if not -np.inf < low <= value <= high < np.inf:
+        raise ModelError(f"{low} to {high} is no interval around {value}")
+    unit = Fraction(1, 10 ** decimals(printed))
+    least = (Fraction(low) - Fraction(printed)) / unit
+    most = (Fraction(high) - Fraction(printed)) / unit
+    nearest = max(least, -most, Fraction(0))
+    verdict = agreement(nearest, max(-least, most))
+    return replace(against_print(value, printed), verdict=verdict, low=low, high=high)
+
+
 def by_certificate(claim: Claim) -> Claim:
     """The claim of a printed number, decided by its certified interval."""
 
-    def decide(data: Data) -> np.ndarray:
-        return certified_interval(data, claim.id)
+    def decide(data: Data) -> Finding:
+        return interval_against_print(certified_interval(data, claim.id), claim.printed)
 
     return replace(claim, decide=decide, explanation=None)
 

@@ -15,5 +15,6 @@ Table 1 under other readings of the paper       :mod:`.forensics`
 =============================================== ==================================
 
 A claim is a function (:mod:`.claim`), :mod:`.claims` decides all of them, and :mod:`.tables` lists
-them.
+them. To read the claims, the first three rows are enough; the second computations, in the last four
+rows, stand each for itself.
 """

@@ -2,10 +2,9 @@
 
 These are Eqs. 2-8, 10-17, 19, 21 and 22, 27, 31 and 33-38. There are no functions of the others:
 Eqs. 1, 9, 28-30 and 32, and the conditions of Eqs. 18, 20 and 23-26, which say that two of these
-functions are equal. The functions are used only for the checks of
-:mod:`~bouncing_ball.paper.claims.formulas` and
-:mod:`~bouncing_ball.paper.claims.formulas_in_use`; no other result is computed from them. All
-quantities are dimensionless except those of Eq. 10, and the functions broadcast.
+functions are equal. Only the claims use these functions, to check them and to compare other results
+with them; the figures and Table 1 are computed by the library. All quantities are dimensionless
+except those of Eq. 10, and the functions broadcast.
 """
 
 import numpy as np
@@ -234,7 +233,14 @@ def bounce_velocity(impact_velocity, n, duration):
 
 
 def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
-    """Eq. 31: relative displacement in permanent contact, with τ + φ as the time.
+    """Eq. 31: relative displacement in permanent contact, with τ + φ as the time::
+
+        δ = z - w                                                                  (28)
+        δ″ + 2ζϖ δ′ + ϖ² δ = -1 - w″                                               (29)
+        δ = -1/ϖ² + χ₁Λ sin(τ + φ) + χ₂Λ cos(τ + φ)                                (30)
+        δ = -1/ϖ² + Λ/γ [(ϖ² - 1) sin(τ + φ) - 2ζϖ cos(τ + φ)]                     (31)
+
+    with χ₁ = (ϖ² - 1)/γ, χ₂ = -2ζϖ/γ and γ = (ϖ² - 1)² + (2ζϖ)².
 
     Examples
     --------

@@ -26,10 +26,9 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.claims.parameters import NotAsked, PaperData
+from bouncing_ball.paper.claims.parameters import Data, NotAsked, PaperData
 from bouncing_ball.paper.claims.verdict import Finding, Verdict, against_print, at_most
 
-Data = Mapping[str, Any]
 # An explanation of claims that are not reproduced is a function whose docstring is the text, and
 # which returns checks, all of which must hold.
 Explanation = Callable[[Data], Mapping[str, Finding]]
@@ -72,7 +71,7 @@ def name_of(function: Callable[..., Any]) -> str:
     return function.__name__.replace("_", " ")
 
 
-def checks_hold(explanation: Explanation, data: Data) -> tuple[bool, str]:
+def checks_hold(explanation: Explanation, data: PaperData) -> tuple[bool, str]:
     """Whether all checks of an explanation hold, and a text: the checks, or why none were made.
 
     Raises
@@ -81,7 +80,7 @@ def checks_hold(explanation: Explanation, data: Data) -> tuple[bool, str]:
         If a dataset, or a variable of it, is missing.
     """
     try:
-        found = _answer(name_of(explanation), explanation, PaperData(data))
+        found = _answer(name_of(explanation), explanation, data)
     except NotAsked as reason:
         return False, str(reason)
     said = (f"{name}: {one} (required {one.required})" for name, one in found.items())
@@ -105,7 +104,7 @@ class Claim:
     decide : callable
         A function of the datasets that returns a
         :class:`~bouncing_ball.paper.claims.verdict.Finding`, or a mapping of findings by reading;
-        with ``printed``, it returns numbers instead.
+        with ``printed``, it may return the number instead.
     printed : str
         The number with the digits that the paper prints; empty if the claim is not a number.
     condition, remark : str
@@ -149,9 +148,12 @@ class Claim:
             found = _answer(self.id, self.decide, data)
         except NotAsked as reason:
             return Finding(np.nan, Verdict.NOT_ASKED, self.printed), str(reason)
-        if self.printed:
-            found = against_print(found, self.printed)
-        readings = {"": found} if isinstance(found, Finding) else found
+        if isinstance(found, Finding):
+            readings = {"": found}
+        elif self.printed:
+            readings = {"": against_print(found, self.printed)}
+        else:
+            readings = found
         first, *others = readings.values()
         if all(other.verdict is first.verdict for other in others):
             if self.definition and first.verdict is Verdict.REPRODUCED:

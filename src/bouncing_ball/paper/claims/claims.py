@@ -1,7 +1,7 @@
 """The verdict on every claim of the paper, and the number of claims with each verdict."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -15,7 +15,7 @@ from bouncing_ball.paper.claims import (
     periodic_orbits,
 )
 from bouncing_ball.paper.claims.claim import Claim, checks_hold, defined_in, name_of, paragraphs
-from bouncing_ball.paper.claims.parameters import Digests, PaperData
+from bouncing_ball.paper.claims.parameters import PAPER, Data, Digests, PaperData
 from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
@@ -83,12 +83,10 @@ CLAIMS: tuple[Claim, ...] = tuple(claim for chapter in _CHAPTERS for claim in de
 
 def _row(
     claim: Claim,
-    data: Mapping[str, xr.Dataset],
+    asked: PaperData,
     holding: set[str],
-    required: Digests | None,
 ) -> dict[str, object]:
     """The entries of the dataset for one claim; ``holding`` names the explanations that hold."""
-    asked = PaperData(data, required)
     finding, reason = claim.verdict(asked)
     explained_by = name_of(claim.explanation) if claim.explanation else ""
     needs_none = finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED)
@@ -112,8 +110,8 @@ def _row(
 
 def judged_claims(
     claims: Sequence[Claim],
-    data: Mapping[str, xr.Dataset],
-    required: Digests | None = None,
+    data: Data,
+    required: Digests = PAPER,
 ) -> xr.Dataset:
     """The verdict on each claim, over ``claim``, and the explanations whose checks hold, over
     ``explanation``. A claim is not asked if a dataset that it reads has other parameters than
@@ -125,9 +123,9 @@ def judged_claims(
         If a dataset that decides a claim or an explanation, or a variable of it, is missing.
     """
     why = {name_of(one.explanation): one.explanation for one in claims if one.explanation}
-    checks = {name: checks_hold(explanation, data) for name, explanation in why.items()}
+    checks = {name: checks_hold(one, PaperData(data, required)) for name, one in why.items()}
     holding = {name for name, (holds, _) in checks.items() if holds}
-    rows = [_row(claim, data, holding, required) for claim in claims]
+    rows = [_row(claim, PaperData(data, required), holding) for claim in claims]
     return described(
         {
             **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
@@ -164,7 +162,7 @@ def numbers_beyond(decided: xr.Dataset, bounds: Sequence[float]) -> list[int]:
     return [int((units > bound).sum()) for bound in bounds]
 
 
-def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+def claims(data: Data) -> xr.Dataset:
     """The verdict on every claim of the paper, and the numbers that the article prints with them.
 
     Parameters

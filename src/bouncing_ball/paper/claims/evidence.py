@@ -3,17 +3,14 @@
 This module simulates and solves nothing.
 """
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.claims.verdict import largest_number
+from bouncing_ball.paper.claims.parameters import Data
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
-Data = Mapping[str, xr.Dataset]
 BOUNDS = tuple(map(str, Bifurcation))
 TOLERANCE = 0.01
 """The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
@@ -197,9 +194,3 @@ def permanent_contact_error(data: Data) -> float:
     grid = np.log(error.frequency_ratio.values)
     where = np.log(PERMANENT_CONTACT)
     return float(np.interp(where, grid, error.values, left=np.nan, right=np.nan))
-
-
-def route_disagreement(data: Data) -> tuple[float, xr.DataArray]:
-    """The largest disagreement of continuation and formula, and its budget."""
-    both = data["witness"].sel(comparison="continuation and formula")
-    return largest_number(both.disagreement), both.budget

@@ -18,7 +18,6 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
@@ -26,8 +25,13 @@ from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest_defect
-from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.paper.claims.formulas_in_use import (
+    InUse,
+    corrected_period_doubling,
+    forms_in_use,
+    largest_defect,
+    random_orbits,
+)
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -55,9 +59,6 @@ WEIGHTLESS = 1e16
 _COMPLIANT = 1e-4
 # The r and ϖ for Eq. 16 on a table at rest; the impact velocity is that of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
-# Rows about which the paper claims nothing: the definitions of r_a and of the error of a model,
-# with which the package computes, and ϖ inverted, which results if its letters mean the opposite.
-DEFINITIONS = ("Eq. 17", "Eqs. 37-38", "ϖ = Ω/ω, Ω of the table")
 # For each formula: the comparison, the disagreement, and the disagreement that rounding explains.
 Checks = dict[str, tuple[str, float, float]]
 
@@ -143,7 +144,7 @@ def _restitution_orbits(rng, r) -> Checks:
     at_fold = Orbit.of(model, n, fold, 0.0 * r).trace_and_determinant()
 
     doubling = printed.period_doubling(n, r)
-    corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
+    corrected = corrected_period_doubling(n, r)
     turned = np.arccos(along / corrected)
     at_doubling = Orbit.of(model, n, corrected, turned).trace_and_determinant()
     # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
@@ -211,15 +212,11 @@ def static_error() -> xr.DataArray:
 
 def contact_orbits(rng, samples) -> Checks:
     """Checks of the definition of ϖ, and of Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
-    omega = np.exp(rng.uniform(0.7, 5, samples))
-    zeta = rng.uniform(0.01, 0.5, samples)
-    n = rng.integers(1, 4, samples)
-    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n).amplitude
-    # A compliant contact with strong damping may have no saddle-node.
-    omega, zeta, n, fold = (values[np.isfinite(fold)] for values in (omega, zeta, n, fold))
-    contact = SpringDamper(omega, zeta)
-    lam = fold + rng.uniform(0.05, 0.5, fold.size)
-    orbit = n_t.orbit(ContactModel(contact), n, lam)
+    orbit, lam = random_orbits(rng, samples)
+    contact = orbit.law
+    omega = contact.frequency_ratio
+    zeta = contact.damping_ratio
+    n = orbit.n
     phase = orbit.phase
     impact = orbit.impact_velocity
     end = orbit.contact_duration

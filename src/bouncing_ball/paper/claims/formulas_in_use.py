@@ -26,6 +26,7 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as rigid
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.restitution_branch import ImpactMap
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
@@ -70,6 +71,36 @@ def largest_defect(*defects) -> float:
     """
     moduli = [np.abs(x) for x in defects]
     return float(np.max([np.max(x) if np.size(x) else np.nan for x in moduli]))
+
+
+def random_orbits(rng: np.random.Generator, samples: int) -> tuple[Orbit, np.ndarray]:
+    """Stable n-T orbits of random contacts, at random Λ somewhat above their saddle-nodes.
+
+    There are at most ``samples``, because a compliant contact with strong damping may have no
+    saddle-node.
+    """
+    omega = np.exp(rng.uniform(0.7, 5, samples))
+    zeta = rng.uniform(0.01, 0.5, samples)
+    n = rng.integers(1, 4, samples)
+    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n).amplitude
+    there = np.isfinite(fold)
+    lam = fold[there] + rng.uniform(0.05, 0.5, np.sum(there))
+    model = ContactModel(SpringDamper(omega[there], zeta[there]))
+    return n_t.orbit(model, n[there], lam), lam
+
+
+def corrected_period_doubling(n, r):
+    """Λ of the period doubling of the map of Eq. 5, in place of Eq. 8::
+
+        Λ² = [2(1 + r²)/(1 + r)²]² + [nπ (1 - r)/(1 + r)]²
+
+    Examples
+    --------
+    >>> float(corrected_period_doubling(3, 1.0))
+    1.0
+    """
+    along = n * np.pi * (1 - r) / (1 + r)
+    return np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
 
 
 def forms_in_use(rng: np.random.Generator, samples: int) -> Mapping[str, InUse]:
@@ -136,7 +167,7 @@ def _restitution_orbits(rng, r) -> Rows:
     lam = along * rng.uniform(1.01, 3, r.size)
     phase, velocity = printed.fixed_point(n, r, lam)
     orbit = n_t.orbit(RestitutionModel(r), n, lam)
-    corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
+    corrected = corrected_period_doubling(n, r)
     bifurcation = n_t.saddle_node(RestitutionModel(r), n).amplitude
     doubling = n_t.period_doubling(RestitutionModel(r), n).amplitude
     holmes = rigid.period_doubling(n, r, ImpactMap.HOLMES)
@@ -193,51 +224,63 @@ def _contact(rng, samples) -> Rows:
 
 def _contact_orbits(rng, samples) -> Rows:
     """Eqs. 12 to 15 and 17 to 27: the n-T orbits of the spring-damper model."""
-    omega = np.exp(rng.uniform(0.7, 5, samples))
-    zeta = rng.uniform(0.01, 0.5, samples)
-    n = rng.integers(1, 4, samples)
-    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n)
-    # A compliant contact with strong damping may have no saddle-node, or no period doubling.
-    there = np.isfinite(fold.amplitude)
-    omega = omega[there]
-    zeta = zeta[there]
-    n = n[there]
-    contact = SpringDamper(omega, zeta)
-    model = ContactModel(contact)
-    node = n_t.saddle_node(model, n)
-    doubling = n_t.period_doubling(model, n)
-    lam = node.amplitude + rng.uniform(0.05, 0.5, n.size)
-    orbit = n_t.orbit(model, n, lam)
+    orbit, lam = random_orbits(rng, samples)
+    return _motions(rng, orbit, lam) | _orbit_equations(orbit, lam)
+
+
+def _motions(rng, orbit, lam) -> Rows:
+    """Eqs. 12 to 15: the motions in contact and in flight, at random times within orbits."""
+    contact = orbit.law
     phase = orbit.phase
     impact = orbit.impact_velocity
     end = orbit.contact_duration
 
-    def held(time) -> np.ndarray:
-        """Height and velocity by Eqs. 12 and 13."""
-        return printed.contact_after_impact(time, omega, zeta, lam, phase, impact)
-
-    time = end * rng.uniform(0.1, 1, n.size)
+    time = end * rng.uniform(0.1, 1, end.size)
     closing = impact - lam * np.cos(phase)
     rise, rate, *_ = contact.flow(time, 0.0, closing, phase, lam)
-    flow = held(time) - (rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time))
+    held = rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
+    omega = contact.frequency_ratio
+    zeta = contact.damping_ratio
+    flow = printed.contact_after_impact(time, omega, zeta, lam, phase, impact) - held
 
-    dynamics = model.dynamics(lam)
-    ended = dynamics.depart(dynamics.start(phase, closing)).duration
-    height, _ = held(end)
-    level = lam * np.sin(phase + end)
-    aloft = end + orbit.flight_time * rng.uniform(0, 1, n.size)
+    aloft = end + orbit.flight_time * rng.uniform(0, 1, end.size)
+    flown = np.array(printed.flight(aloft, end, orbit.bounce_velocity, lam, phase))
+    return {
+        "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
+        "Eqs. 14-15": _used(
+            "periodic.orbits.orbit.Orbit.flight_path", defects=(flown - orbit.flight_path(aloft),)
+        ),
+    }
+
+
+def _orbit_equations(orbit, lam) -> Rows:
+    """Eqs. 17 to 27: what holds on orbits, how they are solved, and their bifurcations."""
+    contact = orbit.law
+    n = orbit.n
+    phase = orbit.phase
+    impact = orbit.impact_velocity
     bounce = orbit.bounce_velocity
-    flown = np.array(printed.flight(aloft, end, bounce, lam, phase)) - orbit.flight_path(aloft)
+    end = orbit.contact_duration
     apparent = printed.apparent_restitution(
         bounce, lam * np.cos(phase + end), impact, lam * np.cos(phase)
     )
+
+    # The release (Eq. 23), after a contact that starts by Eqs. 21 and 22.
+    omega = contact.frequency_ratio
+    zeta = contact.damping_ratio
+    height, _ = printed.contact_after_impact(end, omega, zeta, lam, phase, impact)
+    level = lam * np.sin(phase + end)
+    dynamics = orbit.model.dynamics(lam)
+    ended = dynamics.depart(dynamics.start(phase, impact - lam * np.cos(phase))).duration
+
     equations = PaperUnknowns.of(orbit)
     point = equations.point(orbit)
+    node = n_t.saddle_node(orbit.model, n)
     node_test = Bifurcation.SADDLE_NODE.test(*node.trace_and_determinant())
+    # Some of these contacts have no period doubling.
+    doubling = n_t.period_doubling(orbit.model, n)
     doubling_test = Bifurcation.PERIOD_DOUBLING.test(*doubling.trace_and_determinant())
     return {
-        "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
-        "Eqs. 14-15": _used("periodic.orbits.orbit.Orbit.flight_path", defects=(flown,)),
         "Eq. 17": _used(
             "periodic.orbits.impacts.Impacts.apparent_restitution",
             defects=(orbit.apparent_restitution - apparent,),

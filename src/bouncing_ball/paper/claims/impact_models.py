@@ -72,27 +72,10 @@ def contact_shortens(data):
 # The restitution model.
 
 MOTION = [
-    formula(
-        "restitution law",
-        "Eq. 2",
-        "velocity of the ball after an impact",
-    ),
-    formula(
-        "flight",
-        "Eqs. 1, 3 and 4",
-        "flight of the ball",
-        "Eq. 4",
-    ),
-    formula(
-        "impact map",
-        "Eq. 5",
-        "phase and velocity from one impact to the next",
-    ),
-    formula(
-        "fixed point",
-        "Eq. 6",
-        "phase and velocity of the n-T orbit",
-    ),
+    formula("restitution law", "Eq. 2", "velocity of the ball after an impact"),
+    formula("flight", "Eqs. 1, 3 and 4", "flight of the ball", "Eq. 4"),
+    formula("impact map", "Eq. 5", "phase and velocity from one impact to the next"),
+    formula("fixed point", "Eq. 6", "phase and velocity of the n-T orbit"),
 ]
 saddle_node = formula(SADDLE_NODE, "Eq. 7", "the n-T orbits appear here, in a saddle-node")
 
@@ -139,6 +122,7 @@ def stable_between(data):
 
 
 sticking = formula("sticking", "Eq. 9", "permanent contact for amplitudes up to 1")
+
 # The spring-damper model.
 
 CONTACT = [
@@ -149,21 +133,9 @@ CONTACT = [
         "ϖ = Ω/ω, Ω of the contact",
         remark="with the contact's frequency over the table's as the frequency ratio",
     ),
-    formula(
-        "contact response",
-        "Eqs. 12-13",
-        "response of the ball in contact",
-    ),
-    formula(
-        "free flight",
-        "Eqs. 14-15",
-        "motion of the ball in flight",
-    ),
-    formula(
-        "damping",
-        "Eq. 16",
-        "damping ratio that gives the restitution coefficient",
-    ),
+    formula("contact response", "Eqs. 12-13", "response of the ball in contact"),
+    formula("free flight", "Eqs. 14-15", "motion of the ball in flight"),
+    formula("damping", "Eq. 16", "damping ratio that gives the restitution coefficient"),
 ]
 
 

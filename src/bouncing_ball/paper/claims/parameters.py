@@ -13,8 +13,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+Data = Mapping[str, xr.Dataset]
+"""Datasets by name."""
+
 Digests = Mapping[str, tuple[str, ...]]
-"""For each dataset the digest of its parameters, and the names of those that matter."""
+"""For each dataset the digest of its parameters, and the names of those that matter. Their values
+are those of the same names in the configuration."""
 
 PAPER: Digests = {
     "fig03": ("490a2404", "n", "restitution"),
@@ -78,14 +82,14 @@ def digest(parameters: Mapping[str, list]) -> str:
 
 class PaperData(dict[str, xr.Dataset]):
     """Datasets by name, which raise :class:`NotAsked` when they are read unless their parameters
-    are the required ones, by default the paper's.
+    are the required ones.
 
     ``used`` has the names of the datasets read, in order.
     """
 
-    def __init__(self, data: Mapping[str, xr.Dataset], required: Digests | None = None) -> None:
+    def __init__(self, data: Data, required: Digests) -> None:
         super().__init__(data)
-        self.required = PAPER if required is None else required
+        self.required = required
         self.used: dict[str, None] = {}
 
     def __getitem__(self, name: str) -> xr.Dataset:

@@ -1,9 +1,8 @@
 """The tables of the run: for each table a function of its dataset, with the name of the table.
 
 Each function returns the header and the rows as texts, made from parts of the dataset and columns
-(:mod:`bouncing_ball.drawing.tables`).
-
-Claims and their verdicts in the form in which an article needs them.
+(:mod:`bouncing_ball.drawing.tables`). :class:`Claims` has the claims and their verdicts in the form
+in which an article needs them.
 """
 
 from collections.abc import Callable
@@ -15,6 +14,7 @@ import xarray as xr
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
+from bouncing_ball.paper.claims.verdict import decimals
 
 
 def formulas(data: xr.Dataset) -> TextTable:
@@ -106,7 +106,7 @@ def found_text(claim: xr.Dataset) -> str:
     printed = claim.printed_text.item()
     if not printed and np.isfinite(claim.found):
         return compared_text(float(claim.found), float(claim.limit))
-    return entry_of(claim.found, f".{len(printed.partition('.')[2]) + 2}f")
+    return entry_of(claim.found, f".{decimals(printed) + 2}f")
 
 
 def deviation_text(claim: xr.Dataset) -> str:

@@ -105,10 +105,11 @@ def period_doubling_lift(
 def period_doubling(
     n: ArrayLike, restitution: ArrayLike, impact_map: ImpactMap = ImpactMap.EXACT
 ) -> np.ndarray:
-    """Λ of the period doubling; Eq. 8 as printed is that of Holmes' map.
+    """Λ of the period doubling; Eq. 8 as printed is that of Holmes' map::
 
-    For the exact map ``Λ² = [2(1 + r²)/(1 + r)²]² + [nπ(1 - r)/(1 + r)]²``. For Holmes' map the
-    first bracket is replaced by 1.
+        Λ² = 1 + [nπ (1 - r)/(1 + r)]²                      (8)
+
+    For the exact map the 1 is replaced by [2(1 + r²)/(1 + r)²]².
 
     Raises
     ------
@@ -128,7 +129,9 @@ def period_doubling(
 def phase(
     n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
 ) -> np.ndarray:
-    """Phase φ of the impact (Eq. 6), in [-π/2, π/2].
+    """Phase φ of the impact, in [-π/2, π/2], where the velocity after the impact is nπ::
+
+        cos φ = nπ/Λ (1 - r)/(1 + r)                        (6)
 
     It is positive on the side that is stable next to the saddle-node, and negative on the other
     side.

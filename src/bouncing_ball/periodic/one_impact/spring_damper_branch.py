@@ -229,6 +229,9 @@ def _cramer(rows):
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
     """The n-T orbit whose contact lasts for the time ``D = (θ₀ + ε)/ϖ_d``.
 
+    It is the solution of Eqs. 23-26, which at this τ_b = D are the three linear equations at the
+    top of this module.
+
     Parameters
     ----------
     excess : array_like

@@ -305,7 +305,11 @@ class Impacts(Batch):
 
     @property
     def flight_time(self) -> Any:
-        """T, the time from the release to the next impact, 2πn - D for an n-T orbit (Eq. 19)."""
+        """T, the time from the release to the next impact.
+
+        For an n-T orbit it is τ_2 - τ_b = 2πn - D, because τ_i = 0 (Eq. 18), τ_2 = τ_i + 2πn
+        (Eq. 19) and D = τ_b; that z′_2 = z′_i (Eq. 20) is a condition on the orbit.
+        """
         return self._shaped(self._flights)
 
     @property

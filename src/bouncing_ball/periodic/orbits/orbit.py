@@ -120,11 +120,11 @@ class Orbit(Impacts):
 
     @property
     def max_height(self) -> Any:
-        """Greatest absolute height z over the orbit, in flight or in contact.
+        """Greatest absolute height z over the orbit, in flight or in contact: max z of Eq. 37.
 
-        If the apex of a flight reaches Λ, it is the greatest height, because a ball in contact is
-        below the table and thus below Λ. Otherwise the table may lift the ball higher during a long
-        contact.
+        The apex of a flight is at z_b + z′_b²/2, by Eq. 14 with z_b = Λ sin(τ_b + φ). If it reaches
+        Λ, it is the greatest height, because a ball in contact is below the table and thus below Λ.
+        Otherwise the table may lift the ball higher during a long contact.
         """
         if self.model.place.is_free:
             rising = np.maximum(self._bounces, 0.0)
@@ -201,8 +201,12 @@ class Orbit(Impacts):
         return self._single(height), self._single(speed)
 
     def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
-        """Height and velocity in the flight after one impact, from which the time is counted
-        (Eqs. 14-15).
+        """Height and velocity in the flight after one impact, from which the time τ is counted.
+
+        In the paper, with the release at τ_b and the bouncing-off velocity z′_b ::
+
+            z  = -(τ - τ_b)²/2 + (τ - τ_b) z′_b + Λ sin(τ_b + φ)    (14)
+            z′ = -(τ - τ_b) + z′_b                                  (15)
         """
         s = np.asarray(time) - self.durations[..., impact]
         if self.model.place.is_free:

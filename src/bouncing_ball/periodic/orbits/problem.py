@@ -314,8 +314,16 @@ class OrbitEquations:
     def residual(self, y: np.ndarray) -> np.ndarray:
         """The two equations of each leg, and the errors of the durations, shape (..., N).
 
-        For one impact they are Eqs. 24-26, of which the height at the landing is one and the
-        velocity there another, and Eq. 23 at a given duration.
+        For one impact in n periods the paper has, with the heights Z in contact and z in flight::
+
+            Z′(τ_b) = z′_b                      (24)
+            z(τ_2) = Λ sin(τ_2 + φ)             (25)
+            z′(τ_2) = z′_2                      (26)
+
+        where τ_2 = 2πn and z′_2 = z′_i. The flight begins with the velocity with which the contact
+        ends, so that Eq. 24 holds. The first equation of the leg is -δ(τ_2) = 0, which is Eq. 25,
+        and the second δ′(τ_2) - v = 0 with v = z′_i - Λ cos φ, which is Eq. 26; ``landed`` computes
+        δ and δ′. The error of the duration is D - τ_b, with τ_b by Eq. 23.
         """
         legs = self.compared(y).legs
         here = legs.residual[0].reshape(*y.shape[:-1], -1)

@@ -28,6 +28,7 @@ from bouncing_ball.periodic.orbits.ends import (
     flights_vanish,
     limits_of,
     reason_at,
+    starts_fold,
     with_explained_ends,
 )
 from bouncing_ball.periodic.orbits.halves import halves, turns_apart, turns_of_half, twice
@@ -176,7 +177,8 @@ def branches_through_points(
 
     def tested(which: Any) -> WithEvents:
         part = problem.take(which)
-        tests = [*events(part.equations), *limits_of(part.equations, within)]
+        equations = part.equations
+        tests = [*events(equations), *limits_of(equations, within), *starts_fold(equations)]
         return WithEvents(part, [part.event(each) for each in tests])
 
     if towards:

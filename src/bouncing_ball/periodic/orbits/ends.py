@@ -38,6 +38,8 @@ from bouncing_ball.periodic.orbits.special import (
 # limits each to about 1e-12. Up to 0 such a branch could only be followed with ever shorter steps,
 # as :func:`events_along` has it. The grazing of an impact, where a flight remains, is regular.
 _MARGIN = 1e-4
+# Where starts of contacts fold, rounding errors are divided by what is left.
+_FOLD = 1e-2
 CLOSE = 1e-2
 """How small the function of an event is where a branch with too short steps ends next to it. Close
 to an event the functions are of the order of the square root of the distance."""
@@ -67,6 +69,7 @@ MERGES = "the flight vanishes: the orbit merges with permanent contact"
 """Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
 ALL_VANISH = "the flights vanish: the orbit merges with permanent contact"
 """Why a branch of orbits with several impacts and a rest ends where the rest fills the cycle."""
+_FOLDS = "the start of a contact begins to have two instants, of which the model takes one"
 _HELD = "permanent contact: at a smaller Λ a ball at rest stays on the table"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 _PLACES = {kind: f"a {kind}" for kind in Special} | {
@@ -184,6 +187,32 @@ def flights_vanish(equations: OrbitEquations, start: np.ndarray) -> list[Event]:
     if above(start) > 0 and velocity.max() > _SHORTEST * velocity.min():
         return [vanish, Event(_HELD, above, terminal=True, reason=_HELD)]
     return [vanish]
+
+
+def starts_fold(equations: OrbitEquations) -> list[Event]:
+    """The end of a branch of the corrected model whose delay depends on the speed, where two
+    instants begin to have the same start of contact; empty for other orbits.
+
+    The start at ``φ = ψ - t_c(v)`` determines the instant as long as the determinant of the state
+    there by that at the instant, ``1 - t_c′(v) a`` with the load a, is positive.
+    """
+    lag, slope = equations.balls.dynamics().section_lag(np.array(-1.0))
+    if np.all(slope == lag):
+        return []
+
+    def left(y: np.ndarray) -> np.ndarray:
+        dynamics = equations.legs(y).dynamics
+        phase, velocity = equations.states(y)
+        if dynamics is None:
+            return np.full(y.shape[:-1], np.nan)
+        speed = velocity.ravel()
+        lag, slope = dynamics.section_lag(speed)
+        _, level = dynamics.setting.level(phase.ravel(), dynamics.amplitude)
+        # -t_c′(v), because κ = -t_c(-δ′).
+        by_speed = (slope - lag) / speed
+        return (1 - by_speed * (1 - level)).reshape(velocity.shape).min(axis=-1) - _FOLD
+
+    return [Event(_FOLDS, left, terminal=True, reason=_FOLDS)]
 
 
 def bound_in_words(name: str, bound: float) -> str:

@@ -196,7 +196,7 @@ def starts_fold(equations: OrbitEquations) -> list[Event]:
     The start at ``φ = ψ - t_c(v)`` determines the instant as long as the determinant of the state
     there by that at the instant, ``1 - t_c′(v) a`` with the load a, is positive.
     """
-    lag, slope = equations.balls.dynamics().section_lag(np.array(-1.0))
+    lag, slope = equations.balls.model.dynamics(1.0).section_lag(np.array(-1.0))
     if np.all(slope == lag):
         return []
 

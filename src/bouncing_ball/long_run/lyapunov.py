@@ -32,7 +32,7 @@ does not belong to the motion on which the ball ends.
 from typing import NamedTuple, Self
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
+import scipy
 
 from bouncing_ball.models.deviations import Jacobian
 
@@ -271,7 +271,7 @@ class Stretching(NamedTuple):
         for level, sums in enumerate(every):
             enough = sums[:, 0] >= (_BLOCKS if level else 2)
             freedom = np.where(enough, sums[:, 0] - 1, 1.0)
-            wider = stdtrit(freedom, _QUANTILE) / ndtri(_QUANTILE)
+            wider = scipy.special.stdtrit(freedom, _QUANTILE) / scipy.special.ndtri(_QUANTILE)
             with np.errstate(invalid="ignore", divide="ignore"):
                 error = np.where(enough, wider * _rate(sums)[1], 0.0)
             found = np.fmax(found, error)

@@ -24,8 +24,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.linalg import block_diag
 
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.errors import ModelError, require
@@ -212,7 +212,7 @@ def together(recordings: Sequence[Heard]) -> Heard:
     return Heard(
         speeds=np.concatenate([each.speeds for each in recordings]),
         restitutions=np.concatenate([each.restitutions for each in recordings]),
-        covariance=block_diag(*spreads) if spreads else None,
+        covariance=scipy.linalg.block_diag(*spreads) if spreads else None,
         ratios=np.concatenate([each.ratios for each in recordings]),
         drag_bias=np.concatenate([each.drag_bias for each in recordings]),
         resolution_bias=np.concatenate([each.resolution_bias for each in recordings]),

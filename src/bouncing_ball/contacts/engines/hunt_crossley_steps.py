@@ -10,7 +10,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from bouncing_ball.contacts.engines.given_step import AtStep, Spread, spread
 from bouncing_ball.contacts.engines.impacts import FEWEST
@@ -134,13 +134,16 @@ def at_step_of_law(
             return Spread(exact, exact, exact)
         return spread_of_damping(ratio, h, patience(steps))
 
+    def surplus(ratio: float) -> float:
+        return found(ratio).mean - exact
+
     of_law = AtStep.of("drake", time_step, steps, wanted, found(damping), error)
     tuned = None
     fewest = math.inf
     if not of_law.is_within and asked is None:
         fewest = fewest_steps_of_law(law, speed, error)
-        if found(0.0).mean >= exact:
-            tuned = float(brentq(lambda ratio: found(ratio).mean - exact, 0.0, damping, xtol=_FINE))
+        if surplus(0.0) >= 0:
+            tuned = float(scipy.optimize.brentq(surplus, 0.0, damping, xtol=_FINE))
     is_known = math.isfinite(fewest)
     return replace(
         of_law,

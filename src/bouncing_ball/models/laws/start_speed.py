@@ -40,8 +40,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.damping import check_positive
@@ -141,8 +141,9 @@ class DampedByStart(ContactLaw):
         most = (1 - _ROUNDING) / r
         c = 0.0
         if r < 1:
-            found = loss(most) < 0
-            c = float(brentq(loss, 0.5 * (1 - r * r), most, xtol=1e-16)) if found else math.inf
+            c = math.inf
+            if loss(most) < 0:
+                c = float(scipy.optimize.brentq(loss, 0.5 * (1 - r * r), most, xtol=1e-16))
         if not math.isfinite(c) or np.isnan(cls.nominal_of(np.asarray(c))):
             raise ModelError(
                 f"restitution coefficient r = {r:g} is too small: no {cls.name} contact has it; "

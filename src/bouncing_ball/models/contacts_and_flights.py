@@ -47,7 +47,7 @@ class Impact(NamedTuple):
         return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
 
 
-class Slopes(NamedTuple):
+class DurationSlopes(NamedTuple):
     """The derivatives of the durations of contacts by the state at their starts, which is that of
     :meth:`.ContactsAndFlights.section`.
     """
@@ -77,7 +77,7 @@ class Departure(NamedTuple):
     aloft: np.ndarray | float = 0.0
     by: Any = None
     sticks: Any = None
-    slopes: Slopes | None = None
+    slopes: DurationSlopes | None = None
 
     def with_landings(self, which: np.ndarray, start: np.ndarray) -> "Departure":
         """The departures with the times of the landings of the balls with these indices, and with

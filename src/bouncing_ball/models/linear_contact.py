@@ -25,7 +25,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, Impact, Slopes
+from bouncing_ball.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
@@ -260,7 +260,7 @@ class LinearContactDynamics(ResumingDynamics):
             departure = self._ended(impact, motion, nearest_zero(motion, near))
             released = self._released(impact, departure)
             # Through the release condition.
-            slopes = Slopes(released.by_phase.phase - _ONE, released.by_velocity.phase)
+            slopes = DurationSlopes(released.by_phase.phase - _ONE, released.by_velocity.phase)
             return departure._replace(by=released, slopes=slopes)
         end = first_zero(motion, motion.earliest_release())
         # If the ball just reaches the table's level, rounding may give it a downward velocity.

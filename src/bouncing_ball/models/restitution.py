@@ -27,7 +27,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, Impact, Slopes
+from bouncing_ball.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
@@ -160,7 +160,9 @@ class RestitutionDynamics(Dynamics):
         velocity = -r * impact.velocity
         flight = self.setting.flight(none, velocity, impact.phase, level, self.amplitude)
         departure = lifted(self._left(impact, flight, rests, none), self.amplitude, self.setting)
-        return departure._replace(slopes=Slopes(np.where(departure.sticks, -1.0, 0.0), none))
+        return departure._replace(
+            slopes=DurationSlopes(np.where(departure.sticks, -1.0, 0.0), none)
+        )
 
     def comes_to_rest(self, impact: Impact) -> np.ndarray:
         """Whether the bounces after each impact end before the next lift-off.

@@ -39,8 +39,8 @@ Eqs.    what                      where
 14, 15  flight after it           ``periodic.orbits.orbit.Orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
-17      apparent restitution      ``periodic.orbits.impacts.Impacts.apparent_restitution``
-18-20   period of the n-T orbit   ``periodic.orbits.impacts.Impacts.flight_time``
+17      apparent restitution      ``periodic.orbits.impacts.OrbitImpacts.apparent_restitution``
+18-20   period of the n-T orbit   ``periodic.orbits.impacts.OrbitImpacts.flight_time``
 21-26   the six, written out      ``periodic.one_impact.paper_unknowns.PaperUnknowns``
 ..      start, Eqs. 21 and 22     ``models.contacts_and_flights.ContactsAndFlights.start``
 ..      end of contact, Eq. 23    ``models.linear_contact.LinearContactDynamics.depart``
@@ -48,7 +48,7 @@ Eqs.    what                      where
 ..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
 ..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``
 ..      their period doubling     ``periodic.one_impact.spring_damper_bifurcations.period_doubling``
-27      bouncing-off velocity     ``periodic.orbits.impacts.Impacts.bounce_velocity``
+27      bouncing-off velocity     ``periodic.orbits.impacts.OrbitImpacts.bounce_velocity``
 28-31   only as printed           ``paper.claims.as_printed.steady_displacement``
 32, 33  permanent contact, Λ_SD   ``models.permanent_contact.permanent_contact_threshold``
 34, 35  the inverse of Λ_SD       ``models.permanent_contact.permanent_contact_frequency_ratios``

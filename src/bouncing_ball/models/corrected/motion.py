@@ -22,7 +22,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, Impact, Slopes
+from bouncing_ball.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball.models.corrected import impact as corrected_map
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Dynamics
@@ -244,11 +244,11 @@ class CorrectedDynamics(Dynamics):
         return np.where(rests, 0.0, displacement), np.where(rests, 0.0, start - since - x)
 
 
-def _slopes(impact: Impact, departure: Departure) -> Slopes:
+def _slopes(impact: Impact, departure: Departure) -> DurationSlopes:
     """The derivatives of the durations by ψ and by -v: those of D(v), or of t_c(v) - ψ for a rest,
     which lasts until a fixed phase.
     """
     instant = impact.known.instant
     rests = departure.sticks
     by_speed = np.where(rests, instant.d_delay, instant.d_duration)
-    return Slopes(np.where(rests, -1.0, 0.0), -by_speed)
+    return DurationSlopes(np.where(rests, -1.0, 0.0), -by_speed)

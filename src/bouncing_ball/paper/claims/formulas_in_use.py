@@ -282,11 +282,11 @@ def _orbit_equations(orbit, lam) -> Rows:
     doubling_test = Bifurcation.PERIOD_DOUBLING.test(*doubling.trace_and_determinant())
     return {
         "Eq. 17": _used(
-            "periodic.orbits.impacts.Impacts.apparent_restitution",
+            "periodic.orbits.impacts.OrbitImpacts.apparent_restitution",
             defects=(orbit.apparent_restitution - apparent,),
         ),
         "Eqs. 18-20": _used(
-            "periodic.orbits.impacts.Impacts.flight_time",
+            "periodic.orbits.impacts.OrbitImpacts.flight_time",
             defects=(orbit.flight_time - printed.flight_time(n, end),),
         ),
         "Eqs. 21-26": _used(
@@ -300,7 +300,7 @@ def _orbit_equations(orbit, lam) -> Rows:
             ),
         ),
         "Eq. 27": _used(
-            "periodic.orbits.impacts.Impacts.bounce_velocity",
+            "periodic.orbits.impacts.OrbitImpacts.bounce_velocity",
             defects=(bounce - printed.bounce_velocity(impact, n, end),),
         ),
     }

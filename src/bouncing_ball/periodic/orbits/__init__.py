@@ -3,12 +3,10 @@
 In reading order:
 
 ``balls``         balls whose parameters are known by name, so that any of them can vary
+``stability``     the monodromy, its multipliers, and the stability that follows
 ``legs``          one leg of an orbit: a contact, and the flight after it
-``highest``       the highest points of motions, from samples that close in on them
-``release``       the highest point within a contact, which touches the release where it grazes
+``highest``       the highest points in flight and within a contact
 ``beside``        the legs at points and beside them, and the derivatives that follow
-``products``      the monodromy of an orbit as a product of the matrices of its legs
-``stability``     the linear stability of a fixed point of a planar map
 ``problem``       the equations of an orbit with k impacts in m periods of the table
 ``lost_release``  where a contact no longer opens
 ``halves``        orbits that repeat after half their period

@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
+from bouncing_ball.periodic.orbits.highest import Tops, tops_of
 from bouncing_ball.periodic.orbits.legs import Legs
-from bouncing_ball.periodic.orbits.release import Tops, tops_of
 
 # Where the second difference of the height or the velocity of a leg is larger than this and than
 # half of the first one, it has no derivative but a jump. A jump that is not noticed spoils a

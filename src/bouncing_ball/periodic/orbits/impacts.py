@@ -65,7 +65,7 @@ def _comparable(value: Any) -> Any:
 
 
 @dataclass(frozen=True, repr=False)
-class Impacts(Batch):
+class OrbitImpacts(Batch):
     """The impacts of orbits with k impacts in m periods of one model: see
     :class:`~bouncing_ball.periodic.orbits.orbit.Orbit`, whose fields and shapes these are.
     """
@@ -123,7 +123,7 @@ class Impacts(Batch):
         return tuple(_comparable(each) for each in values.values())
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Impacts) and self._values == other._values
+        return isinstance(other, OrbitImpacts) and self._values == other._values
 
     def __hash__(self) -> int:
         return hash(self._values)

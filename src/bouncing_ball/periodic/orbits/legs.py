@@ -15,7 +15,7 @@ from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.dynamics import Dynamics, Leg
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.orbits.products import matrices_of, product_of
+from bouncing_ball.periodic.orbits.stability import matrices_of, product_of
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits import stability
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.highest import about_highest
-from bouncing_ball.periodic.orbits.impacts import Impacts
+from bouncing_ball.periodic.orbits.impacts import OrbitImpacts
 from bouncing_ball.periodic.orbits.legs import gap_at_start, time_to_section
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.simulation import is_admissible
@@ -53,7 +53,7 @@ _BLOCK = 1024
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Orbit(Impacts):
+class Orbit(OrbitImpacts):
     """Orbits with k impacts in m periods of one model.
 
     The quantities of an impact, such as :attr:`phase`, have the shape of the orbits if k = 1, and

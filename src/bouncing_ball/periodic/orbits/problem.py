@@ -56,8 +56,7 @@ from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball.periodic.orbits.beside import LegsBeside
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, landed, without_force
-from bouncing_ball.periodic.orbits.products import shifted_determinant
-from bouncing_ball.periodic.orbits.stability import Bifurcation
+from bouncing_ball.periodic.orbits.stability import Bifurcation, shifted_determinant
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6

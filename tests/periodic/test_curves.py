@@ -13,11 +13,12 @@ from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.periodic.branches.curves import Degenerate, curve_through
-from bouncing_ball.periodic.branches.following import STEPS, branch_from
+from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.orbits.ends import Window
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
+from bouncing_ball.periodic.orbits.steps import STEPS
 
 
 def special(name, kind, to, amplitude=1.3):

@@ -11,10 +11,11 @@ import bouncing_ball
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball.periodic.branches.following import STEPS, branch_from
+from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball.periodic.orbits.special import Special
+from bouncing_ball.periodic.orbits.steps import STEPS
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
 SLOW = 3e-3

@@ -10,18 +10,18 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import require
-from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.numerics.corrector import newton
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches.switching import ahead, twice
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.stability import Bifurcation
+from bouncing_ball.periodic.orbits.steps import PATIENT
 
 FEIGENBAUM = 4.669201609102990
 """Limit of the ratio of successive distances between period doublings of a dissipative map
 (M. J. Feigenbaum, 1978)."""
-_SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
 # The doubled orbit is computed at this share of the estimated distance in Λ to its next doubling.
 # Nearly elastic impacts nearly preserve areas; the ratio of distances then tends to 8.72 first
 # (J. M. Greene et al., 1981), so that the share must be below 4.67/8.72 = 0.54.
@@ -103,7 +103,7 @@ def _at_doublings(row: Orbit, doublings: int) -> np.ndarray:
             # The coordinate is arsinh Λ.
             guess = ahead(equations, y, _SHARE * gap / np.hypot(1, before))
             equations, _ = twice(equations, y)
-            solved = newton(equations, guess, _condition(equations), _SETTINGS)
+            solved = newton(equations, guess, _condition(equations), PATIENT)
         amplitude = equations.values(solved.point)[LAMBDA]
         step = amplitude - before
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.

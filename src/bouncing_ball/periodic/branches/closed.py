@@ -8,8 +8,9 @@ import numpy as np
 from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.events import SpecialPoint
-from bouncing_ball.periodic.branches.following import PATIENT, Followed
+from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.steps import PATIENT
 
 CLOSED = "the branch is closed: it comes back to its start"
 """Why a closed branch ends."""

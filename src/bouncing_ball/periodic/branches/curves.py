@@ -27,12 +27,10 @@ import numpy as np
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
 from bouncing_ball.numerics.continuation import continue_both_ways
-from bouncing_ball.numerics.corrector import Condition, NewtonSettings, null_vector, solution_at
+from bouncing_ball.numerics.corrector import Condition, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
 from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import (
-    PATIENT,
-    STEPS,
     Followed,
 )
 from bouncing_ball.periodic.branches.grazing import lowest_touch
@@ -53,16 +51,11 @@ from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import Degenerate, Special, passed_by
 from bouncing_ball.periodic.orbits.stability import Bifurcation
+from bouncing_ball.periodic.orbits.steps import BY_DIFFERENCES, PATIENT, STEPS_OF_CURVES
 
-CURVE_STEPS = replace(STEPS, creep=1e-3)
-"""Steps of a curve, which ends where its points accumulate, for example at a release without speed,
-where the equations have no derivatives.
-"""
 # A point on a resonance has multipliers that differ from it by less than this. Next to a double
 # multiplier the multipliers differ by the square root of rounding.
 _RESONANT = 1e-6
-# The test function of a cusp is a central difference, whose rounding moves the last step by 1e-11.
-_BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
 # A start that is farther from the corrected special orbit is none of its kind. Special orbits are
 # located to 1e-12, and those before a singular end of a branch to about 1e-5.
 _ANOTHER = 1e-3
@@ -117,7 +110,7 @@ def curve_through(
     *,
     along_window: Window | None = None,
     across_window: Window | None = None,
-    control: StepControl = CURVE_STEPS,
+    control: StepControl = STEPS_OF_CURVES,
     most: int = 1000,
 ) -> Followed:
     """The curve of special orbits through one of them, in both directions.
@@ -195,7 +188,7 @@ def _explained_end(
     stuck = end._replace(kind=EndKind.SHORTEST_STEP)
     found = explained(equations, stuck, points, tests, limits_of(equations, *ranges.values()))
     if found.stuck:
-        found = accumulation(equations, found, points, ranges, CURVE_STEPS.creep)
+        found = accumulation(equations, found, points, ranges, STEPS_OF_CURVES.creep)
     if found.stuck:
         where = places_in_words(equations, points[0])
         return End(
@@ -249,7 +242,7 @@ def _cusps(problem: CurveProblem, branch: Branch, kind: Special) -> list[Special
         right = branch.points[k + 1]
         reference = _null_vector(equations, left, branch.tangents[k, : equations.size])
         test = _quadratic(problem, reference[: equations.size])
-        cusp = locate(problem, Event(Degenerate.CUSP, test), left, right, _BY_DIFFERENCES)
+        cusp = locate(problem, Event(Degenerate.CUSP, test), left, right, BY_DIFFERENCES)
         if cusp is not None:
             found.append(cusp)
     return found
@@ -308,7 +301,7 @@ def _generalized(problem: CurveProblem, branch: Branch, kind: Special) -> list[S
         between = branch.points[start : stop + 1]
         # Newton's method from the ends of several steps may leave them, and the ranges.
         for k, _ in _sign_changes(cubic, between, stride=1):
-            place = locate(problem, event, between[k], between[k + 1], _BY_DIFFERENCES)
+            place = locate(problem, event, between[k], between[k + 1], BY_DIFFERENCES)
             if place is not None:
                 found.append(place)
     return found

@@ -15,7 +15,7 @@ import numpy as np
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
 from bouncing_ball.numerics.continuation import continue_all_both_ways, continue_branches
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, solution_at, tangent
+from bouncing_ball.numerics.corrector import newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
@@ -36,12 +36,8 @@ from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import Coordinates, Degenerate, Special
 from bouncing_ball.periodic.orbits.stability import Bifurcation
+from bouncing_ball.periodic.orbits.steps import PATIENT, STEPS
 
-STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
-"""Steps in arclength, over the phases, the velocities and arsinh of the parameter. A branch ends
-where its points accumulate, for example where its orbits merge with permanent contact."""
-PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
-"""Newton's method from a guess that is not the last point of a branch."""
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.
 # If there is no period doubling near, it is followed up to a smaller distance, several times.
 _NEAR = 0.1

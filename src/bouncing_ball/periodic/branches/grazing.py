@@ -28,19 +28,19 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.model import Model
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
+from bouncing_ball.periodic.orbits.steps import NEARBY
 
 # A slow impact lasts about 2v/a. The parameter changes as at the grazing if v/a is this share of
 # the duration of a free impact, which is about π/ϖ for a spring. An impact that is an instant is
 # compared with half a period of the table.
 _SLOW = 3e-4
 _OF_INSTANT = np.pi
-_NEARBY = NewtonSettings(max_iterations=30, longest=0.01)
 # Samples of a flight in which its lowest point is searched, and rounds of Newton's method for it.
 _SAMPLES = 2001
 _ROUNDS = 8
@@ -266,7 +266,7 @@ def _one_more(grazing: Grazing, slow: float) -> Orbit:
     )
     axis = np.eye(guess.size)[2 * after + 1]
     with np.errstate(all="ignore"):
-        found = newton(more, guess, plane(axis, guess), _NEARBY)
+        found = newton(more, guess, plane(axis, guess), NEARBY)
     if not found.converged:
         raise NoOrbitError(
             f"no orbit with {more.impacts} impacts was found beside the grazing flight: residual "

@@ -16,10 +16,10 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic.branches.following import PATIENT
 from bouncing_ball.periodic.orbits.ends import Window, bound_in_words
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import sticking
+from bouncing_ball.periodic.orbits.steps import PATIENT
 
 # The first, the largest and the smallest step in the coordinate of the parameter that is given.
 _FIRST = 0.005

@@ -9,20 +9,19 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.numerics.corrector import NewtonSettings, solve
+from bouncing_ball.numerics.corrector import solve
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.stability import Side
+from bouncing_ball.periodic.orbits.steps import OF_A_ROUND
 
 # The largest number of rounds that compute the law and the orbit in turn. At given r and D the
 # speed hardly depends on the law, and after a secant step less than a hundredth of the last step
 # is left.
 _ROUNDS = 20
 _SETTLED = 1e-10
-# From the orbits of the round before, the error after a step of this length is its square.
-_CLOSE = NewtonSettings(tolerance=1e-7)
 
 
 def orbit_of_law(
@@ -94,7 +93,7 @@ def orbit_of_law(
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         law = law_of_impact(kind, restitution, taken, speed)
         problem = replace(problem, balls=Balls(ContactModel(law), amplitude))
-        found = solve(problem.equations_at, y, _CLOSE)
+        found = solve(problem.equations_at, y, OF_A_ROUND)
         y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
         if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):
             return orbit_of_point(problem, y)

@@ -33,17 +33,17 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.suspension import free_responses
 from bouncing_ball.models.waveform import Waveform, turned
-from bouncing_ball.numerics.corrector import NewtonSettings, solve
+from bouncing_ball.numerics.corrector import solve
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
 from bouncing_ball.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
+from bouncing_ball.periodic.orbits.steps import PATIENT
 
 # Samples of the equation in one period of the highest harmonic, between which its zeros are found.
 _SAMPLES = 64
-_SETTINGS = NewtonSettings(max_iterations=25, longest=0.5)
 # Starts of Newton's method in one period of the highest harmonic of the table.
 _STARTS = 8
 # Orbits whose phases and velocities differ by less than this are one.
@@ -291,7 +291,7 @@ def _orbits_near(
         return guess
     problem = guess.problem()
     with np.errstate(all="ignore"):
-        found = solve(problem.equations_at, guess.point(problem), _SETTINGS)
+        found = solve(problem.equations_at, guess.point(problem), PATIENT)
     good = np.flatnonzero(found.converged & np.isfinite(found.point).all(axis=-1))
     if not good.size:
         return guess[good]

@@ -17,9 +17,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
+from bouncing_ball.numerics.corrector import newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import branches_through_points
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel, in_order
@@ -30,18 +29,14 @@ from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.special import bifurcations
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
+from bouncing_ball.periodic.orbits.steps import EXTENDED, IN_ROUNDS, STEPS_OF_SEARCHES
 
 # The largest number of Newton steps for the impact speed.
 _ROUNDS = 6
-# Newton steps in each of several rounds; orbits that have converged are left out of the next
-# round. The length of a step is limited because the first step may be long next to the fold.
-_SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
+# Rounds of Newton's method.
 _TRIES = 5
-_EXTENDED = NewtonSettings(max_iterations=25)
-# A branch is followed from Λ times this factor, for at most this many points. Its steps are long,
-# because only the order of its special points is wanted, each of which is located.
+# A branch is followed from Λ times this factor, for at most this many points.
 _ABOVE = 1.3
-_STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
 _HERE = "this amplitude"
@@ -138,7 +133,7 @@ def _solved(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
         if not todo.size:
             break
         fixed, unknowns = problem.take(todo).fixed(y[todo])
-        found = solve(fixed.equations_at, unknowns, _SETTINGS)
+        found = solve(fixed.equations_at, unknowns, IN_ROUNDS)
         y[todo, : fixed.size] = found.point
         todo = todo[~found.converged]
     y[todo] = np.nan
@@ -184,7 +179,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
         ends_of_one_impact,
         Window(LOWEST, amplitude),
         towards=[ahead, -ahead],
-        control=_STEPS,
+        control=STEPS_OF_SEARCHES,
         most=_POINTS,
     )
     for way in ways:
@@ -192,7 +187,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
             continue
         points = way.branch.points
         test = Bifurcation.SADDLE_NODE.test(*problem.trace_and_determinant(points[1]))
-        here = abs(points[-1, -1] - np.arcsinh(amplitude)) <= _EXTENDED.tolerance
+        here = abs(points[-1, -1] - np.arcsinh(amplitude)) <= EXTENDED.tolerance
         if here and (test > 0) == (side is Side.STABLE):
             return points[-1]
     return np.nan
@@ -235,7 +230,7 @@ def special_on_branch(
         lambda one: [*bifurcations(one), *ends_of_one_impact(one), here],
         Window(LOWEST, most),
         towards=[-np.eye(y.size)[-1]],
-        control=_STEPS,
+        control=STEPS_OF_SEARCHES,
         most=_POINTS,
     )
     if isinstance(found, ContinuationError):
@@ -348,14 +343,14 @@ class SearchedOrbits(OrbitsOfModel):
         else:
             lam, psi = line.period_doubling(index, search.instant)
         problem, guess = search.guess(lam, psi)
-        found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
+        found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), EXTENDED)
         low = (lam < LOWEST) & (kind is Bifurcation.SADDLE_NODE)
         # Where Newton's method diverged Λ may overflow.
         with np.errstate(over="ignore"):
             reached = np.sinh(found.point[:, -1])
         # The phase is not defined at Λ = 0: rounding decides where near it the fold of an elastic
         # contact is found.
-        good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
+        good = found.converged & (reached > EXTENDED.tolerance) & (~low | (reached < 2 * lam))
         y = np.where(good[:, np.newaxis], found.point, np.nan)
         for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
             near = float(np.nan_to_num(lam[k], nan=1.0))

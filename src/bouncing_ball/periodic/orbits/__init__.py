@@ -7,6 +7,7 @@ In reading order:
 ``legs``          one leg of an orbit: a contact, and the flight after it
 ``highest``       the highest points in flight and within a contact
 ``beside``        the legs at points and beside them, and the derivatives that follow
+``steps``         the steps of branches and of Newton's method
 ``problem``       the equations of an orbit with k impacts in m periods of the table
 ``lost_release``  where a contact no longer opens
 ``halves``        orbits that repeat after half their period

@@ -21,13 +21,13 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.numerics.corrector import NewtonSettings, solve
+from bouncing_ball.numerics.corrector import solve
 from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
+from bouncing_ball.periodic.orbits.steps import PATIENT
 
 # The Jacobian is a central difference; its error only affects the number of steps.
 _DIFFERENCE = 6e-6
-_SETTINGS = NewtonSettings(max_iterations=30, longest=0.3)
 # An end that is farther from the last point of a branch is that of another branch. The steps become
 # too short at the square of this distance, where the duration varies as the root.
 _NEAR = 0.1
@@ -96,6 +96,6 @@ def lost_release(equations: OrbitEquations, y: np.ndarray) -> np.ndarray | None:
         return None
     slowest = int(np.argmin(rise_of_release(legs)))
     with np.errstate(all="ignore"):
-        found = solve(_LostRelease(equations, slowest).equations_at, y, _SETTINGS)
+        found = solve(_LostRelease(equations, slowest).equations_at, y, PATIENT)
     near = bool(found.converged) and np.linalg.norm(found.point - y) < _NEAR
     return found.point if near else None

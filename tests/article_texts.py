@@ -24,7 +24,7 @@ from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
 from bouncing_ball.pipeline import article
 from bouncing_ball.pipeline.article import render_article, sections_of
-from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"

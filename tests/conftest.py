@@ -29,7 +29,7 @@ from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Continuation
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
-from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 # Fixtures that tests of several folders use: a reference integration, and all texts.

@@ -33,12 +33,8 @@ from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.errors import ModelError, Range
 from bouncing_ball.models.makers import LOSSES
-from bouncing_ball.pipeline.configuration import (
-    ConfigurationError,
-    check_parameters,
-    place,
-    read_yaml,
-)
+from bouncing_ball.pipeline.configuration import check_parameters, place
+from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
 ROOT = Path(__file__).parents[1]
 NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])

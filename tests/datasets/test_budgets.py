@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 from declared_artifacts import ARTIFACTS, STUDIES
 
-from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
+from bouncing_ball.pipeline.configuration import arguments, typed
 from bouncing_ball.pipeline.diff.budgets import ARTIFACTS as BUDGETS
 from bouncing_ball.pipeline.diff.budgets import IGNORED
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")

@@ -17,8 +17,9 @@ from matplotlib.text import Text
 from bouncing_ball.drawing.canvas import lay_out
 from bouncing_ball.drawing.style import LINES, MARKS, style
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
+from bouncing_ball.pipeline.configuration import arguments, typed
 from bouncing_ball.pipeline.jobs import recorded
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 SPAN = {"min": 1.0, "max": 1000.0, "samples": 31}

@@ -10,13 +10,9 @@ from declared_artifacts import ARTIFACTS
 from snakemake.utils import update_config
 from whole_configuration import configuration_type
 
-from bouncing_ball.pipeline.configuration import (
-    ConfigurationError,
-    check_configuration,
-    check_parameters,
-    read_yaml,
-)
+from bouncing_ball.pipeline.configuration import check_configuration, check_parameters
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
+from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
 FOLDER = Path(__file__).resolve().parents[2] / "config"
 CONFIG = read_yaml(FOLDER / "config.yaml")

@@ -15,8 +15,9 @@ import pytest
 from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.pipeline import sources as module
-from bouncing_ball.pipeline.configuration import arguments, read_yaml
+from bouncing_ball.pipeline.configuration import arguments
 from bouncing_ball.pipeline.sources import digests, imports, keep_digests, sources
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 import bouncing_ball
-from bouncing_ball.pipeline.configuration import ConfigurationError, parse_yaml, read_yaml
+from bouncing_ball.pipeline.yaml_files import ConfigurationError, parse_yaml, read_yaml
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
 
@@ -18,13 +18,11 @@ ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
         (None, "No such file or directory"),
         (
             "a: 1\nclose_within: ü".encode("latin-1"),
-            "not YAML: unacceptable character #x00fc: invalid start byte in "
-            '"<byte string>", position 19',
+            "not YAML: unacceptable character #x00fc: invalid",
         ),
         (
             b"a: 1\r\nb:\r\n\tc: 1\r\n",
-            "not YAML: while scanning for the next token found character '\\t' that cannot "
-            'start any token in "<byte string>", line 3, column 1: ',
+            "not YAML: while scanning for the next token found character",
         ),
         (b"a: 1\nb: 2011-02-30\n", "not YAML: day is out of range for month"),
         (b"a: 1\nb: !!python/name:os.system\n", "not YAML: could not determine a constructor"),

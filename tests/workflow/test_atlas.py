@@ -16,8 +16,8 @@ import yaml
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.shards import shard
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.samples import SECONDS
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 SMALL = {
     "n": [1, 2],

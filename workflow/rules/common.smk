@@ -47,7 +47,8 @@ for path in (*HERE.rglob("*.py"), *SCRIPTS.glob("*.py")):
             bytecode.unlink()
 
 from bouncing_ball.pipeline.artifacts import Artifact
-from bouncing_ball.pipeline.configuration import ConfigurationError, arguments
+from bouncing_ball.pipeline.configuration import arguments
+from bouncing_ball.pipeline.yaml_files import ConfigurationError
 from bouncing_ball.pipeline.sources import digests, keep_digests, lines_of_versions, sources
 
 sys.path.append(str(SCRIPTS))

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from bouncing_ball.pipeline.configuration import ConfigurationError
+from bouncing_ball.pipeline.yaml_files import ConfigurationError
 
 
 def function(module: str, name: str) -> Callable[..., Any]:

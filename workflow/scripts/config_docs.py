@@ -5,10 +5,10 @@ from pathlib import Path
 from whole_configuration import configuration_type
 
 from bouncing_ball.datasets.files import read_dataset, write_text
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
 from bouncing_ball.pipeline.dataset_docs import dictionary, in_record
 from bouncing_ball.pipeline.jobs import logged
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 with logged(snakemake):
     repository = Path(snakemake.scriptdir).resolve().parents[1]

@@ -8,8 +8,8 @@ from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article, sections_of
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.jobs import logged, read_input, using
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 # The templates, and the names of the texts. The supplement is the first, because the article refers
 # to its sections.

@@ -26,7 +26,6 @@ from bouncing_ball.datasets.files import (
     write_text,
 )
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.provenance import PREFIX, gather, read_attributes
 from bouncing_ball.pipeline.samples import CONTENT, SECONDS, computed_by, content_digest
 from bouncing_ball.pipeline.sources import file_of, names_of, without_versions
@@ -201,7 +200,8 @@ def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
-    """Run the study of the job and write its dataset.
+    """Run the study of the job, which takes the parameters in the form that the configuration has,
+    and write its dataset.
 
     The provenance becomes global attributes, and so do the parameters and the settings of the run,
     unless the study itself sets attributes.
@@ -220,7 +220,7 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
         shards = [read_input(path) for path in paths]
         from_other_jobs["found"] = joined_shards(shards)
         earlier = earlier_seconds(paths)
-    dataset = typed(study)(**given, **from_other_jobs)
+    dataset = study(**given, **from_other_jobs)
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")

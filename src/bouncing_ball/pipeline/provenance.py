@@ -21,8 +21,8 @@ import numpy as np
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.sources import versions
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 PREFIX = "provenance_"
 """The prefix of the attributes' names."""

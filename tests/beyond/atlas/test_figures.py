@@ -9,7 +9,7 @@ from bouncing_ball.beyond.atlas.figures import charts
 from bouncing_ball.datasets.files import parameter_attributes, read_dataset
 from bouncing_ball.drawing.style import style
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
-from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[3]
 SUMMARY = ROOT / "config" / "atlas.nc"

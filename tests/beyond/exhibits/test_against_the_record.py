@@ -7,8 +7,9 @@ import pytest
 from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
+from bouncing_ball.pipeline.configuration import arguments, typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 CONFIG = Path(__file__).parents[3] / "config"
 RUN = read_yaml(CONFIG / "config.yaml")

@@ -8,7 +8,8 @@ from bouncing_ball.accuracy.error_law import coefficients
 from bouncing_ball.beyond.exhibits import cascades_figures
 from bouncing_ball.beyond.exhibits.cascades import Cascades, cascades
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
-from bouncing_ball.pipeline.configuration import ConfigurationError, check_parameters, typed
+from bouncing_ball.pipeline.configuration import check_parameters, typed
+from bouncing_ball.pipeline.yaml_files import ConfigurationError
 
 R = [0.5, 0.85]
 STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}

@@ -13,7 +13,8 @@ from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.pipeline.configuration import read_yaml, typed
+from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 CONFIG = Path(__file__).parents[3] / "config"
 PARAMETERS = read_yaml(CONFIG / "config.yaml")["beyond"]["ext_engines"]

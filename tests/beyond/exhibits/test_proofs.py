@@ -20,7 +20,7 @@ from bouncing_ball.beyond.exhibits.proofs import (
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claims import CLAIMS
-from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 CONFIG = Path(__file__).resolve().parents[3] / "config" / "config.yaml"
 GIVEN = read_yaml(CONFIG)["beyond"]["ext_proofs"]

@@ -11,8 +11,9 @@ from declared_artifacts import ARTIFACTS, STUDIES
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.shards import part_of, shard_names
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.pipeline.configuration import read_yaml, typed
+from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.jobs import joined_shards
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 GIVEN = read_yaml(Path(__file__).parents[3] / "config/config.yaml")["beyond"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}

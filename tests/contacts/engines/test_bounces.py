@@ -27,9 +27,9 @@ from bouncing_ball.beyond.exhibits.bounces import (
 )
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 from bouncing_ball.pipeline.samples import computed_by, processor_time, seconds_since
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).parents[3]
 RUNS = [Path(each.__file__) for each in (bounce_runs, engine_runs, newer_runs)]

@@ -17,9 +17,9 @@ from installed_engines import LAST_SEEN, only_if_installed
 from bouncing_ball.beyond.exhibits.bounces import ALL_VARIABLES, DRIVERS_TITLE
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 from bouncing_ball.pipeline.samples import computed_by, processor_time, seconds_since
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "docs" / "bounces"

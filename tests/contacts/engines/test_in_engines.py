@@ -46,9 +46,9 @@ from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 from bouncing_ball.pipeline.samples import computed_by, processor_time, seconds_since
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).parents[3]
 OURS = ROOT / "src" / "bouncing_ball" / "contacts" / "engines"

@@ -11,8 +11,8 @@ from bouncing_ball.beyond.exhibits.certified_verdicts import PARAMETERS as CERTI
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
 from bouncing_ball.paper.claims.parameters import PAPER, digest, of_dataset
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[3]
 # Rows about which the paper claims nothing: the definitions of r_a and of the error of a model,

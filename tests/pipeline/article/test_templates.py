@@ -8,7 +8,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 
 from bouncing_ball.paper.claims.claims import CLAIMS
 from bouncing_ball.pipeline.article import sections_of
-from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "workflow" / "report" / "paper"

@@ -18,3 +18,6 @@ A claim is a function (:mod:`.claim`), :mod:`.claims` decides all of them, and :
 them. To read the claims, the first three rows are enough; the second computations, in the last four
 rows, stand each for itself.
 """
+
+FORMULA = "continuation and formula"
+"""The two routes to an orbit whose comparison in :mod:`.witness` decides a claim."""

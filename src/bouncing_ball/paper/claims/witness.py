@@ -17,6 +17,7 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.claims import FORMULA
 from bouncing_ball.periodic.one_impact import restitution_branch
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_branch import (
@@ -31,7 +32,6 @@ VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),
     "comparison": Variable("the two routes compared"),
 }
-FORMULA = "continuation and formula"
 CLOSES = "simulation over one cycle"
 # Relative to the larger of Λ and n. Rounding errors are divided by the impact velocity, which is
 # 1e-4 at the end of the branches that merge with permanent contact.

@@ -15,10 +15,10 @@ from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline import provenance
 from bouncing_ball.pipeline.artifacts import CARRIERS, files_of_figures
-from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Whole
 from bouncing_ball.pipeline.diff.page import to_terminal
+from bouncing_ball.pipeline.yaml_files import read_yaml
 
 
 def jobs_left(repository: Path, files: Collection[str]) -> int:

@@ -95,6 +95,7 @@ def _prepare_process() -> None:
     # from garbage collection, and collecting seldom, saves time.
     gc.freeze()
     gc.set_threshold(100_000)
+    gc.enable()
 
 
 @contextmanager

@@ -18,6 +18,8 @@ The way of a contact through the modules:
     what does one write into an engine for it? (``engines``)
 ``describe``
     the numbers of a contact without a table; ``drops`` and ``rebounds`` have those of a drop
+``numbers_of_contact``
+    the numbers that the answers of ``assess``, ``choose`` and ``describe`` read from the contact
 ``verdict``, ``verdict_on_motion``, ``notes``
     the sentences on these facts, written when they are shown: by the library, as text, JSON or page
 ``rows``, ``texts``, ``page_data``, ``page_figures``

@@ -136,14 +136,29 @@ class ResolvedContact:
 
     @property
     def contact_time(self) -> float:
-        """Duration of a free impact in s.
+        """Duration of a free impact in s, for a law with an impact speed at that speed.
 
         Raises
         ------
         ModelError
             If ζ ≥ 1.
         """
-        return float(self.equivalent.free_duration) * self.table.time
+        impact = self._impact
+        duration = self.equivalent.free_duration if impact is None else impact.duration
+        return float(duration) * self.table.time
+
+    @property
+    def restitution(self) -> float:
+        """r of a free impact, for a law with an impact speed at that speed."""
+        impact = self._impact
+        return float(self.equivalent.restitution if impact is None else impact.restitution)
+
+    @cached_property
+    def _impact(self) -> Instant | None:
+        """The free impact of a law at the impact speed, if one is given."""
+        if self.is_linear or self.impact_speed is None:
+            return None
+        return self.law.signature(self.impact_speed * self.table.time / self.table.length)
 
     @property
     def static_deflection(self) -> float:

@@ -11,7 +11,8 @@ The way of a contact through the modules:
 ``assess``
     is a restitution coefficient good enough? By the orbits in all models (``families``) and the
     motion on which most balls end (``motion``, ``starts``): where one ball ends (``ends``), and
-    means of what does not repeat (``means``). ``judgement`` has what decides
+    means of what does not repeat (``means``), of as many balls as take seconds (``effort``).
+    ``judgement`` has what decides
 ``choose``
     how stiff must a contact be for that? By the ϖ that a tolerance needs (``needed``)
 ``write``

@@ -37,9 +37,6 @@ STEPS = 50
 STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 # Beyond this limit the square of ϖ leaves no digits. The other calls have the same limit.
 _LARGEST = 1e8
-# A contact law is integrated in time. At this Λ its motion takes up to eight seconds, and beyond it
-# more, because a contact is then a small part of a flight.
-_LARGEST_OF_LAW = 1e5
 
 
 @dataclass(frozen=True)
@@ -260,9 +257,9 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
     require_short(case.contact_time)
-    if not case.is_linear and amplitude > _LARGEST_OF_LAW:
+    if amplitude > case.effort.amplitude:
         raise ModelError(
-            f"Λ = {amplitude:g} is above {_LARGEST_OF_LAW:g}, up to which a contact law "
+            f"Λ = {amplitude:g} is above {case.effort.amplitude:g}, up to which a contact law "
             "is followed: give a lower acceleration, or a spring and a damper, which are faster"
         )
     if not 1 / _LARGEST < ratio < _LARGEST:

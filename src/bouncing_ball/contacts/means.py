@@ -13,11 +13,12 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import repeat
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from bouncing_ball.accuracy.errors import deviation
+from bouncing_ball.contacts.effort import Sampling
 from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.errors import ModelError
@@ -52,36 +53,14 @@ class Mean:
     half_width: float
 
 
-class Sampling(NamedTuple):
-    """The samples of balls: the number of balls is rounded up to multiples of ``unit``; unless one
-    is asked for it is ``usual``. The means are examined after each of the numbers of ``impacts`` of
-    a ball. At least ``before`` first impacts are left out.
-    """
-
-    unit: int
-    usual: int
-    impacts: tuple[int, ...]
-    before: int
-
-
-# A step of a contact law takes much longer than one of a linear contact, though hardly longer for
-# many balls than for a few.
-_SAMPLES = Sampling(256, 4096, (25, 75, 150), 50)
-_SAMPLES_OF_LAW = Sampling(128, 256, (20, 40), 40)
 # An impact multiplies the energy by r² about, and so this number times 1/(1 - r) impacts by less
 # than e⁻⁴; but so many impacts are not left out next to r = 1.
 _FORGOTTEN = 2.0
 _MOST_BEFORE = 400
-# The relative change of r, k and g, which few users know better, and the balls of its samples.
+# The relative change of r, k and g, which few users know better.
 _CHANGE = 1e-3
-_BALLS_OF_CHANGE = 1024
-_BALLS_OF_CHANGE_OF_LAW = 128
 # To this part of itself a law is found from its impact again.
 _SAME = 1e-6
-
-
-def _sampling(case: ResolvedContact) -> Sampling:
-    return _SAMPLES if case.is_linear else _SAMPLES_OF_LAW
 
 
 def compared_means(
@@ -94,7 +73,7 @@ def compared_means(
     """Means of both models, in m and W, and the deviations of the second model's from the first's,
     relative to these.
     """
-    sampling = _sampling(case)
+    sampling = case.effort.samples
     balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
     without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
     if not all(end.impacts.phase.size for end in ends.values()):
@@ -241,15 +220,10 @@ def _changes(
     rests, or if the linear contact in place of a law has another kind of motion.
     """
     exact_end, *_ = ends.values()
-    all_changed = _changed(case, exact_end)
-    # A law that an impact determines has no sample of the linear contact.
-    own = not case.is_linear and NO_CHANGE not in all_changed
-    balls = _BALLS_OF_CHANGE_OF_LAW if own else _BALLS_OF_CHANGE
-    usual = _SAMPLES_OF_LAW if own else _SAMPLES
-    small = usual._replace(unit=balls, usual=balls, impacts=usual.impacts[-2:][:1])
     kinds = [end.motion.kind for end in ends.values()]
     found = {}
-    for name, changed in all_changed.items():
+    for name, changed in _changed(case, exact_end).items():
+        sampling = changed.effort.samples_of_change
         lam = changed.table.amplitude
         # A ball beside a table that moves less would rise from it.
         start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
@@ -262,7 +236,7 @@ def _changes(
             return None
         if not all(end.impacts.phase.size for end in there.values()):
             return None
-        samples = _sample_sizes(small, balls, there.values())
+        samples = _sample_sizes(sampling, sampling.usual, there.values())
         looked = (_sums(changed, *each, samples) for each in there.items())
         # There is no end to the sums of a motion that repeats.
         *_, (_, *sums) = zip(samples, *looked, strict=False)
@@ -312,18 +286,18 @@ def _sums(
     impacts = end.impacts
     if end.is_sampled:
         starts = impacts.beside(samples[-1].balls, lam, BESIDE)
-        return sums_at(samples, starts, model, lam, _before(case, _sampling(case).before))
+        return sums_at(samples, starts, model, lam, _before(case))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
     _, once = advance(*start(model, lam, impacts.last()), end.motion.impacts)
     return repeat(once)
 
 
-def _before(case: ResolvedContact, least: int) -> int:
+def _before(case: ResolvedContact) -> int:
     """Number of first impacts that are left out."""
     loss = 1 - float(case.equivalent.restitution)
     forgotten = _MOST_BEFORE if loss * _MOST_BEFORE < _FORGOTTEN else math.ceil(_FORGOTTEN / loss)
-    return max(least, forgotten)
+    return max(case.effort.samples.before, forgotten)
 
 
 def _estimate(end: Ending, sums: np.ndarray) -> Estimate:

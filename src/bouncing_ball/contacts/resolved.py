@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.simple_models import SIMPLE, models_of_law
+from bouncing_ball.contacts import effort
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.named_laws import model_name
@@ -104,6 +105,11 @@ class ResolvedContact:
     def integrated_law(self) -> ContactLaw | None:
         """The law that is integrated in time; None for a linear contact."""
         return None if self.is_linear else self.law
+
+    @property
+    def effort(self) -> effort.Effort:
+        """How many balls and impacts are followed on the contact."""
+        return effort.LINEAR if self.is_linear else effort.OF_LAW
 
     @property
     def mass(self) -> float:

@@ -158,8 +158,8 @@ class Assessment(NumbersOfImpact):
     def _said(self) -> Sentences:
         """The judgement in words, or the contact that was chosen."""
         if self.chosen is None:
-            law = None if self.case.is_linear else self.case.law.name
-            found = said_of_orbit(self.on_orbit, self.case.equivalent.linear, law)
+            case = self.case
+            found = said_of_orbit(self.on_orbit, case.equivalent.linear, case.integrated_law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         if self.on_motion is not None:

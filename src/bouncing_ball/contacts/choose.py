@@ -59,7 +59,7 @@ class Choice(NumbersOfImpact):
         The error at ``stiffness`` is the tolerance up to rounding errors, which may be on either
         side of it. Here the stiffness is larger by a millionth, so that the error is within.
         """
-        if self.case.is_linear:
+        if self.case.is_spring_damper:
             return replace(self.case.given, stiffness=self.stiffness * _STIFFER)
         return replace(self.case.given, contact_time=self.contact_time)
 

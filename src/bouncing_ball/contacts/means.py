@@ -127,7 +127,8 @@ def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     that is not determined by an impact stands the linear contact, also without a change.
     """
     speed = _impact_speed(case, end)
-    if not case.is_linear and not _is_of_impact(case.law, speed):
+    law = case.integrated_law
+    if law is not None and not _is_of_impact(law, speed):
         spring = case.equivalent.linear
         linear = replace(case, law=spring, equivalent=spring)
         return {NO_CHANGE: linear} | _changed(linear, end)
@@ -151,10 +152,11 @@ def _impact_speed(case: ResolvedContact, end: Ending) -> float:
 
 def _shorter(case: ResolvedContact, speed: float) -> float:
     """The factor of the duration of an impact on a stiffer contact."""
-    if case.is_linear:
+    law = case.integrated_law
+    if law is None:
         return 1 / math.sqrt(1 + _CHANGE)
-    stiffer = case.law.stiffened(1 + _CHANGE)
-    return float(stiffer.signature(speed).duration / case.law.signature(speed).duration)
+    stiffer = law.stiffened(1 + _CHANGE)
+    return float(stiffer.signature(speed).duration / law.signature(speed).duration)
 
 
 def _with(
@@ -169,9 +171,8 @@ def _with(
     r = float(contact.restitution) * restitution
     ratio = float(contact.frequency_ratio) / duration
     other = SpringDamper.from_restitution(r, ratio, contact.release, measured=True)
-    if case.is_linear:
-        return replace(case, law=other, equivalent=other)
-    law: Any = _law(case.law, speed, restitution, duration, unit)
+    of_law = case.integrated_law
+    law: Any = other if of_law is None else _law(of_law, speed, restitution, duration, unit)
     return replace(case, law=law, equivalent=law if case.is_spring_damper else other)
 
 

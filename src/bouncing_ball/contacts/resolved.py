@@ -42,9 +42,10 @@ class ResolvedContact:
     the contact. The models are built on first use.
 
     Two questions divide the contacts. If one :attr:`is_linear`, its motion on a vibrating table has
-    a closed form; otherwise its law is integrated in time. If one :attr:`is_spring_damper`, k and c
-    are its own; otherwise they are those of the equivalent. Only the answers for a damper that acts
-    on approach differ: its law is integrated, with its own k and c.
+    a closed form; otherwise it has an :attr:`integrated_law`, and balls are followed with less
+    :attr:`effort`. If one :attr:`is_spring_damper`, k and c are its own; otherwise they are those
+    of the equivalent. Only the answers for a damper that acts on approach differ: its law is
+    integrated, with its own k and c.
 
     Parameters
     ----------

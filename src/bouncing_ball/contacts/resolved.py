@@ -47,6 +47,11 @@ class ResolvedContact:
     of the equivalent. Only the answers for a damper that acts on approach differ: its law is
     integrated, with its own k and c.
 
+    It has two contacts. ``plain`` is what is computed. ``given`` is what was asked about: the
+    sentences name its engine, its drop test and its radius. At first ``plain`` follows from
+    ``given``; but it is replaced where the law of an engine or a given time step leads to another k
+    and c, whereas the sentences stay those on ``given``.
+
     Parameters
     ----------
     plain : Contact
@@ -62,7 +67,7 @@ class ResolvedContact:
         restitution coefficient and duration as this law has at the impact speed of the orbit, or
         with the parameters of an engine.
     given : Contact
-        The contact as it was given, for the sentences on how it was read.
+        The contact as it was given.
     written : str, optional
         Name of the engine for which it is written.
     impact_speed : float, optional

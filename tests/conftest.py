@@ -313,22 +313,22 @@ def searched_once():
 @pytest.fixture
 def short_motions(monkeypatch):
     """An answer about the motion on which a ball ends follows few impacts of few balls."""
-    from bouncing_ball.contacts import ends, means
+    from bouncing_ball.contacts import effort
 
-    for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
-        monkeypatch.setattr(ends, impacts, 20)
-    for balls in ("_BALLS_OF_CHANGE", "_BALLS_OF_CHANGE_OF_LAW"):
-        monkeypatch.setattr(means, balls, 4)
-    few = means.Sampling(unit=4, usual=4, impacts=(8,), before=4)
-    for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
-        monkeypatch.setattr(means, samples, few)
+    few = effort.Sampling(unit=4, usual=4, impacts=(8,), before=4)
+    for kind in ("LINEAR", "OF_LAW"):
+        usual = getattr(effort, kind)
+        small = usual._replace(impacts=20, samples=few, samples_of_change=few)
+        monkeypatch.setattr(effort, kind, small)
 
 
 @pytest.fixture
 def short_runs(short_motions, monkeypatch):
     """An answer follows few impacts: long runs are those of contacts/test_motion.py."""
-    for starts in ("_STARTS", "_STARTS_OF_LAW"):
-        monkeypatch.setattr(f"bouncing_ball.contacts.starts.{starts}", 3)
+    from bouncing_ball.contacts import effort
+
+    for kind in ("LINEAR", "OF_LAW"):
+        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(starts=3))
     # Balls of a law that come to rest on a stiff contact take longest.
     monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 3)
 

@@ -92,6 +92,14 @@ def test_a_ball_that_is_dropped_with_gravity_rises_as_measured(given, drop, heig
     assert f"r = {found.measured_restitution:.4g} without gravity" in note
 
 
+def test_a_drop_on_a_damper_that_acts_on_approach_alone_is_read_with_gravity_as_well():
+    given = DROP | {"contact_time": "50 ms", "rebound_height": "10 cm", "release": "approach"}
+    found = answered(**given).found
+    (note,) = [x for x in found.notes if x.startswith("dropped from")]
+    assert f"r = {found.measured_restitution:.4g} without gravity" in note
+    assert found.measured_restitution > math.sqrt(0.5) + 0.01
+
+
 @pytest.mark.parametrize("release", LINEAR)
 def test_gravity_lowers_the_restitution_by_one_percent_at_the_speed_that_is_given(release):
     found = described(mass=0.02, stiffness=2000.0, measured_restitution=0.7, release=release)

@@ -59,8 +59,9 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     # What is written is read as the same law, and its orbit is the same one.
     read = {"from_engine": "drake", "parameters": settings.parameters}
     again = assessed(**TABLE, **read)
-    assert again.law.pop("name") == law.pop("name")
-    assert again.law == pytest.approx(law, rel=1e-11)
+    same = again.law
+    assert same.pop("name") == law.pop("name")
+    assert same == pytest.approx(law, rel=1e-11)
     got = again.measured_restitution, again.contact_time, again.judged.max_height
     assert got == pytest.approx((0.8, 2e-3, found.judged.max_height), rel=1e-10)
     # For another engine the linear contact of this speed is written.

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from asked_contacts import assessed
 
+from bouncing_ball.contacts import effort
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.ends import Ending
 from bouncing_ball.contacts.engines.impedance import Impedance
@@ -43,7 +44,7 @@ def without_changes(monkeypatch):
 @pytest.fixture
 def few_impacts(monkeypatch):
     """An answer that follows the ball for fewer impacts, after which these motions are known."""
-    monkeypatch.setattr("bouncing_ball.contacts.ends._IMPACTS", 200)
+    monkeypatch.setattr(effort, "LINEAR", effort.LINEAR._replace(impacts=200))
 
 
 @pytest.fixture
@@ -52,7 +53,7 @@ def few_starts(monkeypatch):
 
     ``test_the_headline_is_about_the_motion_on_which_most_balls_end`` has all of them.
     """
-    monkeypatch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+    monkeypatch.setattr(effort, "LINEAR", effort.LINEAR._replace(starts=3))
     monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 100)
 
 

@@ -11,7 +11,7 @@ from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.measured.curves import CURVES, curve_named
 from bouncing_ball.measured.experiment import experiment
-from bouncing_ball.measured.law_fit import Points, fit_law
+from bouncing_ball.measured.law_fit import MeasuredPoints, fit_law
 from bouncing_ball.models.laws.hertzian import KuwabaraKono
 
 TABLE = Table(frequency="20 Hz", acceleration="1 g")
@@ -24,7 +24,7 @@ DIFFERENT = ("tsuji", "kuwabara-kono", "hunt-crossley")
 def simulated(name, restitution, generator, speeds=SPEEDS, noise=NOISE):
     """Restitution coefficients of a law with noise, and those without."""
     curve = curve_named(name)
-    theta = fit_law(curve, Points(np.ones(1), np.array([restitution]))).theta
+    theta = fit_law(curve, MeasuredPoints(np.ones(1), np.array([restitution]))).theta
     exact = curve.restitution(theta, speeds / np.exp(np.mean(np.log(speeds))))
     return exact + noise * generator.standard_normal(speeds.size), exact
 
@@ -98,11 +98,11 @@ def covered(law, known, count, seed=50):
     found = 0
     for _ in range(count):
         measured, exact = simulated(law, 0.75, generator)
-        points = Points(SPEEDS, measured, np.eye(SPEEDS.size) * NOISE**2 if known else None)
+        points = MeasuredPoints(SPEEDS, measured, np.eye(SPEEDS.size) * NOISE**2 if known else None)
         low, high = fit_law(curve_named(law), points).interval
         middle = float(np.interp(0.0, np.log(SPEEDS / points.reference), exact))
         if law != "tsuji":
-            theta = fit_law(curve_named(law), Points(np.ones(1), np.array([0.75]))).theta
+            theta = fit_law(curve_named(law), MeasuredPoints(np.ones(1), np.array([0.75]))).theta
             middle = float(curve_named(law).restitution(theta, 1.0))
         found += low <= middle <= high
     return found
@@ -147,7 +147,7 @@ def test_the_law_behind_precise_data_is_the_best(law):
 def test_the_error_of_a_point_left_out_is_that_of_a_fit_without_it():
     croquet = experiment("croquet")
     for law, tolerance in (("tsuji", 1e-12), ("kuwabara-kono", 1e-3)):
-        points = Points(croquet.speeds, croquet.restitutions)
+        points = MeasuredPoints(croquet.speeds, croquet.restitutions)
         errors = []
         for k in range(points.size):
             rest = fit_law(curve_named(law), points.take(np.arange(points.size) != k))

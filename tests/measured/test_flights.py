@@ -17,7 +17,7 @@ from bouncing_ball.measured.flights import (
     heard,
     together,
 )
-from bouncing_ball.measured.law_fit import Points, fit_law
+from bouncing_ball.measured.law_fit import MeasuredPoints, fit_law
 
 PRECISE = {"rtol": 1e-12, "atol": 1e-14, "method": "DOP853"}
 # A table-tennis ball, for which the drag is large: 2.7 g and 40 mm.
@@ -173,7 +173,7 @@ def held(law, count, seed=50):
     for _ in range(count):
         noisy = [times + sigma * generator.standard_normal(times.size) for times in exact]
         one = together([heard(np.diff(t), resolution=sigma, length=LENGTH) for t in noisy])
-        fit = fit_law(curve, Points(one.speeds, one.restitutions, one.covariance))
+        fit = fit_law(curve, MeasuredPoints(one.speeds, one.restitutions, one.covariance))
         low, high = fit.interval
         found += low <= restitution(fit.speed) <= high
     return found

@@ -8,7 +8,7 @@ import pytest
 from bouncing_ball.measured.curves import curve_named
 from bouncing_ball.measured.experiment import experiment
 from bouncing_ball.measured.fit import fit_contact
-from bouncing_ball.measured.law_fit import Points
+from bouncing_ball.measured.law_fit import MeasuredPoints
 from bouncing_ball.measured.verdicts import (
     REJECTED,
     Compatibility,
@@ -31,7 +31,7 @@ def sample(law, noise, count, known):
     exact = curve.restitution(curve.parameter(0.8), SPEEDS / np.exp(np.mean(np.log(SPEEDS))))
     spread = np.eye(SPEEDS.size) * noise**2 if known else None
     for _ in range(count):
-        yield Points(SPEEDS, exact + noise * generator.standard_normal(SPEEDS.size), spread)
+        yield MeasuredPoints(SPEEDS, exact + noise * generator.standard_normal(SPEEDS.size), spread)
 
 
 @pytest.mark.slow
@@ -130,7 +130,9 @@ def test_equal_speeds_decide_nothing():
 def test_the_scatter_about_a_smooth_curve_is_the_variance():
     generator = np.random.default_rng(2)
     speeds = np.geomspace(0.5, 5.0, 400)
-    points = Points(speeds, 0.8 - 0.03 * np.log(speeds) + 0.01 * generator.standard_normal(400))
+    points = MeasuredPoints(
+        speeds, 0.8 - 0.03 * np.log(speeds) + 0.01 * generator.standard_normal(400)
+    )
     variance, freedom = noise(points)
     # The relative error of a variance with f degrees of freedom is √(2/f).
     assert freedom == 397 and variance == pytest.approx(1e-4, rel=4 * np.sqrt(2 / 397))
@@ -138,7 +140,7 @@ def test_the_scatter_about_a_smooth_curve_is_the_variance():
 
 def test_the_extrapolation_is_that_of_a_fit_to_the_slower_half():
     croquet = experiment("croquet")
-    points = Points(croquet.speeds, croquet.restitutions)
+    points = MeasuredPoints(croquet.speeds, croquet.restitutions)
     size = extrapolation_errors(curve_named("linear"), points).size
     order = np.argsort(croquet.speeds)
     slow = croquet.restitutions[order[:5]]
@@ -164,7 +166,7 @@ def test_a_trend_of_the_scatter_is_found_as_often_as_its_level_says():
     generator = np.random.default_rng(4)
     speeds = np.geomspace(0.5, 5.0, 50)
     found = [
-        trend_of_scatter(Points(speeds, 0.8 + 0.01 * generator.standard_normal(50)))
+        trend_of_scatter(MeasuredPoints(speeds, 0.8 + 0.01 * generator.standard_normal(50)))
         for _ in range(400)
     ]
     # 5 % of 400 are 20; more than 35 or fewer than 7 have probabilities of 1e-3.
@@ -174,7 +176,7 @@ def test_a_trend_of_the_scatter_is_found_as_often_as_its_level_says():
 def test_the_errors_of_heights_explain_the_unequal_scatter_of_the_bouncy_ball():
     """At 1.4 m/s e was 0.707, 0.775 and 0.707, by heights that were read to 1 cm."""
     ball = experiment("bouncy_ball")
-    equal = Points(ball.speeds, ball.restitutions)
+    equal = MeasuredPoints(ball.speeds, ball.restitutions)
     by_height = ball.fit(("linear",)).points
     assert trend_of_scatter(equal) < 1e-20 and trend_of_scatter(by_height) > 0.05
     # Half a unit of the last digit.
@@ -184,7 +186,7 @@ def test_the_errors_of_heights_explain_the_unequal_scatter_of_the_bouncy_ball():
     apart = np.ptp(ball.restitutions[ball.speeds < 1.5])
     assert apart < 2.5 * bars.max() and bars.max() > 15 * bars.min()
     golf = experiment("golf_ball")
-    assert trend_of_scatter(Points(golf.speeds, golf.restitutions)) < 1e-3
+    assert trend_of_scatter(MeasuredPoints(golf.speeds, golf.restitutions)) < 1e-3
     assert trend_of_scatter(golf.fit(("linear",)).points) > 0.05
 
 

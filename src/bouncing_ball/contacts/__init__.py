@@ -11,13 +11,16 @@ The way of a contact through the modules:
 ``assess``
     is a restitution coefficient good enough? By the orbits in all models (``families``) and the
     motion on which most balls end (``motion``, ``starts``): where one ball ends (``ends``), and
-    means of what does not repeat (``means``). ``judgement`` has what decides
+    means of what does not repeat (``means``), of as many balls as take seconds (``effort``).
+    ``judgement`` has what decides
 ``choose``
     how stiff must a contact be for that? By the ϖ that a tolerance needs (``needed``)
 ``write``
     what does one write into an engine for it? (``engines``)
 ``describe``
     the numbers of a contact without a table; ``drops`` and ``rebounds`` have those of a drop
+``numbers_of_contact``
+    the numbers that the answers of ``assess``, ``choose`` and ``describe`` read from the contact
 ``verdict``, ``verdict_on_motion``, ``notes``
     the sentences on these facts, written when they are shown: by the library, as text, JSON or page
 ``rows``, ``texts``, ``page_data``, ``page_figures``

@@ -7,7 +7,7 @@ The contact is the truth: the error of a model is its deviation from the contact
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from bouncing_ball.accuracy.errors import OF_ORBITS
 from bouncing_ball.contacts.choose import Choice
@@ -18,6 +18,7 @@ from bouncing_ball.contacts.judgement import MotionJudgement, OrbitJudgement, ju
 from bouncing_ball.contacts.motion import FinalMotion, of_family
 from bouncing_ball.contacts.needed import Needed, finite, needed
 from bouncing_ball.contacts.notes import notes, remarks
+from bouncing_ball.contacts.numbers_of_contact import NumbersOfImpact
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import resolve
@@ -36,9 +37,6 @@ STEPS = 50
 STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 # Beyond this limit the square of ϖ leaves no digits. The other calls have the same limit.
 _LARGEST = 1e8
-# A contact law is integrated in time. At this Λ its motion takes up to eight seconds, and beyond it
-# more, because a contact is then a small part of a flight.
-_LARGEST_OF_LAW = 1e5
 
 
 @dataclass(frozen=True)
@@ -64,19 +62,14 @@ class Corrected:
 
 
 @dataclass(frozen=True, repr=False)
-class Assessment:
+class Assessment(NumbersOfImpact):
     """The assessment of a contact on a table; times are in s, lengths in m, forces in N.
 
-    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
-    r of a free impact for each release rule, of a law for its rule only (the other value is None),
-    and ``measured_restitution`` is that for the rule of this contact; it holds at impacts faster
-    than ``slowed_speed``, at which, on a table at rest, gravity lowers √(h′/h) by 1 %, None without
-    damping or if it does at no speed. ``n`` is the family of the verdict. Up to Λ =
-    ``permanent_contact`` a ball may stay on the table; None if no such threshold was found. ``law``
-    has the ``name`` of a contact law and its parameters, whose units are powers of kg, m and s.
-    ``chosen`` is the family for which the contact was chosen, None for a contact that was given.
-    ``no_orbit`` says that no model has an orbit; it is empty if one has. ``hint`` is what may have
-    been meant in that case.
+    Those of the contact are read from ``case``. ``restitution`` has the r of a free impact for each
+    release rule, of a law for its rule only. ``n`` is the family of the verdict. ``chosen`` is the
+    family for which the contact was chosen, None for a contact that was given. ``no_orbit`` says
+    that no model has an orbit; it is empty if one has. ``hint`` is what may have been meant in that
+    case.
     """
 
     KEYS: ClassVar[tuple[str, ...]] = (
@@ -86,23 +79,7 @@ class Assessment:
         "is_good_enough", "verdict", "reason", "starts", "notes", "case", "n",
     )  # fmt: skip
 
-    frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
-    damping_ratio: Annotated[float, Listed("damping ratio ζ")]
-    amplitude: Annotated[float, Listed("excitation amplitude Λ")]
-    stiffness: Annotated[float, Listed("stiffness", "N/m")]
-    damping: Annotated[float, Listed("damping", "N s/m")]
-    contact_time: Annotated[float, Listed("contact time", "s")]
     time_step: LargestTimeStep
-    static_deflection: Annotated[float, Listed("static deflection", "m")]
-    restitution: Annotated[
-        dict[str, float | None],
-        Listed("restitution, released at δ = 0"),
-        Listed("restitution, released without force"),
-    ]
-    measured_restitution: float
-    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
-    permanent_contact: Annotated[float | None, Listed("permanent contact up to Λ")]
-    law: dict[str, Any] | None
     corrected: Corrected
     orbits: tuple[ComparedOrbit, ...]
     needed: Needed
@@ -118,6 +95,37 @@ class Assessment:
         """The verdict, and no numbers, of which there are hundreds."""
         good = self.is_good_enough
         return f"Assessment(n={self.n}, is_good_enough={good}, verdict={self.verdict!r})"
+
+    @property
+    def amplitude(self) -> Annotated[float, Listed("excitation amplitude Λ")]:
+        """Λ."""
+        return self.case.table.amplitude
+
+    @property
+    def static_deflection(self) -> Annotated[float, Listed("static deflection", "m")]:
+        """How deep the ball lies at rest, in m."""
+        return self.case.static_deflection
+
+    @property
+    def restitution(
+        self,
+    ) -> Annotated[
+        dict[str, float | None],
+        Listed("restitution, released at δ = 0"),
+        Listed("restitution, released without force"),
+    ]:
+        """r of a free impact for each release rule; None for the rule that a law does not have."""
+        contact = self.case.equivalent
+        if self.case.is_linear:
+            return {str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR}
+        at_surface = contact.release.at_surface
+        r = float(contact.restitution)
+        return {str(rule): r if rule.at_surface == at_surface else None for rule in LINEAR}
+
+    @property
+    def permanent_contact(self) -> Annotated[float | None, Listed("permanent contact up to Λ")]:
+        """Λ up to which a ball may stay on the table; None if no such threshold was found."""
+        return finite(self.case.permanent_contact)
 
     @property
     def judged(self) -> ComparedOrbit:
@@ -150,8 +158,8 @@ class Assessment:
     def _said(self) -> Sentences:
         """The judgement in words, or the contact that was chosen."""
         if self.chosen is None:
-            law = None if self.case.is_linear else self.case.law.name
-            found = said_of_orbit(self.on_orbit, self.case.equivalent.linear, law)
+            case = self.case
+            found = said_of_orbit(self.on_orbit, case.equivalent.linear, case.integrated_law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         if self.on_motion is not None:
@@ -249,9 +257,9 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
     require_short(case.contact_time)
-    if not case.is_linear and amplitude > _LARGEST_OF_LAW:
+    if amplitude > case.effort.amplitude:
         raise ModelError(
-            f"Λ = {amplitude:g} is above {_LARGEST_OF_LAW:g}, up to which a contact law "
+            f"Λ = {amplitude:g} is above {case.effort.amplitude:g}, up to which a contact law "
             "is followed: give a lower acceleration, or a spring and a damper, which are faster"
         )
     if not 1 / _LARGEST < ratio < _LARGEST:
@@ -277,19 +285,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         need = choice.needed
     signature = case.instant(one.n)
     return Assessment(
-        frequency_ratio=ratio,
-        damping_ratio=float(contact.damping_ratio),
-        amplitude=amplitude,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        contact_time=case.contact_time,
         time_step=LargestTimeStep(case.contact_time / STEPS, STEP_RULE),
-        static_deflection=case.static_deflection,
-        restitution=_by_release(case),
-        measured_restitution=float(contact.restitution),
-        slowed_speed=case.slowed_speed,
-        permanent_contact=finite(case.permanent_contact),
-        law=case.law_in_si,
         corrected=Corrected(
             delay=float(signature.delay) * case.table.time,
             restitution=float(signature.restitution),
@@ -306,16 +302,6 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         chosen=None if choice is None else choice.n,
         no_orbit=no_orbit,
     )
-
-
-def _by_release(case: ResolvedContact) -> dict[str, float | None]:
-    """r of a free impact for each release rule; None for the rule that a law does not have."""
-    contact = case.equivalent
-    if case.is_linear:
-        return {str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR}
-    at_surface = contact.release.at_surface
-    r = float(contact.restitution)
-    return {str(rule): r if rule.at_surface == at_surface else None for rule in LINEAR}
 
 
 def _judged(

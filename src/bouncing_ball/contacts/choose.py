@@ -15,6 +15,7 @@ from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.needed import Needed, needed
 from bouncing_ball.contacts.notes import remarks
+from bouncing_ball.contacts.numbers_of_contact import NumbersOfImpact
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import first_stable_family, resolve
@@ -35,21 +36,13 @@ _STIFFER = 1 + 1e-6
 
 
 @dataclass(frozen=True, repr=False)
-class Choice:
+class Choice(NumbersOfImpact):
     """The most compliant contact whose restitution model is within a tolerance, in SI units.
 
     ``n`` is the family of the orbit, and ``needed`` the ϖ that the tolerance needs. As an argument
     of other calls it is ``contact``.
     """
 
-    mass: float
-    stiffness: float
-    damping: float
-    frequency_ratio: float
-    damping_ratio: float
-    contact_time: float
-    release: str
-    measured_restitution: float
     n: int
     needed: Needed
     case: ResolvedContact
@@ -57,23 +50,6 @@ class Choice:
     def __repr__(self) -> str:
         """The family and the contact with its units, in a sentence."""
         return f"Choice(n={self.n}, verdict={self.verdict!r})"
-
-    @classmethod
-    def of(cls, case: ResolvedContact, n: int, needed: Needed) -> "Choice":
-        """The choice of a contact for a family, with the numbers of this contact."""
-        return cls(
-            mass=case.mass,
-            stiffness=case.stiffness,
-            damping=case.damping,
-            frequency_ratio=float(case.equivalent.frequency_ratio),
-            damping_ratio=float(case.equivalent.damping_ratio),
-            contact_time=case.contact_time,
-            release=str(case.equivalent.release),
-            measured_restitution=float(case.equivalent.restitution),
-            n=n,
-            needed=needed,
-            case=case,
-        )
 
     @property
     def contact(self) -> Contact:
@@ -83,7 +59,7 @@ class Choice:
         The error at ``stiffness`` is the tolerance up to rounding errors, which may be on either
         side of it. Here the stiffness is larger by a millionth, so that the error is within.
         """
-        if self.case.is_linear:
+        if self.case.is_spring_damper:
             return replace(self.case.given, stiffness=self.stiffness * _STIFFER)
         return replace(self.case.given, contact_time=self.contact_time)
 
@@ -177,7 +153,7 @@ def choose(
     spring, need = of_loss(plain, table.gravity, stiffness)
     case = ResolvedContact(plain, table, spring, spring, given=contact, written=written)
     n = first_stable_family(question.families, float(spring.restitution), table.amplitude)
-    return Choice.of(case, n, need)
+    return Choice(n, need, case)
 
 
 # Steps of the search for the duration of a law, and how closely it is found.
@@ -233,7 +209,7 @@ def _of_law(
             f"no {contact.law} contact was found whose {QUANTITIES[Quantity(quantity)]} crosses "
             f"{percent(question.tolerance)}: give {{contact_time}}"
         )
-    return Choice.of(replace(case_of(place), given=contact), n, linear.needed)
+    return Choice(n, linear.needed, replace(case_of(place), given=contact))
 
 
 def _needed(unit: SpringDamper, amplitude: float, question: Question) -> Needed:

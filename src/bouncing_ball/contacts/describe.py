@@ -1,11 +1,12 @@
 """A contact without a table: its numbers."""
 
-from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, ClassVar
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.drops import deep
 from bouncing_ball.contacts.notes import force_formula, remarks
+from bouncing_ball.contacts.numbers_of_contact import NumbersOfContact
 from bouncing_ball.contacts.quantities import Gravity, Speed, check_kinds, quantities
 from bouncing_ball.contacts.resolve import needs_table, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -19,18 +20,13 @@ LONGEST = 1000.0
 """The longest contact in s that is taken for one: no simulation has a longer one."""
 
 
-@dataclass(frozen=True)
-class Description:
+@dataclass(frozen=True, repr=False)
+class Description(NumbersOfContact):
     """A contact without a table, in SI units.
 
-    ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
-    What depends on the impact speed is None. The r of a free impact holds at speeds above
-    ``slowed_speed``: there, on a table at rest, gravity lowers √(h′/h) by 1 %, and at slower
-    impacts by more. It is None without damping. At rest the ball lies ``static_deflection`` below
-    the level at which it meets the table. ``law`` has the ``name`` of a contact law and its
-    parameters, whose units are powers of kg, m and s; its r and contact time are those of one
-    impact speed, and stiffness, damping and ζ those of the linear contact with the same two and
-    the same ``release``.
+    What depends on the impact speed is None if that is not known. The r and the contact time of a
+    law are those of one impact speed, and stiffness, damping and ζ those of the linear contact with
+    the same two and the same ``release``.
     """
 
     KEYS: ClassVar[tuple[str, ...]] = (
@@ -38,25 +34,53 @@ class Description:
         "release", "measured_restitution", "slowed_speed", "static_deflection", "law", "notes",
     )  # fmt: skip
 
-    mass: Annotated[float, Listed("mass in kg")]
-    stiffness: Annotated[float, Listed("stiffness", "N/m")]
-    natural_frequency: Annotated[float, Listed("natural frequency ω", "rad/s")]
-    release: str
     # Its units are those of a table at rest, which nobody gave.
-    case: ResolvedContact = field(repr=False)
-    damping: Annotated[float | None, Listed("damping", "N s/m")] = None
-    damping_ratio: Annotated[float | None, Listed("damping ratio ζ")] = None
-    contact_time: Annotated[float | None, Listed("contact time", "s")] = None
-    measured_restitution: Annotated[float | None, Listed("restitution of a free impact")] = None
-    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")] = None
-    static_deflection: Annotated[float | None, Listed("depth at rest", "m")] = None
-    law: dict[str, Any] | None = None
+    case: ResolvedContact
+
+    def __repr__(self) -> str:
+        """The numbers of the contact, without the sentences on it."""
+        shown = (
+            "mass", "stiffness", "natural_frequency", "release", "damping", "damping_ratio",
+            "contact_time", "measured_restitution", "slowed_speed", "static_deflection", "law",
+        )  # fmt: skip
+        return f"Description({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
+
+    @property
+    def natural_frequency(self) -> Annotated[float, Listed("natural frequency ω", "rad/s")]:
+        """ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω."""
+        return self.case.omega
+
+    @property
+    def damping(self) -> Annotated[float | None, Listed("damping", "N s/m")]:
+        """c in N s/m."""
+        return None if self.case.lacks_speed else self.case.damping
+
+    @property
+    def damping_ratio(self) -> Annotated[float | None, Listed("damping ratio ζ")]:
+        """ζ = c/(2√(km))."""
+        return None if self.case.lacks_speed else float(self.case.equivalent.damping_ratio)
+
+    @property
+    def contact_time(self) -> Annotated[float | None, Listed("contact time", "s")]:
+        """Duration of a free impact in s."""
+        return None if self.case.lacks_speed else self.case.contact_time
+
+    @property
+    def measured_restitution(
+        self,
+    ) -> Annotated[float | None, Listed("restitution of a free impact")]:
+        """r of a free impact."""
+        return None if self.case.lacks_speed else self.case.restitution
+
+    @property
+    def static_deflection(self) -> Annotated[float, Listed("depth at rest", "m")]:
+        """How deep the ball lies at rest, in m."""
+        return self.case.static_deflection
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on how the contact was read."""
-        depth = self.static_deflection
-        sunk = () if depth is None else deep(depth, self.case.given.radius, "at rest")
+        sunk = deep(self.static_deflection, self.case.given.radius, "at rest")
         return remarks(self.case) + force_formula(self.case) + sunk
 
 
@@ -103,35 +127,11 @@ def description_of(case: ResolvedContact) -> Description:
         If the contact is longer than any that is simulated, or is to be written for an engine
         whereas its r depends on the speed.
     """
-    release = case.equivalent.release
-    found = Description(
-        mass=case.mass,
-        stiffness=case.stiffness,
-        natural_frequency=case.omega,
-        release=str(release),
-        case=case,
-    )
-    if case.lacks_speed:
-        if case.written is not None:
-            raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
-        return replace(found, static_deflection=case.static_deflection)
-    time = case.contact_time
-    restitution = float(case.equivalent.restitution)
-    if not case.is_linear and case.impact_speed is not None:
-        impact = case.law.signature(case.impact_speed * case.table.time / case.table.length)
-        time = float(impact.duration) * case.table.time
-        restitution = float(impact.restitution)
-    require_short(time)
-    return replace(
-        found,
-        damping=case.damping,
-        damping_ratio=float(case.equivalent.damping_ratio),
-        contact_time=time,
-        measured_restitution=restitution,
-        slowed_speed=case.slowed_speed,
-        static_deflection=case.static_deflection,
-        law=case.law_in_si,
-    )
+    if not case.lacks_speed:
+        require_short(case.contact_time)
+    elif case.written is not None:
+        raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
+    return Description(case)
 
 
 def require_short(contact_time: float) -> None:

@@ -11,11 +11,6 @@ from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import Starts
 from bouncing_ball.periodic.one_impact import n_t
 
-# Number of impacts after which the search for a repetition ends. A contact law is integrated in
-# time, which takes several milliseconds for an impact, so that it is followed for fewer.
-_IMPACTS = 600
-_IMPACTS_OF_LAW = 250
-
 
 class FirstImpact(NamedTuple):
     """A first impact: phase of the table and absolute velocity of the ball."""
@@ -39,15 +34,10 @@ class Ending(NamedTuple):
         return self.motion.impacts == 0 and not self.is_unresolved
 
 
-def followed_impacts(case: ResolvedContact) -> int:
-    """Number of impacts of a ball in the search for its final motion."""
-    return _IMPACTS if case.is_linear else _IMPACTS_OF_LAW
-
-
 def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> Ending:
     """The motion on which a ball of a model ends."""
     lam = case.table.amplitude
-    path = np.empty((3, followed_impacts(case)))
+    path = np.empty((3, case.effort.impacts))
     found = final_motions(case.models[name], lam, *first, impacts=path.shape[1], path=path)
     motion = MotionName(Kind(str(found.kind)), int(found.periods), int(found.impacts))
     followed = int(found.followed)

@@ -197,8 +197,9 @@ def families(
     exact, *simple = case.models.values()
     near = np.ones(n.shape, dtype=bool)
     of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD, near) for model in simple]
-    if not case.is_linear:
-        near = can_carry(case.law, n, lam)
+    law = case.integrated_law
+    if law is not None:
+        near = can_carry(law, n, lam)
         if case.equivalent.frequency_ratio > _STIFF:
             nodes = [found[len(OF_ORBITS)] for _, found in of_simple]
             near &= ~(np.nanmin(nodes, axis=0) > _FAR * lam)

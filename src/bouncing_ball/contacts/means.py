@@ -13,11 +13,12 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import repeat
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from bouncing_ball.accuracy.errors import deviation
+from bouncing_ball.contacts.effort import Sampling
 from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.errors import ModelError
@@ -52,36 +53,14 @@ class Mean:
     half_width: float
 
 
-class Sampling(NamedTuple):
-    """The samples of balls: the number of balls is rounded up to multiples of ``unit``; unless one
-    is asked for it is ``usual``. The means are examined after each of the numbers of ``impacts`` of
-    a ball. At least ``before`` first impacts are left out.
-    """
-
-    unit: int
-    usual: int
-    impacts: tuple[int, ...]
-    before: int
-
-
-# A step of a contact law takes much longer than one of a linear contact, though hardly longer for
-# many balls than for a few.
-_SAMPLES = Sampling(256, 4096, (25, 75, 150), 50)
-_SAMPLES_OF_LAW = Sampling(128, 256, (20, 40), 40)
 # An impact multiplies the energy by r² about, and so this number times 1/(1 - r) impacts by less
 # than e⁻⁴; but so many impacts are not left out next to r = 1.
 _FORGOTTEN = 2.0
 _MOST_BEFORE = 400
-# The relative change of r, k and g, which few users know better, and the balls of its samples.
+# The relative change of r, k and g, which few users know better.
 _CHANGE = 1e-3
-_BALLS_OF_CHANGE = 1024
-_BALLS_OF_CHANGE_OF_LAW = 128
 # To this part of itself a law is found from its impact again.
 _SAME = 1e-6
-
-
-def _sampling(case: ResolvedContact) -> Sampling:
-    return _SAMPLES if case.is_linear else _SAMPLES_OF_LAW
 
 
 def compared_means(
@@ -94,7 +73,7 @@ def compared_means(
     """Means of both models, in m and W, and the deviations of the second model's from the first's,
     relative to these.
     """
-    sampling = _sampling(case)
+    sampling = case.effort.samples
     balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
     without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
     if not all(end.impacts.phase.size for end in ends.values()):
@@ -148,7 +127,8 @@ def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     that is not determined by an impact stands the linear contact, also without a change.
     """
     speed = _impact_speed(case, end)
-    if not case.is_linear and not _is_of_impact(case.law, speed):
+    law = case.integrated_law
+    if law is not None and not _is_of_impact(law, speed):
         spring = case.equivalent.linear
         linear = replace(case, law=spring, equivalent=spring)
         return {NO_CHANGE: linear} | _changed(linear, end)
@@ -172,10 +152,11 @@ def _impact_speed(case: ResolvedContact, end: Ending) -> float:
 
 def _shorter(case: ResolvedContact, speed: float) -> float:
     """The factor of the duration of an impact on a stiffer contact."""
-    if case.is_linear:
+    law = case.integrated_law
+    if law is None:
         return 1 / math.sqrt(1 + _CHANGE)
-    stiffer = case.law.stiffened(1 + _CHANGE)
-    return float(stiffer.signature(speed).duration / case.law.signature(speed).duration)
+    stiffer = law.stiffened(1 + _CHANGE)
+    return float(stiffer.signature(speed).duration / law.signature(speed).duration)
 
 
 def _with(
@@ -190,9 +171,8 @@ def _with(
     r = float(contact.restitution) * restitution
     ratio = float(contact.frequency_ratio) / duration
     other = SpringDamper.from_restitution(r, ratio, contact.release, measured=True)
-    if case.is_linear:
-        return replace(case, law=other, equivalent=other)
-    law: Any = _law(case.law, speed, restitution, duration, unit)
+    of_law = case.integrated_law
+    law: Any = other if of_law is None else _law(of_law, speed, restitution, duration, unit)
     return replace(case, law=law, equivalent=law if case.is_spring_damper else other)
 
 
@@ -241,15 +221,10 @@ def _changes(
     rests, or if the linear contact in place of a law has another kind of motion.
     """
     exact_end, *_ = ends.values()
-    all_changed = _changed(case, exact_end)
-    # A law that an impact determines has no sample of the linear contact.
-    own = not case.is_linear and NO_CHANGE not in all_changed
-    balls = _BALLS_OF_CHANGE_OF_LAW if own else _BALLS_OF_CHANGE
-    usual = _SAMPLES_OF_LAW if own else _SAMPLES
-    small = usual._replace(unit=balls, usual=balls, impacts=usual.impacts[-2:][:1])
     kinds = [end.motion.kind for end in ends.values()]
     found = {}
-    for name, changed in all_changed.items():
+    for name, changed in _changed(case, exact_end).items():
+        sampling = changed.effort.samples_of_change
         lam = changed.table.amplitude
         # A ball beside a table that moves less would rise from it.
         start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
@@ -262,7 +237,7 @@ def _changes(
             return None
         if not all(end.impacts.phase.size for end in there.values()):
             return None
-        samples = _sample_sizes(small, balls, there.values())
+        samples = _sample_sizes(sampling, sampling.usual, there.values())
         looked = (_sums(changed, *each, samples) for each in there.items())
         # There is no end to the sums of a motion that repeats.
         *_, (_, *sums) = zip(samples, *looked, strict=False)
@@ -312,18 +287,18 @@ def _sums(
     impacts = end.impacts
     if end.is_sampled:
         starts = impacts.beside(samples[-1].balls, lam, BESIDE)
-        return sums_at(samples, starts, model, lam, _before(case, _sampling(case).before))
+        return sums_at(samples, starts, model, lam, _before(case))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
     _, once = advance(*start(model, lam, impacts.last()), end.motion.impacts)
     return repeat(once)
 
 
-def _before(case: ResolvedContact, least: int) -> int:
+def _before(case: ResolvedContact) -> int:
     """Number of first impacts that are left out."""
     loss = 1 - float(case.equivalent.restitution)
     forgotten = _MOST_BEFORE if loss * _MOST_BEFORE < _FORGOTTEN else math.ceil(_FORGOTTEN / loss)
-    return max(least, forgotten)
+    return max(case.effort.samples.before, forgotten)
 
 
 def _estimate(end: Ending, sums: np.ndarray) -> Estimate:

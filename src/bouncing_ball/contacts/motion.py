@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of, followed_impacts, on_orbit
+from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of, on_orbit
 from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.means import BESIDE, Mean, compared_means
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -144,8 +144,8 @@ def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
-    followed = followed_impacts(case)
-    found = final_motions(next(iter(case.models.values())), lam, 0.0, lam, impacts=followed)
+    exact, *_ = case.models.values()
+    found = final_motions(exact, lam, 0.0, lam, impacts=case.effort.impacts)
     same = found.kind == Kind.ORBIT and (int(found.periods), int(found.impacts)) == (family.n, 1)
     return None if same else str(found.kind)
 

@@ -68,7 +68,7 @@ def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
     if drop is None or height is None:
         return ()
     r = math.sqrt(height / drop)
-    if not case.is_linear:
+    if not case.is_spring_damper:
         return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)
     arrives = shown(math.sqrt(2 * case.table.gravity * drop), "m/s")
     free = float(case.equivalent.restitution)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.simple_models import SIMPLE, models_of_law
+from bouncing_ball.contacts import effort
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.named_laws import model_name
@@ -41,9 +42,15 @@ class ResolvedContact:
     the contact. The models are built on first use.
 
     Two questions divide the contacts. If one :attr:`is_linear`, its motion on a vibrating table has
-    a closed form; otherwise its law is integrated in time. If one :attr:`is_spring_damper`, k and c
-    are its own; otherwise they are those of the equivalent. Only the answers for a damper that acts
-    on approach differ: its law is integrated, with its own k and c.
+    a closed form; otherwise it has an :attr:`integrated_law`, and balls are followed with less
+    :attr:`effort`. If one :attr:`is_spring_damper`, k and c are its own; otherwise they are those
+    of the equivalent. Only the answers for a damper that acts on approach differ: its law is
+    integrated, with its own k and c.
+
+    It has two contacts. ``plain`` is what is computed. ``given`` is what was asked about: the
+    sentences name its engine, its drop test and its radius. At first ``plain`` follows from
+    ``given``; but it is replaced where the law of an engine or a given time step leads to another k
+    and c, whereas the sentences stay those on ``given``.
 
     Parameters
     ----------
@@ -60,7 +67,7 @@ class ResolvedContact:
         restitution coefficient and duration as this law has at the impact speed of the orbit, or
         with the parameters of an engine.
     given : Contact
-        The contact as it was given, for the sentences on how it was read.
+        The contact as it was given.
     written : str, optional
         Name of the engine for which it is written.
     impact_speed : float, optional
@@ -106,6 +113,11 @@ class ResolvedContact:
         return None if self.is_linear else self.law
 
     @property
+    def effort(self) -> effort.Effort:
+        """How many balls and impacts are followed on the contact."""
+        return effort.LINEAR if self.is_linear else effort.OF_LAW
+
+    @property
     def mass(self) -> float:
         """m in kg."""
         return self.plain.mass
@@ -136,14 +148,29 @@ class ResolvedContact:
 
     @property
     def contact_time(self) -> float:
-        """Duration of a free impact in s.
+        """Duration of a free impact in s, for a law with an impact speed at that speed.
 
         Raises
         ------
         ModelError
             If ζ ≥ 1.
         """
-        return float(self.equivalent.free_duration) * self.table.time
+        impact = self._impact
+        duration = self.equivalent.free_duration if impact is None else impact.duration
+        return float(duration) * self.table.time
+
+    @property
+    def restitution(self) -> float:
+        """r of a free impact, for a law with an impact speed at that speed."""
+        impact = self._impact
+        return float(self.equivalent.restitution if impact is None else impact.restitution)
+
+    @cached_property
+    def _impact(self) -> Instant | None:
+        """The free impact of a law at the impact speed, if one is given."""
+        if self.is_linear or self.impact_speed is None:
+            return None
+        return self.law.signature(self.impact_speed * self.table.time / self.table.length)
 
     @property
     def static_deflection(self) -> float:

@@ -1,8 +1,8 @@
 """One table of rows for each result: its text, the page and JSON are made from them.
 
 A result is a frozen dataclass. A field that a reader is shown is annotated with a :class:`Listed`;
-JSON has all fields under their names, or what the class lists in ``KEYS``, properties included;
-``KEYS`` may also map names in JSON to those of attributes.
+JSON has all fields under their names, or what the class lists in ``KEYS``, properties included,
+whose results are annotated alike; ``KEYS`` may also map names in JSON to those of attributes.
 """
 
 from collections.abc import Mapping
@@ -53,11 +53,11 @@ def rows(result: Any) -> list[Entry]:
     [(('largest',), 'largest time step', 's', 2e-06), (('rule',), '', '', 'a rule')]
     """
     found: list[Entry] = []
-    hints = get_type_hints(type(result), include_extras=True)
     keys = getattr(result, "KEYS", None) or [field.name for field in fields(result)]
     for name in keys:
-        value = getattr(result, keys[name] if isinstance(keys, Mapping) else name)
-        listed = getattr(hints.get(name), "__metadata__", ())
+        attribute = keys[name] if isinstance(keys, Mapping) else name
+        value = getattr(result, attribute)
+        listed = _listed(type(result), attribute)
         if isinstance(value, Mapping) and listed:
             of_values = zip(value.items(), listed, strict=True)
             found += [
@@ -69,6 +69,16 @@ def rows(result: Any) -> list[Entry]:
             words, unit = listed[0] if listed else ("", "")
             found.append(Entry((name,), words, unit, value))
     return found
+
+
+def _listed(kind: type, attribute: str) -> tuple[Any, ...]:
+    """How an attribute is listed, a field or a property; empty if it is in JSON only."""
+    member = getattr(kind, attribute, None)
+    if isinstance(member, property):
+        hint = get_type_hints(member.fget, include_extras=True).get("return")
+    else:
+        hint = get_type_hints(kind, include_extras=True).get(attribute)
+    return getattr(hint, "__metadata__", ())
 
 
 def texts(result: Any) -> list[tuple[str, str]]:

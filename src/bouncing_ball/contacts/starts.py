@@ -1,9 +1,9 @@
 """On which motions balls end that start from an even grid of impacts, and with which shares.
 
 The grid is over the phase of the table and the speed of the first impact. It is followed on the
-contact itself. An impact on a contact law takes a hundred times as long as one on a linear contact,
-so that a law has fewer starts; its shares then have Wilson's intervals (E. B. Wilson, Journal of
-the American Statistical Association 22, 1927).
+contact itself. A contact law has fewer starts (:mod:`bouncing_ball.contacts.effort`); its shares
+then have Wilson's intervals (E. B. Wilson, Journal of the American Statistical Association 22,
+1927).
 
 They hold for random starts. Those of an even grid are nearer to the shares of all starts, unless
 the basins are finer than the grid.
@@ -14,15 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from bouncing_ball.contacts import effort
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.long_run.basins import MotionName, basins
 from bouncing_ball.long_run.motions import Kind
 
-# Starts along each axis, also of a contact law, of which 144 starts take some twenty seconds, and
-# the impacts for which each ball is followed: after 250 some that approach an orbit are not known.
-_STARTS = 12
-_STARTS_OF_LAW = 6
+# The impacts for which each ball is followed: after 250 some that approach an orbit are not known.
 _IMPACTS = 300
 FEW = 0.1
 """The share of starts below which few balls reach an orbit; its standard error is 2.5 %, and 5 %
@@ -63,7 +61,7 @@ class SharesOfStarts:
     @property
     def is_small(self) -> bool:
         """Whether the starts are so few that the shares have intervals."""
-        return self.balls < _STARTS * _STARTS
+        return self.balls < effort.LINEAR.starts**2
 
     @property
     def sentence(self) -> str:
@@ -134,8 +132,7 @@ def ends_of_starts(case: ResolvedContact) -> SharesOfStarts:
     """
     lam = case.table.amplitude
     exact, *_ = case.models.values()
-    starts = _STARTS if case.is_linear else _STARTS_OF_LAW
-    found = basins(exact, lam, starts, impacts=_IMPACTS)
+    found = basins(exact, lam, case.effort.starts, impacts=_IMPACTS)
     order = np.argsort(-found.share, kind="stable")
     row, column = np.argwhere(found.which == order[0])[0]
     phase = float(found.phase[column])

@@ -12,6 +12,7 @@ from bouncing_ball.contacts.needed import NO_ORBIT, Needed
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import in_place_of, percent, shown, signed
 from bouncing_ball.contacts.verdict_on_motion import Sentences
+from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.spring_damper import SpringDamper
 
 _UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
@@ -49,7 +50,7 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
 
 
 def said_of_orbit(
-    judged: OrbitJudgement, linear: SpringDamper, law: str | None = None
+    judged: OrbitJudgement, linear: SpringDamper, law: ContactLaw | None = None
 ) -> Sentences:
     """The judgement on a contact by an orbit, in words; the contact is ``linear``, or of another
     ``law`` with the same r and duration.
@@ -88,7 +89,9 @@ def _instead(judged: OrbitJudgement) -> str:
     return "; nor is the corrected one: simulate the contact"
 
 
-def _reason(judged: OrbitJudgement, linear: SpringDamper, tolerance: str, law: str | None) -> str:
+def _reason(
+    judged: OrbitJudgement, linear: SpringDamper, tolerance: str, law: ContactLaw | None
+) -> str:
     """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs.
 
     That ϖ is one of linear contacts, so that it is no reason for a verdict on another law.
@@ -96,7 +99,7 @@ def _reason(judged: OrbitJudgement, linear: SpringDamper, tolerance: str, law: s
     needed = judged.needed
     frequency_ratio = float(linear.frequency_ratio)
     if law is not None:
-        text = f"both values are computed, that of the contact with the {law} law itself"
+        text = f"both values are computed, that of the contact with the {law.name} law itself"
         if needed.frequency_ratio is None:
             return text
         return (
@@ -119,7 +122,7 @@ def _reason(judged: OrbitJudgement, linear: SpringDamper, tolerance: str, law: s
 def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Sentences:
     """The most compliant contact within the tolerance, in words."""
     tolerance = percent(needed.tolerance)
-    if not case.is_linear:
+    if not case.is_spring_damper:
         sentence = (
             f"A simulation needs a {case.law.name} contact whose free impact, at the speed of the "
             f"{n}-T orbit, takes {shown(case.contact_time, 's')} or less: the restitution model "

@@ -172,8 +172,10 @@ def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> 
 class Softer:
     """The stiffest contact with the same ζ that a given time step resolves, with its own numbers.
 
-    ``dropped`` is a drop with the speed that was asked about, and ``dropped_at_step`` the least and
-    the greatest rise at this step. ``verdict`` is that on a vibrating table, otherwise empty.
+    It is the answer about the contact whose settings are ``EngineSettings.softer``, and keeps the
+    error of r that was allowed, unlike :class:`Looser`. ``dropped`` is a drop with the speed that
+    was asked about, and ``dropped_at_step`` the least and the greatest rise at this step.
+    ``verdict`` is that on a vibrating table, otherwise empty.
     """
 
     contact: Description
@@ -298,7 +300,10 @@ LOOSE = 0.01
 
 @dataclass(frozen=True)
 class Looser:
-    """The stiffest contact whose r is within a larger error at a given time step, in SI units."""
+    """The stiffest contact whose r is within a larger error at a given time step, in SI units.
+
+    It is stiffer than that of :class:`Softer`, which keeps the error that was allowed.
+    """
 
     error: float
     stiffness: float

@@ -24,7 +24,7 @@ from bouncing_ball.errors import (
     suggesting,
 )
 from bouncing_ball.measured.curves import CURVES, curve_named
-from bouncing_ball.measured.law_fit import LawFit, Points, fit_law, quantile_of
+from bouncing_ball.measured.law_fit import LawFit, MeasuredPoints, fit_law, quantile_of
 from bouncing_ball.numerics.arrays import as_numbers
 
 _POSITIVE = "a finite number > 0"
@@ -36,13 +36,13 @@ class ContactFit:
 
     Parameters
     ----------
-    points : Points
+    points : MeasuredPoints
     laws : tuple of LawFit
     notes : tuple of str
         What the points do not determine, and how large neglected effects are.
     """
 
-    points: Points
+    points: MeasuredPoints
     laws: tuple[LawFit, ...]
     notes: tuple[str, ...]
 
@@ -146,7 +146,7 @@ def _names(laws: Any) -> tuple[str, ...]:
 
 def checked_points(
     speeds: ArrayLike, restitutions: ArrayLike, uncertainties: ArrayLike | None
-) -> Points:
+) -> MeasuredPoints:
     """The points of a fit.
 
     Raises
@@ -163,7 +163,7 @@ def checked_points(
     require(np.isfinite(v) & (v > 0), v, "impact speed", _POSITIVE)
     require((e > 0) & (e <= 1), e, "restitution coefficient", "in (0, 1]")
     if uncertainties is None:
-        return Points(v, e)
+        return MeasuredPoints(v, e)
     u = as_numbers(uncertainties, "uncertainty", _POSITIVE)
     if u.ndim < 2:
         u = np.broadcast_to(u, v.shape) if u.size in (1, v.size) else u
@@ -172,7 +172,7 @@ def checked_points(
             u = np.diag(u**2)
     if u.shape != (v.size, v.size):
         raise ParameterError(f"{{uncertainties}} has not one number for each of {v.size} points")
-    return Points(v, e, u)
+    return MeasuredPoints(v, e, u)
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ class _Times:
     errors: np.ndarray | None
 
 
-def _times(durations: Any, errors: Any, points: Points) -> _Times | None:
+def _times(durations: Any, errors: Any, points: MeasuredPoints) -> _Times | None:
     if durations is None:
         return None
     t = as_numbers(durations, "contact time", _POSITIVE)
@@ -233,7 +233,7 @@ def _with_time(fit: LawFit, times: _Times | None) -> LawFit:
     return replace(fit, contact_time=time, time_interval=(time - away, time + away))
 
 
-def _notes(points: Points, times: _Times | None) -> tuple[str, ...]:
+def _notes(points: MeasuredPoints, times: _Times | None) -> tuple[str, ...]:
     notes = []
     if points.size == 1:
         notes += ["One point determines the parameter of each law; it tests no law."]

@@ -41,7 +41,7 @@ _SPEEDS = 60
 
 
 @dataclass(frozen=True)
-class Points:
+class MeasuredPoints:
     """Measured impacts, checked.
 
     Parameters
@@ -91,7 +91,7 @@ class Points:
             return np.eye(self.size)
         return np.linalg.inv(np.linalg.cholesky(self.covariance))
 
-    def take(self, which: np.ndarray) -> "Points":
+    def take(self, which: np.ndarray) -> "MeasuredPoints":
         """Some of the points, by a mask or by indices."""
         kept = None if self.covariance is None else self.covariance[which][:, which]
         return replace(
@@ -279,13 +279,13 @@ class LawFit:
         return self.contact(self.speed_on(table, n), mass)
 
 
-def fit_law(curve: LawCurve, points: Points) -> LawFit:
+def fit_law(curve: LawCurve, points: MeasuredPoints) -> LawFit:
     """One law fitted to the restitution coefficients.
 
     Examples
     --------
     >>> from bouncing_ball.measured.curves import curve_named
-    >>> points = Points(np.array([1.0, 2.0]), np.array([0.9, 0.8]))
+    >>> points = MeasuredPoints(np.array([1.0, 2.0]), np.array([0.9, 0.8]))
     >>> round(fit_law(curve_named("tsuji"), points).restitution, 9)
     0.85
     """
@@ -371,7 +371,7 @@ def _criterion(square: float, size: int, is_known: bool) -> float:
     return float(deviance + 2 * count + 2 * count * (count + 1) / (size - count - 1))
 
 
-def _left_out(plain: np.ndarray, slope: np.ndarray, points: Points) -> float:
+def _left_out(plain: np.ndarray, slope: np.ndarray, points: MeasuredPoints) -> float:
     """Root mean square of the errors at points that are left out of the fit."""
     if points.size < 2:
         return np.nan

@@ -26,7 +26,7 @@ import scipy
 
 from bouncing_ball.measured.curves import LawCurve
 from bouncing_ball.measured.fit import ContactFit
-from bouncing_ball.measured.law_fit import Points, fit_law
+from bouncing_ball.measured.law_fit import MeasuredPoints, fit_law
 
 REJECTED = 0.01
 ACCEPTED = 0.05
@@ -75,7 +75,7 @@ class Unseen:
     ----------
     square : float
         Sum of the squares of the errors over its expectation if the errors of the points have the
-        standard deviations of :attr:`Points.deviations`.
+        standard deviations of :attr:`MeasuredPoints.deviations`.
     freedom : float
         Degrees of freedom of the sum.
     size : float
@@ -107,7 +107,7 @@ class Unseen:
 _NONE = Unseen(np.nan, 1.0)
 
 
-def smooth(points: Points, speeds: np.ndarray) -> np.ndarray:
+def smooth(points: MeasuredPoints, speeds: np.ndarray) -> np.ndarray:
     """r at speeds in m/s by the parabola in ln v of least squares through the points.
 
     NaN if there are fewer than five points or four speeds.
@@ -115,7 +115,7 @@ def smooth(points: Points, speeds: np.ndarray) -> np.ndarray:
     Examples
     --------
     >>> measured = np.geomspace(1.0, 4.0, 5)
-    >>> points = Points(measured, 0.8 - 0.1 * np.log(measured))
+    >>> points = MeasuredPoints(measured, 0.8 - 0.1 * np.log(measured))
     >>> round(float(smooth(points, np.array([2.0]))[0] - (0.8 - 0.1 * np.log(2.0))), 12)
     0.0
     """
@@ -128,24 +128,24 @@ def smooth(points: Points, speeds: np.ndarray) -> np.ndarray:
     return _powers(points, speeds) @ best
 
 
-def _powers(points: Points, speeds: np.ndarray) -> np.ndarray:
+def _powers(points: MeasuredPoints, speeds: np.ndarray) -> np.ndarray:
     """The powers of ln v of the parabola."""
     return np.vander(np.log(speeds / points.reference), _SMOOTH)
 
 
-def _about_a_parabola(points: Points) -> np.ndarray:
+def _about_a_parabola(points: MeasuredPoints) -> np.ndarray:
     """The whitened points minus their parabola in ln v; NaN if there are too few."""
     return points.whitening @ (points.restitutions - smooth(points, points.speeds))
 
 
-def scatter(points: Points) -> tuple[float, float]:
+def scatter(points: MeasuredPoints) -> tuple[float, float]:
     """The variance of the whitened points about the parabola in ln v of least squares, and its
     degrees of freedom; NaN if there are fewer than five points or four speeds.
 
     Examples
     --------
     >>> speeds = np.geomspace(1.0, 4.0, 5)
-    >>> scatter(Points(speeds, 0.8 - 0.1 * np.log(speeds)))[1]
+    >>> scatter(MeasuredPoints(speeds, 0.8 - 0.1 * np.log(speeds)))[1]
     2.0
     """
     left = _about_a_parabola(points)
@@ -154,32 +154,32 @@ def scatter(points: Points) -> tuple[float, float]:
     return variance, float(freedom) if np.isfinite(variance) else np.nan
 
 
-def noise(points: Points) -> tuple[float, float]:
+def noise(points: MeasuredPoints) -> tuple[float, float]:
     """The variance of the errors of the whitened points, and its degrees of freedom.
 
     NaN if it is not known.
 
     Examples
     --------
-    >>> noise(Points(np.array([1.0]), np.array([0.5]), np.array([[1e-4]])))
+    >>> noise(MeasuredPoints(np.array([1.0]), np.array([0.5]), np.array([[1e-4]])))
     (1.0, inf)
     """
     return (1.0, np.inf) if points.is_known else scatter(points)
 
 
-def error_size(points: Points) -> float:
+def error_size(points: MeasuredPoints) -> float:
     """Root mean square of the standard deviations of the points, those given or those by the
     scatter; NaN if neither is known.
 
     Examples
     --------
-    >>> error_size(Points(np.array([1.0]), np.array([0.5]), np.array([[1e-4]])))
+    >>> error_size(MeasuredPoints(np.array([1.0]), np.array([0.5]), np.array([[1e-4]])))
     0.01
     """
     return float(np.sqrt(noise(points)[0] * np.mean(points.deviations**2)))
 
 
-def trend_of_scatter(points: Points) -> float:
+def trend_of_scatter(points: MeasuredPoints) -> float:
     """Probability of a trend of the scatter with ln v that is at least as strong, if the errors of
     the points have the ratios of their covariance; NaN if there are too few points.
 
@@ -192,7 +192,7 @@ def trend_of_scatter(points: Points) -> float:
     >>> speeds = np.geomspace(1.0, 8.0, 40)
     >>> signs = np.resize([1, -1], 40)
     >>> growing, equal = (
-    ...     Points(speeds, 0.8 + 0.01 * signs * speeds**b) for b in (1, 0)
+    ...     MeasuredPoints(speeds, 0.8 + 0.01 * signs * speeds**b) for b in (1, 0)
     ... )
     >>> trend_of_scatter(growing) < 1e-2, trend_of_scatter(equal) > 0.9
     (True, True)
@@ -206,7 +206,7 @@ def trend_of_scatter(points: Points) -> float:
     return float(scipy.stats.chi2.sf(slope**2 / (2 * trend @ trend), 1))
 
 
-def left_out(curve: LawCurve, points: Points) -> Unseen:
+def left_out(curve: LawCurve, points: MeasuredPoints) -> Unseen:
     """The errors at points that are left out of the fit."""
     if points.size < 3:
         return _NONE
@@ -223,7 +223,7 @@ def left_out(curve: LawCurve, points: Points) -> Unseen:
     return Unseen(float(np.sum((scale * errors) ** 2) / total), float(total**2 / square))
 
 
-def extrapolation_errors(curve: LawCurve, points: Points) -> Unseen:
+def extrapolation_errors(curve: LawCurve, points: MeasuredPoints) -> Unseen:
     """The errors at the faster half of the points, of a fit to the slower half."""
     order = np.argsort(points.speeds, kind="stable")
     half = points.size // 2
@@ -271,7 +271,7 @@ def judge(fit: ContactFit) -> dict[str, JudgedLaw]:
 
 
 def _verdict(
-    points: Points, is_rejected: bool, is_decisive: bool, found: tuple[float, float]
+    points: MeasuredPoints, is_rejected: bool, is_decisive: bool, found: tuple[float, float]
 ) -> Compatibility:
     if is_rejected:
         return Compatibility.INCOMPATIBLE if points.is_known else Compatibility.DEVIATES

@@ -42,7 +42,7 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.measured.curves import CURVES
 from bouncing_ball.measured.experiment import Experiment, experiment, experiment_names
 from bouncing_ball.measured.fit import ContactFit
-from bouncing_ball.measured.law_fit import LEVEL, LawFit, Points
+from bouncing_ball.measured.law_fit import LEVEL, LawFit, MeasuredPoints
 from bouncing_ball.measured.verdicts import (
     ACCEPTED,
     REJECTED,
@@ -210,7 +210,9 @@ def _padded(values: np.ndarray, size: int) -> np.ndarray:
     return np.concatenate([values, np.full(size - values.size, np.nan)])
 
 
-def _errors(points: Points, order: np.ndarray, longest: int) -> dict[str, tuple[str, np.ndarray]]:
+def _errors(
+    points: MeasuredPoints, order: np.ndarray, longest: int
+) -> dict[str, tuple[str, np.ndarray]]:
     """The standard deviations of the points, those given and those by the scatter."""
     given = points.deviations if points.is_known else np.full(points.size, np.nan)
     by_scatter = np.sqrt(scatter(points)[0]) * points.deviations
@@ -330,7 +332,7 @@ class _OrbitsOnShaker:
         amplitude = fold + position * (_doubling(n, r, slope) - fold)
         return cls(table.motion, n, speed, r, slope, amplitude)
 
-    def measured(self, points: Points) -> float:
+    def measured(self, points: MeasuredPoints) -> float:
         """r by the parabola through the points; NaN beyond them."""
         if not points.speeds.min() <= self.speed <= points.speeds.max():
             return float("nan")

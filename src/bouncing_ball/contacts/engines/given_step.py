@@ -69,7 +69,8 @@ class AtStep:
     r = 0. The contact takes so many ``steps``; it is unstable if the steps of a lasting contact
     grow. With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``;
     it is None if no damping achieves that, or if the contact is within the error as it is. The
-    stiffest contact with the same r is within the error allowed. ``remarks`` are sentences on how
+    ``stiffest`` contact with the same r is within the error allowed; these are its numbers, and
+    ``EngineSettings.softer`` its settings. ``remarks`` are sentences on how
     the engine changes the contact at this step, and ``is_of_parameters`` tells whether parameters
     that contain the step were given. If r depends on the impact ``speed`` in m/s, all this holds at
     this speed, the dampings are those of Hunt and Crossley in s/m, and a stiffest contact is sought

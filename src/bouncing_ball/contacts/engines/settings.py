@@ -21,8 +21,9 @@ class EngineSettings:
     that is given, None if the time step follows from the contact. If the given step does not keep
     the r of the contact within the error, ``retuned`` has the settings of the same stiffness with
     the damping that restores the mean r, None if no damping does, and ``softer`` those of the
-    stiffest contact with the same ζ that the step resolves. ``instant`` then says how the engine
-    has this r without a contact that lasts, if it can.
+    stiffest contact with the same ζ that the step resolves: what to write for the contact of
+    ``AtStep.stiffest``. ``instant`` then says how the engine has this r without a contact that
+    lasts, if it can.
     """
 
     name: str

@@ -1,10 +1,10 @@
 """The end of sticking in two parameters of the restitution model.
 
-No smooth function vanishes where sticking ends (:func:`~.special.sticking`), so that Newton's
-method cannot follow such orbits. The equations of the orbit are smooth all the same. The curve is
-therefore a row of limits: at each value of one parameter the orbit is followed along the other one
-from one side of the limit to the other, and the limit between them is found to rounding. The row is
-followed by :mod:`~bouncing_ball.numerics.point_by_point`.
+No function with known derivatives vanishes where sticking ends (:func:`~.special.sticking`), so
+that Newton's method cannot follow such orbits. The equations of the orbit are smooth all the same.
+The curve is therefore a row of limits: at each value of one parameter the orbit is followed along
+the other one from one side of the limit to the other, and the limit between them is found to
+rounding. The row is followed by :mod:`~bouncing_ball.numerics.point_by_point`.
 """
 
 from dataclasses import replace

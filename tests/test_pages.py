@@ -54,6 +54,21 @@ def test_every_file_that_a_page_names_exists(page):
     assert missing == []
 
 
+@cache
+def files_of_code():
+    """The paths of all modules, scripts and rules, a line each."""
+    folders = (ROOT / name for name in ("src", "tests", "workflow", "docs"))
+    files = [path for folder in folders for path in folder.rglob("*.[ps][ym]*")]
+    return "\n".join(f"/{path.relative_to(ROOT).as_posix()}" for path in files)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_short_name_of_a_file_that_a_page_has_exists(page):
+    named = re.findall(r"`([\w/]+\.(?:py|smk))`", page.read_text(encoding="utf-8"))
+    missing = [name for name in named if not re.search(rf"/{name}$", files_of_code(), re.M)]
+    assert [name for name in missing if not MADE.search(name)] == []
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_module_that_a_page_names_exists(page):
     for name in MODULE.findall(page.read_text(encoding="utf-8")):

@@ -234,6 +234,19 @@ def test_parameters_of_a_law_may_be_arrays():
     assert float(found.phase[1]) == pytest.approx(orbit(TSUJI, amplitude=0.9).phase, rel=1e-12)
 
 
+@pytest.mark.parametrize("name", ["speed", "restitution", "duration", "stiffness", "other"])
+def test_no_number_is_allowed_beside_a_law_that_has_its_parameters(name, refusal):
+    with refusal(ModelError, f"{name} is not allowed with a law that has its parameters: tsuji"):
+        contact_law(TSUJI.law, **{name: 3.0})
+    with refusal(ModelError, "release is not allowed with a law"):
+        contact_law(TSUJI.law, release="force")
+
+
+def test_the_map_of_floats_is_one_of_floats():
+    found = rigid(restitution=0.5).cycle(1.2, 0.3, -2.0)
+    assert all(isinstance(each, float) for each in found)
+
+
 @pytest.mark.parametrize("law", ["linear", "elasto-backlash"])
 @pytest.mark.parametrize("ratio", [1e300, 1.1e8, 0.9e-8])
 def test_the_frequency_ratio_of_a_law_has_the_range_of_that_of_a_spring(law, ratio, refusal):

@@ -181,6 +181,8 @@ release='displacement'))
     """
     setting = setting_of(table, flight)
     if isinstance(law, ContactLaw):
+        given = {"speed": speed, "restitution": restitution, "duration": duration}
+        _refuse_beside(law, given | {"release": release} | parameters)
         model = ContactModel(law, setting)
         return model.labelled({"law": law.name, **model.parameters})
     kind = law_named(law if isinstance(law, str) else shortened(law))
@@ -209,6 +211,15 @@ release='displacement'))
     at = checked_number("speed", speed, POSITIVE)
     known = replace(ball, duration=flattened({"duration": ball.duration})["duration"]).at_speed(at)
     return known.labelled({**ball.parameters, "speed": at})
+
+
+def _refuse_beside(law: ContactLaw, given: Mapping[str, Any]) -> None:
+    """Raise an error if a number is given beside a law that has its parameters already."""
+    for name, value in given.items():
+        if value is not None:
+            raise ParameterError(
+                f"{{{name}}} is not allowed with a law that has its parameters: {law.label}"
+            )
 
 
 def _needs(kind: type[ContactLaw]) -> str:

@@ -199,7 +199,7 @@ class Dynamics(ContactsAndFlights):
             cycle.relative_velocity[balls] = landed.velocity
             cycle.displacement[balls] = landed.displacement
             cycle.time[balls] = passed
-        return Cycle(*(values.reshape(shape) for values in cycle))
+        return Cycle(*(values.reshape(shape)[()] for values in cycle))
 
 
 @dataclass(eq=False)

@@ -78,7 +78,8 @@ class Flight(Motion):
         z′ = -(τ - τ₀) + z′₀                                (4)
         z  = -(τ - τ₀)²/2 + (τ - τ₀) z′₀ + z₀
 
-    Eq. 1 is the same in metres and seconds, with g, and Eq. 3 the first line at the next impact.
+    Eq. 1 is the second line in metres and seconds, y = -g (t - t₀)²/2 + (t - t₀) ẏ₀ + y₀, and Eq. 3
+    the first line at the next impact, z′₁ = -(τ₁ - τ₀) + z′₀.
     Here s = τ - τ₀, δ = z - w and v = z′₀ - w′₀ with the table's w = Λ sin τ: the ball has landed
     where δ = 0.
 

@@ -124,7 +124,8 @@ class ClosedFormMotion(ContactMotion):
         δ = z - Λ sin(s + φ) = e^{-ζϖs} (A cos ϖ_d s + B sin ϖ_d s) - 1/ϖ² + C sin s + D cos s
         C sin s + D cos s = βΛ cos(s + φ) + (χ - 1)Λ sin(s + φ)
 
-    A, B, C and D are ``a``, ``b``, ``sine`` and ``cosine``.
+    The start of the contact, δ₀ and δ′₀, determines A = δ₀ + 1/ϖ² - D and
+    B = (δ′₀ - C + ζϖA)/ϖ_d. A, B, C and D are ``a``, ``b``, ``sine`` and ``cosine``.
     """
 
     def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):

@@ -330,10 +330,11 @@ class SpringDamper(OscillatorLaw):
         """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
 
         If the damper acts on approach only, this is the motion up to the greatest penetration. The
-        paper has the absolute height, from the start of the contact at τ = 0, and Eq. 13 is its
-        derivative::
+        paper has the absolute height and its derivative, from the start of the contact at τ = 0::
 
             z = e^{-ζϖτ} (A cos ϖ_d τ + B sin ϖ_d τ) - 1/ϖ² + βΛ cos(τ + φ) + χΛ sin(τ + φ)    (12)
+            z′ = e^{-ζϖτ} [(ϖ_d B - ζϖA) cos ϖ_d τ - (ϖ_d A + ζϖB) sin ϖ_d τ]
+                 - βΛ sin(τ + φ) + χΛ cos(τ + φ)                                               (13)
             ϖ_d = ϖ √(1 - ζ²),                    γ = (ϖ² - 1)² + (2ζϖ)²
             χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ,          β = -2ζϖ/γ
 

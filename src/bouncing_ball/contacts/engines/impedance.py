@@ -179,26 +179,17 @@ class Impedance(LoadedLaw, OscillatorLaw):
         """The impedance d(p), of the shape of p."""
         return self.share * self._ratio(penetration) + 0 * penetration
 
-    # The load on the ball. It is no parameter: laws under several loads are equal.
-    _load: ClassVar[Any] = 0.0
-
-    def under(self, load: Any) -> Self:
-        """The law whose force includes the part d a due to a load a."""
-        law = copy(self)
-        object.__setattr__(law, "_load", load)
-        return law
-
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """f + d a, the whole force on the ball; without a load f = s (ϖ² s p + 2ζϖ p′)."""
         s = self._ratio(penetration)
         omega = self.frequency_ratio
         spring = omega * (omega * (s * penetration) + 2 * self.damping_ratio * rate)
-        return s * (spring + self.share * self._load)
+        return s * (spring + self.share * self.load)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s p + κ p′ + d_max a/ϖ²."""
         lag = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
-        held = self.share / np.asarray(self.frequency_ratio) ** 2 * self._load
+        held = self.share / np.asarray(self.frequency_ratio) ** 2 * self.load
         return self._ratio(penetration) * penetration + lag * rate + held
 
     @property

@@ -73,6 +73,8 @@ class ForceLaw(Batch, ABC):
     release = Release.DISPLACEMENT
 
     def __post_init__(self):
+        if not hasattr(self, "name"):
+            raise ModelError(f"the law {type(self).__name__} defines no name")
         # Laws are keys of caches, so that a parameter must be a number or an array with an axis.
         for name, value in self.parameters().items():
             # None stands for a default that the subclass sets.

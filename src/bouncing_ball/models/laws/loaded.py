@@ -5,7 +5,7 @@ most laws is the same under any load. The numerical methods call :func:`under`, 
 law, and what is done for a :class:`LoadedLaw` only depends on its class.
 """
 
-from abc import abstractmethod
+from copy import copy
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.numerics.arrays import pick
 
 
 @dataclass(frozen=True, repr=False)
@@ -20,21 +21,31 @@ class LoadedLaw(ForceLaw):
     """A law whose force depends on the load of the ball, with m = 1.
 
     Its contact ends at the surface or where the grip vanishes, whichever comes first. A ball at the
-    surface that the load would pull meets no force there. The force and the grip without a load are
-    those of the law itself. A subclass defines :meth:`under`, and, if its force has kinks,
-    :meth:`continued`.
+    surface that the load would pull meets no force there. A subclass of this class and of
+    :class:`.ContactLaw`, in this order, defines ``force``, which uses the load a as ``self.load``,
+    and, if its force has kinks, :meth:`continued`. The load is no parameter: laws under several
+    loads are equal.
     """
 
     root: ClassVar[int] = 1
     release = Release.FORCE
     lag: ClassVar[None] = None
 
-    @abstractmethod
-    def under(self, load: Any) -> Self:
-        """The law whose force and grip are those under a load a.
+    load: ClassVar[Any] = 0.0
+    """The load a, which broadcasts with p and p′ and may be complex; 0 for the law itself."""
 
-        a broadcasts with p and p′, and may be complex.
-        """
+    def under(self, load: Any) -> Self:
+        """The law whose force and grip are those under a load a."""
+        law = copy(self)
+        object.__setattr__(law, "load", load)
+        return law
+
+    def take(self, which: Any) -> Self:
+        """The laws of a row with these indices, under their loads."""
+        part = super().take(which)
+        if part is self and not np.ndim(self.load):
+            return self
+        return part.under(pick(self.load, which))
 
     def continued(self, penetration: np.ndarray, side: np.ndarray) -> Self:
         """The law in a row of states, continued smoothly beyond the next kink of each; by default

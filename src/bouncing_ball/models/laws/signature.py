@@ -101,7 +101,8 @@ def computed(law: ForceLaw, speed: ArrayLike) -> Instant:
 def _unending(name: str, speed: float) -> ModelError:
     return ModelError(
         f"{name}: a free impact of speed {speed:.3g} does not end within a dozen oscillations, "
-        "because the law is adhesive or damped too strongly"
+        "because the law is adhesive or damped too strongly, or because its force is not analytic "
+        "in p^(1/m) with its root m"
     )
 
 

@@ -58,7 +58,7 @@ def bounced_velocity(phase, velocity, flight, amplitude, restitution):
 
 
 def fixed_point(n, restitution, amplitude):
-    """Eq. 6: φ = arccos[nπ/Λ (1 - r)/(1 + r)] and v = nπ.
+    """The solution of Eq. 6: φ = arccos[nπ/Λ (1 - r)/(1 + r)] and v = nπ.
 
     Examples
     --------

@@ -129,12 +129,15 @@ def period_doubling(
 def phase(
     n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
 ) -> np.ndarray:
-    """Phase φ of the impact, in [-π/2, π/2], where the velocity after the impact is nπ::
+    """Phase φ of the impact, in [-π/2, π/2], where the velocity v after the impact is nπ.
 
-        cos φ = nπ/Λ (1 - r)/(1 + r)                        (6)
+    An n-T orbit is a fixed point of the map, whose flight lasts for the time 2πn::
 
-    It is positive on the side that is stable next to the saddle-node, and negative on the other
-    side.
+        τ₁ = τ₀ + 2πn,    v = -r (v - 2πn) + (1 + r) Λ cos(τ₀ + 2πn)        (6)
+
+    Together with the first line of Eq. 5 the solution is v = nπ and, with φ = τ₀,
+    ``cos φ = nπ/Λ (1 - r)/(1 + r)``. The phase is positive on the side that is stable next to the
+    saddle-node, and negative on the other side.
 
     Raises
     ------

@@ -140,7 +140,8 @@ def test_parameters_and_states_out_of_range_are_refused_in_one_line(refusal):
 def test_the_bound_on_the_bounces_of_a_ball_that_comes_to_rest_is_not_too_short(r, monkeypatch):
     """Without the bound each ball is followed through all its bounces."""
     rng = np.random.default_rng(5)
-    lam, phase = rng.uniform(0.5, 3.0, 2000), rng.uniform(-np.pi, np.pi, 2000)
+    lam = rng.uniform(0.5, 3.0, 2000)
+    phase = rng.uniform(-np.pi, np.pi, 2000)
     speed = np.exp(rng.uniform(np.log(1e-4), np.log(2.0), 2000))
     held = np.flatnonzero((lam * np.sin(phase) < 1) & (lam > 1))
     dynamics = RestitutionDynamics.of(r, lam[held])

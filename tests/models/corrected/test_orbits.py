@@ -61,9 +61,11 @@ def linearised_cycle(instant, n, lam, phase):
     """Trace and determinant of a cycle whose instants are at the phase ψ, in closed form: see
     :mod:`bouncing_ball.periodic.one_impact.corrected_branch`.
     """
-    x, y = lam * np.cos(phase), lam * np.sin(phase)
+    x = lam * np.cos(phase)
+    y = lam * np.sin(phase)
     half = n * np.pi
-    r, delay = instant.restitution, instant.delay
+    r = instant.restitution
+    delay = instant.delay
     by_phase = -(1 + r) * y - instant.load * x
     speed = half + x - delay * (1 - y)
     rest = 2 * half - delay

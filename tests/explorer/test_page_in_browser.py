@@ -35,7 +35,7 @@ from bouncing_ball.pipeline.configuration import typed
 pytestmark = pytest.mark.slow
 
 REFERENCES = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 50}, "seed": 31}
-STATES = 12
+STATES = 7
 
 # The page that looks at the page: what it sees is JSON in its element "seen".
 OBSERVER = Path(__file__).with_name("observer.html").read_text(encoding="utf-8")

@@ -54,10 +54,14 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     assert held == [True, False] == [holds(law, share * threshold) for share in (0.999, 1.001)]
 
 
-def test_contacts_that_are_weakly_damped_are_refused():
-    # It touches the surface at Λ = 0.629, but only on the resonant branch.
+# It touches the surface at Λ = 0.629, but only on the resonant branch.
+@pytest.mark.long
+def test_a_contact_on_a_resonant_branch_is_refused():
     with pytest.raises(ModelError, match="too weakly damped"):
         permanent_contact(law_of_impact(HuntCrossley, 0.95, 0.6, 3.0))
+
+
+def test_contacts_that_are_weakly_damped_have_no_threshold():
     # Whether a contact is held at a given Λ is known without its threshold.
     law = Tsuji(1e9, 1e-3)
     assert np.isnan(known_threshold(law)) and holds(law, 0.5) and not holds(law, 1.5)

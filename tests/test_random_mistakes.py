@@ -51,8 +51,12 @@ def outside(allowed: Range) -> st.SearchStrategy:
     low = allowed.low
     high = allowed.high
     ends = [math.nextafter(low, -math.inf), math.nextafter(high, math.inf)]
-    ends += [low] * (allowed.ends[0] == "(") + [high] * (allowed.ends[1] == ")")
-    ends += [low + 0.5] * allowed.whole
+    if allowed.ends[0] == "(":
+        ends.append(low)
+    if allowed.ends[1] == ")":
+        ends.append(high)
+    if allowed.whole:
+        ends.append(low + 0.5)
     return st.sampled_from(ends) | NUMBERS.filter(lambda value: value not in allowed)
 
 
@@ -90,7 +94,8 @@ def test_a_wrong_option_is_refused(refused, data, case):
     else:
         # After a sign of equality any text is a value, even if it begins with a dash.
         more = [f"{name}={data.draw(wrong)}"]
-    status, line = refused(*shlex.split(example), *more)
+    words = shlex.split(example) + more
+    status, line = refused(*words)
     assert status == 2 and line.startswith(f"bouncing-ball: argument {name}: ")
     assert all(choice in line for choice in action.choices or [str(allowed)]), line
 

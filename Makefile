@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs readme lock
+.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery diff accept samples report clean ci setup-newest newest config-docs readme lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -118,10 +118,6 @@ gallery: $(SETUP)
 	cd docs/gallery && for script in *.py; do $(abspath $(BIN))/python $$script || exit; done
 	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
 	$(BIN)/python docs/notebook.py
-
-# Check that the tests detect faults: 200 single faults, one at a time.
-mutants: $(SETUP)
-	$(BIN)/python tests/mutants.py
 
 # Compare the results with the accepted record; the page is results/diff/index.html. With
 # ONLY=fig14, only this artifact is made and compared; its page is results/diff/fig14.html.

@@ -55,7 +55,6 @@ PARTS = {
         "motions",
         "figures/*",
         "docs/datasets",
-        "docs/variables",
         "config/README",
         "docs/record",
     ],

@@ -1,11 +1,11 @@
-"""Notebooks from their pages: ``python docs/notebook.py`` writes them beside the pages."""
+"""The lesson as a notebook: ``python docs/notebook.py`` writes it beside the page."""
 
 import json
 import re
 from doctest import DocTestParser
 from pathlib import Path
 
-PAGES = [Path(__file__).with_name(name) for name in ("lesson.md", "datasets.md")]
+PAGE = Path(__file__).with_name("lesson.md")
 
 
 def parts(block: str) -> list[str]:
@@ -41,5 +41,4 @@ def notebook(page: str) -> str:
 
 
 if __name__ == "__main__":
-    for page in PAGES:
-        page.with_suffix(".ipynb").write_text(notebook(page.read_text("utf-8")), encoding="utf-8")
+    PAGE.with_suffix(".ipynb").write_text(notebook(PAGE.read_text("utf-8")), encoding="utf-8")

@@ -17,7 +17,7 @@ if workflow.is_main_process:
 
 rule config_docs:
     message:
-        "Writing config/README.md, config/schema.json and docs/variables.md"
+        "Writing config/README.md and config/schema.json"
     params:
         artifacts=list(ARTIFACTS.values()),
     log:

@@ -113,11 +113,10 @@ $(VENV)/.docs: requirements-docs.lock
 test-docs: docs
 	$(BIN)/python -m pytest -m docs tests/test_site.py
 
-# The pictures of the gallery and of the lesson, and the lesson as a notebook.
+# The pictures of the gallery and of the lesson.
 gallery: $(SETUP)
 	cd docs/gallery && for script in *.py; do $(abspath $(BIN))/python $$script || exit; done
 	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
-	$(BIN)/python docs/notebook.py
 
 # Compare the results with the accepted record; the page is results/diff/index.html. With
 # ONLY=fig14, only this artifact is made and compared; its page is results/diff/fig14.html.

@@ -1,9 +1,8 @@
-"""The lesson and the page of the datasets print what they show; a notebook is made from the lesson."""
+"""The lesson and the page of the datasets print what they show."""
 
 import doctest
 import json
 import re
-import runpy
 from importlib.resources import files
 from pathlib import Path
 
@@ -38,9 +37,3 @@ def test_the_page_of_the_datasets_prints_what_it_says(monkeypatch):
     result = doctest.testfile(str(DOCS / "datasets.md"), module_relative=False)
     plt.close("all")
     assert result.failed == 0 and result.attempted > 15
-
-
-def test_the_notebook_is_made_from_the_lesson():
-    made = runpy.run_path(str(DOCS / "notebook.py"))["notebook"]
-    notebook = PAGE.with_suffix(".ipynb").read_text(encoding="utf-8")
-    assert made(PAGE.read_text(encoding="utf-8")) == notebook

@@ -89,7 +89,7 @@ setup-engines: $(SETUP)
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
 	    $(PIP) --only-binary :all: --no-binary pygltflib "$$engine" || missing="$$missing $$engine"; done; \
 	echo "Engines without a wheel for this machine:$${missing:- none}."; \
-	echo "Engines of which no wheel was found: liggghts, mercurydpm, gazebo, jolt, physx; docs/bounces/javascript.mjs has the last two."; \
+	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt, physx; docs/bounces/javascript.mjs has the last two."; \
 	$(BIN)/python -c "import torch" 2> /dev/null || \
 	    echo "Genesis needs torch, of gigabytes, and is skipped without it: $(PIP) torch"
 

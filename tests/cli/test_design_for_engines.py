@@ -125,7 +125,8 @@ def test_mistakes_are_one_line(refused, arguments, says):
 
 
 def test_the_stiffest_contact_of_parameters_says_how_deep_the_ball_rests(said, ask):
-    given = ("design", "--from", "gazebo", "--mass", "1", "--set", "kp=1e5", "--set", "kd=100")
+    given = ("design", "--from", "pybullet", "--mass", "1", "--set", "contactStiffness=1e5",
+             "--set", "contactDamping=100")  # fmt: skip
     text = said(*given, "--time-step", "1 ms")
     stiffest = ask(*given, "--time-step", "1 ms")["at_step"]["stiffest"]
     assert f"in which the ball rests {9.80665e3 / stiffest:.4g} mm deep." in text

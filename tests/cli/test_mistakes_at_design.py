@@ -56,7 +56,7 @@ MISTAKES = """
     lammps has no 'Kn': its parameters are kn and gamma_n; did you mean kn?
 --mass "20 g" --from newton-mujoco --set ke=1e6 --set kd=0
     kd = 0 of newton-mujoco is no contact without damping, but the default of MuJoCo: kd is c/m in
---mass "20 g" --from gazebo --set kp=1e6 --set kd=1 --time-step 1
+--mass "20 g" --from pybullet --set contactStiffness=1e6 --set contactDamping=1 --time-step 1
     a contact of 0.000624 s takes 0.000624 time steps of 1 s, which is not between 0.001 and 1e+08
 CROSSLEY --time-step "1 ms"
     --time-step with hunt_crossley_dissipation needs --speed of an impact, or a table, because r

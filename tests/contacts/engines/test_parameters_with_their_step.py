@@ -88,16 +88,19 @@ def test_the_engine_itself_has_this_range(name, parameters, step):
 
 
 def test_a_retuned_contact_is_said_in_parameters_that_have_its_r():
-    """Gazebo's steps damp, so that its parameters have less damping than the contact."""
-    given = {"mass": M, "from_engine": "gazebo", "parameters": {"kp": 1e5, "kd": 50.0}}
+    """PyBullet's steps damp, so that its parameters have less damping than the contact."""
+    parameters = {"contactStiffness": 1e5, "contactDamping": 50.0}
+    given = {"mass": M, "from_engine": "pybullet", "parameters": parameters}
     answer = answered(**given, time_step=1e-3)
     text = "\n".join(design_lines(answer))
     found = re.search(
-        r"the mean r is \S+ at this step, written as kp = (\S+) and kd = (\S+)\.", text
+        r"the mean r is \S+ at this step, written as contactStiffness = (\S+) and "
+        r"contactDamping = (\S+)\.",
+        text,
     )
     assert found
-    kp, kd = map(float, found.groups())
-    many = [implicit_euler(kp / 2, 2 * kd, 1e-3, f) for f in np.linspace(1e-6, 1, 2001)]
+    stiff, lossy = map(float, found.groups())
+    many = [implicit_euler(stiff / 2, 2 * lossy, 1e-3, f) for f in np.linspace(1e-6, 1, 2001)]
     # The instants are those above, and the parameters have six digits.
     assert np.mean(many) == pytest.approx(answer.at_step.restitution, abs=1e-3)
     # The parameters that were given lose more.

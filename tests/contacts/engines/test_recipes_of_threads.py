@@ -1,4 +1,4 @@
-"""Recipes that users asked for: Hertz in LAMMPS and LIGGGHTS, PyBullet's restitution, Gazebo."""
+"""Recipes that users asked for: Hertz in LAMMPS and LIGGGHTS, and PyBullet's contacts."""
 
 import math
 
@@ -117,14 +117,14 @@ def test_pybullet_itself_has_this_restitution_without_a_spring(step):
 
 
 @pytest.mark.parametrize("step", [1e-4, 1e-3])
-def test_gazebos_kp_and_kd_give_the_erp_and_cfm_of_its_threads(step):
-    """erp = h kp/(h kp + kd) and cfm = 1/(h kp + kd), of springs in series and added dampers."""
-    given = {"mass": 0.5, "stiffness": 2e3, "restitution": 0.6, "engine": "gazebo"}
+def test_pybullets_springs_give_the_erp_and_cfm_of_a_constraint(step):
+    """erp = h k/(h k + c) and cfm = 1/(h k + c), of springs in series and added dampers."""
+    given = {"mass": 0.5, "stiffness": 2e3, "restitution": 0.6, "engine": "pybullet"}
     found = answered(**given, time_step=step).engine
-    kp = found.parameters["kp"] / 2
-    kd = found.parameters["kd"] * 2
-    erp = step * kp / (step * kp + kd)
-    cfm = 1 / (step * kp + kd)
+    k = found.parameters["contactStiffness"] / 2
+    c = found.parameters["contactDamping"] * 2
+    erp = step * k / (step * k + c)
+    cfm = 1 / (step * k + c)
     x = -0.5 * step
     v = -1.0
     while x < 0:
@@ -134,4 +134,5 @@ def test_gazebos_kp_and_kd_give_the_erp_and_cfm_of_its_threads(step):
         x += step * v
     at = found.at_step
     assert at.least - 1e-9 <= v <= at.most + 1e-9
-    assert f"<kp>{found.parameters['kp']}</kp> <kd>{found.parameters['kd']}</kd>" in found.snippet
+    both = ", ".join(f"{name}={value}" for name, value in found.parameters.items())
+    assert both in found.snippet

@@ -2,7 +2,6 @@
 
 from bouncing_ball.contacts.engines.drake import Drake
 from bouncing_ball.contacts.engines.engine import Engine
-from bouncing_ball.contacts.engines.gazebo import Gazebo
 from bouncing_ball.contacts.engines.genesis import Genesis
 from bouncing_ball.contacts.engines.granular import Lammps, Liggghts, MercuryDPM
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
@@ -23,7 +22,6 @@ ENGINES: dict[str, Engine] = {
         NewtonSemiImplicit(),
         NewtonMuJoCo(),
         Genesis(),
-        Gazebo(),
     )
 }
 """The engines by name."""

@@ -1,12 +1,11 @@
-"""The explorer's page from its reference orbits and the settings of engines."""
+"""The explorer's page from its reference orbits."""
 
 from bouncing_ball.accuracy.errors import QUANTITIES
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.explorer.document import to_html
-from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.pipeline.jobs import logged, read_input
 
 with logged(snakemake) as lines:
-    page = to_html(read_input(snakemake.input.data), as_json(), QUANTITIES)
+    page = to_html(read_input(snakemake.input.data), QUANTITIES)
     write_text(snakemake.output.html, page)
     lines += snakemake.output

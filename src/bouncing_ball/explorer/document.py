@@ -17,7 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
 
-SCRIPTS = "model approach engines simulation starts plot state orbit sound stage page".split()
+SCRIPTS = "model simulation starts plot state orbit sound stage page".split()
 
 
 def references(data: xr.Dataset) -> str:
@@ -36,16 +36,13 @@ def _allowed(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
-def to_html(data: xr.Dataset, engines: str, quantities: Mapping[str, str]) -> str:
+def to_html(data: xr.Dataset, quantities: Mapping[str, str]) -> str:
     """The page, including the reference values with which it checks its results.
 
     Parameters
     ----------
     data : xarray.Dataset
         Reference orbits (:mod:`bouncing_ball.beyond.exhibits.explorer_orbits`).
-    engines : str
-        The physics engines with reference settings, as JSON
-        (:mod:`bouncing_ball.explorer.engine_cases`).
     quantities : mapping
         The names of the quantities in sentences.
     """
@@ -67,7 +64,6 @@ def to_html(data: xr.Dataset, engines: str, quantities: Mapping[str, str]) -> st
         script=script,
         style=style,
         references=references(data),
-        engines=engines,
         quantities=quantities,
         scenes=json.loads(scenes),
         bound=repr(BOUND),

@@ -65,43 +65,23 @@ function solver([a, b, c]) {
   return (s, t, v) => [0, 1, 2].map(k => (s * bc[k] + t * ca[k] + v * ab[k]) * inverse);
 }
 
-// ---- The contact: ϖ, ζ < 1 and sin α = κϖ/2 of the release rule.
-// r is that of Eq. 16, or, measured, that of a free impact by the release. A damper that acts on
-// approach only lets go at the table's level too, with an r of its own.
-function contactOf(r, omega, release, measured = false) {
-  const decrement = -Math.log(r) + 0;
-  const isEq16 = release === "displacement" || release === "force" && !measured;
-  const zeta = isEq16 ? decrement / Math.hypot(Math.PI, decrement)
-    : forceDamping(release === "force" ? decrement : 2 * decrement);
-  return withDamping(omega, zeta, release);
+// ---- The contact: ϖ, ζ < 1 with the r of Eq. 16, and sin α = κϖ/2 of the release rule.
+function contactOf(r, omega, release) {
+  const decrement = -Math.log(r) + 0, zeta = decrement / Math.hypot(Math.PI, decrement);
+  return {omega, zeta, release, sine: release === "force" ? zeta : 0};
 }
-const withDamping = (omega, zeta, release) => ({omega, zeta, release, sine: release === "force" ? zeta : 0});
-// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of models.damping. A damper
-// that acts on approach only has half of this decrement.
-function forceDamping(decrement) {
-  if (decrement === 0) return 0;
-  let beta = Math.PI / 2 * Math.sqrt(1 - decrement / 2);
-  for (let k = 0; k < 6; k++) {
-    const sine = Math.sin(beta), cosine = Math.cos(beta);
-    beta -= (2 * beta * cosine / sine - decrement) / (2 * (cosine * sine - beta) / (sine * sine));
-  }
-  return Math.cos(beta);
-}
-// The angles at which a free contact ends, and during which its damper acts: Release.damped_angle.
-const dampedAngle = contact => isApproach(contact) ? Math.acos(contact.zeta) : 2 * Math.acos(contact.sine);
-const freeAngle = contact => isApproach(contact)
-  ? dampedAngle(contact) + Math.PI / 2 * Math.sqrt((1 - contact.zeta) * (1 + contact.zeta)) : dampedAngle(contact);
+// The angle at which a free contact ends: Release.free_angle.
+const freeAngle = contact => 2 * Math.acos(contact.sine);
 const dampedFrequency = contact =>
   contact.omega * Math.sqrt((1 - contact.zeta) * (1 + contact.zeta));
 function ownRestitution(contact) {
   const z = contact.zeta;
-  return Math.exp(-dampedAngle(contact) * z / Math.sqrt((1 - z) * (1 + z)));
+  return Math.exp(-freeAngle(contact) * z / Math.sqrt((1 - z) * (1 + z)));
 }
 
 // The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of
 // periodic.one_impact.spring_damper_branch.
 function branchPoint(eps, contact, n) {
-  if (isApproach(contact)) return approachPoint(eps, contact, n);
   const {omega, zeta, sine} = contact;
   const root = Math.sqrt((1 - zeta) * (1 + zeta)), perAngle = 1 / (omega * root);
   const duration = (freeAngle(contact) + eps) * perAngle, flight = 2 * Math.PI * n - duration;
@@ -280,10 +260,6 @@ function described(n, amplitude, phase, duration, impact, trace, determinant, mo
 
 // The motion a time s after the contact's start at δ = d, which is 0 unless a contact resumes.
 function contactState(contact, point, s) {
-  if (point.parts) {
-    const part = partAt(point.parts, s);
-    return contactState(part.contact, part.point, s - part.start);
-  }
   const {omega, zeta} = contact, {d = 0} = point, root = Math.sqrt((1 - zeta) * (1 + zeta));
   const angle = omega * root * s, loss = 2 * zeta * omega;
   const at = responses(s, Math.sin(angle), Math.cos(angle), Math.sin(s), Math.cos(s),
@@ -299,7 +275,7 @@ function contactState(contact, point, s) {
 
 function contactOrbit(point, contact, n) {
   const {amplitude, phase, duration, u, x, trace, determinant} = point;
-  const orbit = described(n, amplitude, phase, duration, u + x, trace, determinant, {parts: point.parts});
+  const orbit = described(n, amplitude, phase, duration, u + x, trace, determinant, {});
   orbit.inContact = s => contactState(contact, point, s).height;
   orbit.state = s => contactState(contact, point, s);
   if (orbit.max_height < amplitude) orbit.max_height = Math.max(orbit.max_height, highest(orbit));
@@ -338,8 +314,8 @@ const restitutionModel = r => ({
 function signatureOf(contact) {
   const r = ownRestitution(contact), duration = freeAngle(contact) / dampedFrequency(contact);
   const through = duration + 2 * contact.sine / contact.omega;
-  const loss = 2 * contact.zeta / contact.omega, slowed = isApproach(contact) ? r : 1 + r;
-  return {delay: r * through / (1 + r), r, load: (1 - r) * through - loss * slowed, duration};
+  const loss = 2 * contact.zeta / contact.omega;
+  return {delay: r * through / (1 + r), r, load: (1 - r) * through - loss * (1 + r), duration};
 }
 
 const correctedModel = ({delay, r, load, duration}) => ({
@@ -417,7 +393,6 @@ function heightAt(orbit, since) {
 
 // Λ up to which the ball stays down: Λ_SD (Eq. 33), or Λ_F.
 function permanentContact(contact) {
-  if (isApproach(contact)) return approachThreshold(contact);
   const {omega, zeta, sine} = contact;
   const loss = 2 * zeta / omega, lag = 2 * sine / omega;
   return Math.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / Math.hypot(1, lag);
@@ -433,7 +408,6 @@ function sampledAdmissible(orbit, samples = 600) {
     if (s > end && above && !rises) return false;
     above = s > end && rises;
   }
-  if (orbit.parts && !turnsOnce(orbit.parts, end)) return false;
   for (let k = 1; orbit.state && k < 64; k++)
     if (orbit.state(k * end / 64).grip <= 0) return false;
   return true;

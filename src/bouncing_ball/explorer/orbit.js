@@ -158,8 +158,7 @@ function physical(found, state, {mass, time, length, stiffness, damping}) {
     ["restitution of a free impact", found.own, "", "measured_restitution"],
     ["amplitude of the table", state.acc * length, "m"],
     ["contact time, free", start, "s", "contact_time"],
-    // There is one time step, an engine's if one is chosen.
-    ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s", "largest"]] : []),
+    ["largest time step, a fiftieth of it", start / 50, "s", "largest"],
     ["static deflection", weight / stiffness, "m", "static_deflection"],
     ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
     ["greatest height", orbit.max_height * length, "m", "max_height"],
@@ -185,12 +184,10 @@ function loadsOf(orbit) {
 }
 
 // What the reader should know of the contact besides, in the words of the command `design`.
-function notesOf(found, {n}, one) {
+function notesOf(found, {n}) {
   const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
   const admissible = sampledAdmissible(orbit);
-  return [...one.remarks,
-    ...release === "approach" ? ["the damper acts on approach only; the ϖ that is needed is that of a linear contact with "
-      + "the same r and duration"] : [],
+  return [
     ...!orbit.exists ? [`at this Λ the contact has no ${name}`]
       : orbit.is_stable && admissible ? [] : [`the ${name} is `
         + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
@@ -198,19 +195,6 @@ function notesOf(found, {n}, one) {
     ...release === "displacement" && zeta > 0
       ? ["before its release at δ = 0 the contact pulls the ball; a contact that cannot pull has the r of a release "
         + "without force"] : []];
-}
-
-// What an engine is to be told, and the rows of it.
-function showEngine({engine, e}, one) {
-  $("paste").hidden = engine === "none";
-  if (engine === "none") return [];
-  const {release} = one.contact;
-  const found = settingsOf(ENGINES, engine, release, one, e);
-  $("paste-says").textContent = `For ${engine}, with the ${release} release `
-    + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
-    + "in a contact):";
-  $("snippet").textContent = found.snippet;
-  return [[`time step for an error of ${e} in r`, found.time_step, "s", "largest"]];
 }
 
 // ---- The animation: it waits until it is asked, and for those who want no motion stays so.

@@ -6,21 +6,19 @@
 const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
-const SELECTS = ["engine", "given", "model", "pace", "view"];
+const SELECTS = ["model", "pace", "view"];
 // What the answer in the shell has beyond that of the page, by its tab.
 const MORE_IN_SHELL = {
   orbit: ", with every digit and certified", design: ", certified, and with --json with every digit", stage: "",
 };
 let current = DEFAULTS;
-for (const [id, names] of [["engines-from", ENGINES], ["engine", ENGINES]])
-  $(id).append(...Object.keys(names).map(name => new Option(name)));
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
   clearTimeout(counting);
   count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "starts", "command", "snippet"]) $(id).textContent = "";
+  for (const id of ["verdict", "starts", "command"]) $(id).textContent = "";
   play(false);
 }
 
@@ -47,11 +45,6 @@ function show(hash) {
   for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   $("slice-views").hidden = !onStage;
   $("command-name").textContent = `The same in the shell${MORE_IN_SHELL[state.tab]}:`;
-  for (const choice of document.querySelectorAll("input[name=release]"))
-    choice.disabled = !releasesOf(state).includes(choice.value);
-  for (const name of ["k", "r", ...TEXTS]) field(name).hidden = !givenBy(state.given).includes(name);
-  field("e").hidden = state.engine === "none";
-  TEXTS.forEach((name, k) => field(name).querySelector("label").textContent = ENGINE_NAMES[state.given]?.[k]);
   if (why) return refuse(why);
   $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
   document.body.toggleAttribute("data-refused", false);
@@ -63,14 +56,7 @@ function show(hash) {
   }
   play(false);
   stage = null;
-  let question;
-  try {
-    question = asked(state);
-  } catch (error) {
-    if (!(error instanceof Refused)) throw error;
-    return refuse(error.message);
-  }
-  const found = answer(question), verdict = verdictOf(found, question);
+  const question = asked(state), found = answer(question), verdict = verdictOf(found, question);
   [$("verdict").dataset.good, $("verdict").textContent] = verdict;
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
@@ -84,10 +70,9 @@ function show(hash) {
   counting = setTimeout(() => count(), PATIENCE);
   fillTables(found, question);
   if (state.tab === "design") {
-    const one = question.physical;
-    $("design-rows").replaceChildren(...[...showEngine(state, one), ...physical(found, state, one)].map(
+    $("design-rows").replaceChildren(...physical(found, state, question.physical).map(
       ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
-    $("notes").replaceChildren(...notesOf(found, question, one).map(note => {
+    $("notes").replaceChildren(...notesOf(found, question).map(note => {
       const item = document.createElement("li");
       item.textContent = `${note}.`;
       return item;
@@ -98,14 +83,7 @@ function show(hash) {
   drawMultipliers(found);
 }
 
-// The control of a number or a text of the physical tab.
-const field = name => document.querySelector(`#panel-design [data-name=${name}]`).parentElement;
-
 function setControl(name, value) {
-  if (TEXTS.includes(name)) {
-    if (document.activeElement !== $(name)) $(name).value = value;
-    return;
-  }
   if (SELECTS.includes(name)) {
     $(name).value = value;
     return;
@@ -126,7 +104,7 @@ function setControl(name, value) {
 }
 
 function change(name, value) {
-  const next = hashOf(withRelease({...current, [name]: value}));
+  const next = hashOf({...current, [name]: value});
   history.replaceState(null, "", next);
   show(next);
 }
@@ -145,7 +123,6 @@ document.querySelectorAll("input[type=range]").forEach(slider => slider.addEvent
   const {name} = slider.dataset, value = Number(slider.value);
   change(name, name === "w" ? nearest(10 ** value, 4) : value);
 }));
-for (const name of TEXTS) $(name).addEventListener("input", () => change(name, $(name).value));
 for (const name of SELECTS) $(name).addEventListener("change", () => change(name, $(name).value));
 document.querySelectorAll("input[type=radio]").forEach(choice => choice.addEventListener("change",
   () => change(choice.name, choice.value)));
@@ -163,13 +140,13 @@ addEventListener("hashchange", () => show(location.hash));
 
 // ---- The badge: the page against Python.
 function check() {
-  const {references: {commit, orbits, balls}, engines} = REFERENCES;
-  const parts = [compareRows(orbits, orbitAgain), compareRows(balls, ballAgain), compareEngines(engines)];
+  const {commit, orbits, balls} = REFERENCES.references;
+  const parts = [compareRows(orbits, orbitAgain), compareRows(balls, ballAgain)];
   const {worst, where} = parts.reduce((one, other) => other.worst <= one.worst ? one : other);
   const good = worst <= BOUND;
   $("badge").className = good ? "good" : "bad";
   $("badge").textContent = `${good ? "Checked" : "WRONG"}: ${parts[0].count} orbits and ${parts[1].count} balls of the `
-    + `Python package, commit ${commit.slice(0, 10)}, and ${parts[2].count} settings of engines, computed again here: largest `
+    + `Python package, commit ${commit.slice(0, 10)}, computed again here: largest `
     + `difference ${worst.toExponential(1)} (${where}), ${good ? "within" : "above"} ${BOUND.toExponential(0)}.`;
   $("badge").dataset.worst = String(worst);
 }

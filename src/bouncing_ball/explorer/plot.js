@@ -2,6 +2,15 @@
 "use strict";
 
 // ---- Numbers in words.
+// The nearest number of so many digits. Of two that are as near, it is the one whose last digit is
+// even, as in Python; toPrecision takes the larger one. A hundred more digits show all of a double.
+function nearest(x, digits) {
+  if (x === 0 || !Number.isFinite(x)) return x;
+  const [mantissa, power] = Math.abs(x).toExponential(100).split("e"), all = mantissa.replace(".", "");
+  const isTie = /^50*$/.test(all.slice(digits)), isEven = all[digits - 1] % 2 === 0;
+  return isTie && isEven ? Math.sign(x) * Number(`${all.slice(0, digits)}e${power - digits + 1}`)
+    : Number(x.toPrecision(digits));
+}
 const shown = (x, digits = 6) => Number.isFinite(x) ? String(nearest(x, digits)) : "none";
 // A share in two digits, and above 99.5 % as a whole number: bouncing_ball.contacts.texts.
 const percent = x => !Number.isFinite(x) ? "none"

@@ -168,9 +168,8 @@ function departByContact(contact, amplitude, phase, u, d = 0) {
 function* impactsOf(model, amplitude, phase, velocity, grain = 0) {
   let time = 0, u = Math.min(velocity - amplitude * Math.cos(phase), 0), d = 0;
   for (let k = 0; ; k++) {
-    const left = !model.contact ? departByRestitution(model.r, amplitude, phase, u)
-      : isApproach(model.contact) ? departByApproach(model.contact, amplitude, phase, u)
-        : departByContact(model.contact, amplitude, phase, u, d);
+    const left = model.contact ? departByContact(model.contact, amplitude, phase, u, d)
+      : departByRestitution(model.r, amplitude, phase, u);
     if (left.stays) {
       yield {time, at: phase, u, left, hang: Infinity};
       return;

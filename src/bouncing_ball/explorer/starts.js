@@ -2,9 +2,9 @@
 // shares: bouncing_ball.contacts.starts. Each verdict has these shares beside it.
 "use strict";
 
-// Starts along each axis, also of a contact law, impacts for which a ball is followed, and the share
-// below which few balls reach an orbit. A ball this near to a stable orbit ends there.
-const STARTS = 12, STARTS_OF_LAW = 6, IMPACTS_OF_START = 300, FEW = 0.1, ON_ORBIT = 1e-4, QUANTILE = 1.96;
+// Starts along each axis, impacts for which a ball is followed, and the share below which few balls
+// reach an orbit. A ball this near to a stable orbit ends there.
+const STARTS = 12, IMPACTS_OF_START = 300, FEW = 0.1, ON_ORBIT = 1e-4;
 
 // A relative speed above which every impact slows the ball: long_run.basins.
 function fastest(contact, amplitude) {
@@ -25,30 +25,20 @@ function endInWords({kind, periods, impacts}) {
 function endsOfStarts(contact, amplitude, orbit) {
   const stays = orbit.exists && orbit.is_stable && sampledAdmissible(orbit);
   const known = stays ? {at: orbit.phase, u: orbit.relative_impact_velocity, periods: orbit.n} : null;
-  const fast = fastest(contact, amplitude), counts = new Map(), edge = isApproach(contact) ? STARTS_OF_LAW : STARTS;
-  for (let row = 0; row < edge; row++)
-    for (let column = 0; column < edge; column++) {
-      const phase = TURN * (column + 0.5) / edge - Math.PI, speed = fast * (row + 0.5) / edge;
+  const fast = fastest(contact, amplitude), counts = new Map();
+  for (let row = 0; row < STARTS; row++)
+    for (let column = 0; column < STARTS; column++) {
+      const phase = TURN * (column + 0.5) / STARTS - Math.PI, speed = fast * (row + 0.5) / STARTS;
       const velocity = amplitude * Math.cos(phase) - speed;
       const words = endInWords(followed({contact}, amplitude, phase, velocity, 0, IMPACTS_OF_START, known));
       counts.set(words, (counts.get(words) ?? 0) + 1);
     }
-  const all = edge * edge, on = stays ? counts.get(`on the ${orbit.n}-T orbit`) ?? 0 : 0;
-  const told = share => all < STARTS * STARTS ? `${percent(share)} (${intervalOf(share * all, all)})` : percent(share);
+  const all = STARTS * STARTS, on = stays ? counts.get(`on the ${orbit.n}-T orbit`) ?? 0 : 0;
   const shares = [...counts].map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
-  const named = shares.slice(0, 3).map(([words, share], k) => `${told(share)}${k ? "" : " end"} ${words}`);
+  const named = shares.slice(0, 3).map(([words, share], k) => `${percent(share)}${k ? "" : " end"} ${words}`);
   const left = shares.slice(3).reduce((sum, [, share]) => sum + share, 0);
-  if (left) named.push(`${told(left)} on others`);
-  const about = all < STARTS * STARTS ? "; the ranges are intervals of 95 % for so few balls" : "";
-  return {stays, share: on / all, shares, sentence: `Of ${all} balls with other starts, ${named.join(", ")}${about}.`};
-}
-
-// Wilson's interval of 95 % for the share of a count of balls.
-function intervalOf(count, number) {
-  const square = QUANTILE * QUANTILE, whole = number + square;
-  const spread = QUANTILE * Math.sqrt(count * (number - count) / number + square / 4);
-  const [low, high] = [-spread, spread].map(side => (100 * (count + square / 2 + side) / whole).toFixed(0));
-  return `${low} to ${high} %`;
+  if (left) named.push(`${percent(left)} on others`);
+  return {stays, share: on / all, shares, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
 }
 
 // The verdict with the shares of starts: one on an orbit that few balls reach is not the headline.

@@ -31,8 +31,8 @@ def in_record(path: str) -> str:
 
     Examples
     --------
-    >>> in_record("results/figures/fig14.nc"), in_record("config/ext_means.nc")
-    ('figures/fig14.nc', 'config/ext_means.nc')
+    >>> in_record("results/figures/fig14.nc"), in_record("config/ext_bounces.nc")
+    ('figures/fig14.nc', 'config/ext_bounces.nc')
     """
     return path.removeprefix("results/")
 

@@ -23,11 +23,11 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery diff accept samples report clean ci setup-newest newest config-docs readme lock
+.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery diff accept report clean ci setup-newest newest config-docs readme lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
-	@echo "Results: results/paper.md, results/motions.md, results/figures/. Compare with the record: make diff"
+	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
 
 # The paper alone, and its comparison with the record: results/diff/replication.html.
 replication: $(SETUP)
@@ -128,13 +128,6 @@ diff: $(SETUP)
 export ONLY
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept $(QUIETLY)
-
-# Make the accepted samples of motions in config/ again, or only some, as in ONLY=ext_means. They
-# take some minutes each.
-SAMPLES = $(or $(ONLY),ext_basins ext_chaos ext_diagram ext_lives ext_locking ext_means)
-samples: $(SETUP)
-	$(BIN)/snakemake --cores 2 $(SAMPLES:%=results/figures/beyond/%.nc) $(QUIETLY)
-	cp $(SAMPLES:%=results/figures/beyond/%.nc) config/
 
 report: all
 	$(BIN)/snakemake --report results/report.html

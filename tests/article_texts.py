@@ -85,7 +85,7 @@ def tables_of(name, data):
 
 
 def all_texts(data, verdicts=None):
-    """All tables in all formats, the articles and the supplement.
+    """All tables in all formats, the article and its supplement.
 
     ``verdicts`` are those by certified intervals; by default they are computed.
     """
@@ -104,7 +104,7 @@ def all_texts(data, verdicts=None):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(article, "pandoc", PANDOC)
         patch.setattr(article, "Environment", COMPILED)
-        for name in ("supplement", "article", "motions"):
+        for name in ("supplement", "article"):
             file = TEMPLATES / f"{name}.md.j2"
             made[name] = render_article(
                 file, data, texts, decided, ARTIFACTS, about=about, sections=sections
@@ -115,7 +115,7 @@ def all_texts(data, verdicts=None):
 
 @pytest.fixture(scope="session")
 def texts():
-    """Makes all tables in all formats, and the articles, from datasets by name."""
+    """Makes all tables in all formats, and the article, from datasets by name."""
     return all_texts
 
 

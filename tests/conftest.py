@@ -180,14 +180,7 @@ def coarse():
     At their whole size they are compared with the record by `make diff`, and weekly.
     """
     return {
-        ("ext_cascades", "samples"): 5,
-        ("ext_cascades", "doublings"): 4,
-        ("ext_flights", "samples"): 5,
-        ("ext_flights", "flights"): 2,
-        # Balls on compliant contacts take most impacts to settle.
-        ("ext_flights", "min"): 50,
         ("ext_laws", "samples"): 4,
-        ("ext_locked", "nodes"): 15,
     }
 
 
@@ -315,14 +308,11 @@ def searched_once():
 
 @pytest.fixture
 def short_motions(monkeypatch):
-    """An answer about the motion on which a ball ends follows few impacts of few balls."""
+    """An answer about the motion on which a ball ends follows few impacts."""
     from bouncing_ball.contacts import effort
 
-    few = effort.Sampling(unit=4, usual=4, impacts=(8,), before=4)
     for kind in ("LINEAR", "OF_LAW"):
-        usual = getattr(effort, kind)
-        small = usual._replace(impacts=20, samples=few, samples_of_change=few)
-        monkeypatch.setattr(effort, kind, small)
+        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(impacts=20))
 
 
 @pytest.fixture

@@ -15,8 +15,8 @@ from readme import pages
 ROOT = Path(__file__).parents[1]
 LISTS = [ROOT / "figures" / "README.md", ROOT / "figures" / "beyond" / "README.md"]
 PAGES = [*ROOT.glob("*.md"), ROOT / "config" / "README.md", *LISTS, *(ROOT / "docs").glob("*.md")]
-# The changelog tells of files that are gone; the articles are made and have tests of their own.
-MADE_TEXTS = ("paper.md", "supplement.md", "motions.md")
+# The changelog tells of files that are gone; the article is made and has tests of its own.
+MADE_TEXTS = ("paper.md", "supplement.md")
 PAGES = [page for page in PAGES if page.name not in ("CHANGELOG.md", *MADE_TEXTS)]
 FOLDERS = "src|tests|docs|config|workflow|figures|profiles"
 PATH = re.compile(rf"(?<![\w/.-])(?:{FOLDERS})/[\w./-]*\w")

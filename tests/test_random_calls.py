@@ -112,11 +112,6 @@ def grazing_form(calls: Calls) -> Any:
     return calls.call("grazing_form", special(calls, calls.draw(st.sampled_from(SPECIAL))))
 
 
-def basin_entropy(calls: Calls) -> Any:
-    found = calls.random("basins", calls.ball(), needed=("amplitude",))
-    return calls.call("basin_entropy", found, calls.draw(st.integers(-1, 12)))
-
-
 # Contacts of engineers.
 
 
@@ -199,7 +194,7 @@ def fit_contact(calls: Calls) -> Any:
 CALLS: dict[str, Callable[[Calls], Any]] = {
     each.__name__: each
     for each in (
-        orbit, error_thresholds, follow, normal_form, grazing_form, basin_entropy,
+        orbit, error_thresholds, follow, normal_form, grazing_form,
         describe_contact, assess_contact, choose_contact, write_contact, fit_contact,
     )
 } | {
@@ -209,7 +204,6 @@ CALLS: dict[str, Callable[[Calls], Any]] = {
         ("orbits", "amplitude"), ("branch",), ("permanent_contact",), ("motion_of", "amplitude"),
         ("lyapunov_exponent", "amplitude"), ("orbit_diagram", "amplitude"),
         ("basins", "amplitude"), ("orbit_of_motion", "amplitude"),
-        ("ensemble", "amplitude", "noise"),
     )
 }  # fmt: skip
 """A function for each public function, which draws its arguments and calls it."""

@@ -65,8 +65,6 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.write import write_contact as write_contact
     from bouncing_ball.errors import ModelError as ModelError
     from bouncing_ball.errors import NoOrbitError as NoOrbitError
-    from bouncing_ball.long_run.basin_entropy import basin_entropy as basin_entropy
-    from bouncing_ball.long_run.ensembles import ensemble as ensemble
     from bouncing_ball.long_run.motion_of import basins as basins
     from bouncing_ball.long_run.motion_of import lyapunov_exponent as lyapunov_exponent
     from bouncing_ball.long_run.motion_of import motion_of as motion_of
@@ -117,7 +115,6 @@ _MODULES = {
     "Table": "contacts.table",
     "Waveform": "models.waveform",
     "assess_contact": "contacts.assess",
-    "basin_entropy": "long_run.basin_entropy",
     "basins": "long_run.motion_of",
     "branch": "periodic.branches_of_ball",
     "choose_contact": "contacts.choose",
@@ -125,7 +122,6 @@ _MODULES = {
     "corrected": "models.makers",
     "describe_contact": "contacts.describe",
     "drop": "long_run.over_time",
-    "ensemble": "long_run.ensembles",
     "error_thresholds": "accuracy.error_thresholds",
     "fit_contact": "measured.fit",
     "follow": "periodic.branches.follow",

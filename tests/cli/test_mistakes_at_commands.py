@@ -60,8 +60,8 @@ motion --amplitude 1.1 --restitution 0.85 --velocity 4
     a ball that rises from the table has no impact: its velocity z′ = 4 is above that of
 motion --amplitude 1.1 --restitution 0.85 --phase 90deg --velocity -4
     argument --phase: '90deg' is not a number in [-1e+08, 1e+08]: give it without a unit
-motion --amplitude 1.1 --restitution 0.85 --balls 20
-    unrecognized arguments: --balls 20: it is an option of design
+motion --amplitude 1.1 --restitution 0.85 --tolerance 0.1
+    unrecognized arguments: --tolerance 0.1: it is an option of design
 simulate --amplitude 1 --restitution 0.85 --velocity -3 m/s
     unrecognized arguments: m/s: numbers of simulate have no unit
 diagram --amplitude 0.9,1.1 --points 5 --restitution 0.85

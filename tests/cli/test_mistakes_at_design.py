@@ -164,8 +164,6 @@ BALL --engine lammps --time-step 5
     no contact up to ϖ = 1e+06 has its greatest height predicted within 1e-07 % by the restitution
 --mass "20 g" --drop-height 1 --rebound-height 70 --stiffness 1e6
     --rebound-height 70 m is above --drop-height 1 m
-BALL TABLE --balls 1e3
-    argument --balls: '1e3' is not a whole number from 1 to 100000: did you mean 1000?
 --mass "20 g" --from lammps --set kn=1e5 --set gamma_n=80 --stiffness 5
     --stiffness is not allowed with --from
 --mass "20 g" --law hunt-crossley --contact-time "1 ms" --restitution 0.001 --speed 1

@@ -65,7 +65,7 @@ def test_a_call_of_the_library_starts_no_thread(monkeypatch):
 
 
 def test_a_command_that_fails_ends_its_lines(hasty, capfd):
-    with pytest.raises(KeyError), told_if_slow("fewer balls"):
+    with pytest.raises(KeyError), told_if_slow("a single family n"):
         raise KeyError
     time.sleep(0.2)
     assert capfd.readouterr().err == ""
@@ -73,7 +73,7 @@ def test_a_command_that_fails_ends_its_lines(hasty, capfd):
 
 def test_without_standard_error_an_answer_has_no_lines(hasty, capfd, monkeypatch):
     monkeypatch.setattr(sys, "stderr", None)
-    with told_if_slow("fewer balls"):
+    with told_if_slow("a single family n"):
         time.sleep(0.2)
     assert capfd.readouterr() == ("", "")
 

@@ -6,7 +6,7 @@ from itertools import product
 import pytest
 from asked_contacts import assessed
 
-from bouncing_ball.contacts.judgement import judged_by_motion
+from bouncing_ball.contacts.judgement import MotionJudgement
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.verdict_on_motion import said_of_motion
 from bouncing_ball.long_run.motions import Kind
@@ -51,7 +51,7 @@ def test_a_soft_contact_is_answered(stiffness, restitution, acceleration):
 def test_a_ball_that_rests_differs_from_one_that_is_thrown_off():
     """Above Λ = 1 no ball of the restitution model rests, also if its motion is not known."""
     undecided = FinalMotion(Kind.PERMANENT_CONTACT, 1, 0, restitution_kind=Kind.UNDECIDED)
-    below, above = (judged_by_motion(undecided, 0.01, 1, None, x) for x in (0.9, 2.0))
+    below, above = (MotionJudgement(undecided, 0.01, 1, None, x) for x in (0.9, 2.0))
     assert not below.is_decided and "not known" in said_of_motion(below).verdict
     assert above.is_decided and "Λ = 2 is above 1" in said_of_motion(above).verdict
     assert not above.is_good_enough

@@ -8,7 +8,6 @@ above ten times the largest change.
 """
 
 import inspect
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,12 +25,9 @@ RUN = read_yaml(ROOT / "config" / "config.yaml")
 # Sizes that become 2N - 1, and parameters that are moved; the others are labels or sought.
 SIZES = ("samples", "points")
 MOVED = ("restitution", "amplitude", "amplitude_max")
-# More random orbits and more nodes are another sample; motions are sampled at their events and a
-# sweep at round ϖ, too; and openings are followed from ϖ to ϖ as far as Newton's method converges.
-NOT_NESTED = (
-    *("ext_orders", "explorer", "formulas", "fig07", "fig12", "fig13", "ext_instant"),
-    *("ext_flights", "ext_locked"),
-)
+# More random orbits are another sample; motions are sampled at their events and a sweep at round ϖ,
+# too.
+NOT_NESTED = ("ext_orders", "explorer", "formulas", "fig07", "fig12", "fig13", "ext_instant")
 
 
 def mapped(value, change, key=""):
@@ -77,29 +73,24 @@ def on_the_old_grid(fine, coarse):
 VARIATIONS = [tighter, finer, *map(rounded, (-2, -1, 1, 2))]
 # Budgets with another source, which stands beside them, or of what no study here moves.
 OTHER_SOURCES = {
-    *("residual", "special_residual", "disagreement", "lyapunov_exponent", "lyapunov_error"),
-    *("basin_share", "order", "law_remainder"),
+    *("residual", "special_residual", "disagreement", "order", "law_remainder"),
 }
 
 
 @pytest.fixture(scope="module")
-def results(coarse, recorded):
+def results(coarse):
     """For each artifact and variable, the results under all variations."""
     found = {}
     for artifact, study in STUDIES.items():
         made = typed(study)
-        # What is made of other datasets moves as they do, but for one; samples take minutes.
-        reads = "data" in inspect.signature(study).parameters and artifact != "ext_locked"
-        if reads or ARTIFACTS[artifact].accepted:
+        # What is made of other datasets moves as they do.
+        if "data" in inspect.signature(study).parameters:
             continue
-        # The last doublings and openings move most.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
-        fewer = {} if artifact in ("ext_cascades", "ext_flights") else fewer
         given = mapped(
             arguments(study, ARTIFACTS[artifact].part, artifact, RUN),
             lambda key, x, fewer=fewer: fewer.get(key, x),
         )
-        made = partial(made, data=recorded) if artifact == "ext_locked" else made
         record = made(**given)
         for vary in VARIATIONS:
             varied = vary(given)

@@ -30,7 +30,7 @@ def opened(name):
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_every_accepted_sample_draws_its_figure(name):
+def test_every_accepted_dataset_draws_its_figure(name):
     assert opened(name).plot().axes
 
 

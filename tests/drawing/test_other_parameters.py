@@ -167,12 +167,9 @@ def test_stable_comes_first_in_a_legend():
 
 @pytest.fixture(scope="module")
 def other(record, texts):
-    """All texts of a run whose Table 1 has another r, as the stage writes it, and whose ball on
-    the table has the other release.
-    """
+    """All texts of a run whose Table 1 has another r, as the stage writes it."""
     table = record["table1"].assign(printed=record["table1"].printed * np.nan)
     changed = {"table1": table.assign_attrs(restitution=0.8)}
-    changed["ext_flights"] = record["ext_flights"].assign_attrs(release="force")
     return texts(record | changed)
 
 
@@ -193,16 +190,6 @@ def test_its_claims_are_not_asked(other):
     rows = [line for line in other["claims", "to_csv"].splitlines() if line.startswith('"Table 1:')]
     assert len(rows) == 18 and all(row.endswith(",–,,not asked") for row in rows)
     assert "Claims: Table 1" not in other["supplement"]
-
-
-def test_the_cascade_under_the_other_release(other, accepted):
-    """The limit at Λ_SD is stated for the paper's release only."""
-    for words in (
-        "Permanent contact therefore continues into a stable orbit",
-        "cascade of flights",
-    ):
-        assert words in accepted["motions"] and words not in other["motions"]
-    assert "this rendering was made with the other release" in other["motions"]
 
 
 def test_numbers_and_verdicts_follow_the_data(record, recorded, texts, accepted):

@@ -135,8 +135,8 @@ def test_next_to_a_bifurcation_nothing_is_decided():
 
 
 def test_a_ball_that_sticks_twice_is_locked_though_rounding_decides_when():
-    # With 250 digits this ball sticks 311 impacts after its lift-off; tests with mpmath are in
-    # test_many_digits.py. Here a deviation grows by e²⁰ and more between two stickings.
+    # With 250 digits this ball sticks 311 impacts after its lift-off. Here a deviation grows by e²⁰
+    # and more between two stickings.
     found = final_motions(RestitutionModel(0.4), 2.1, 2.0, -1.5)
     assert (found.kind, found.reason) == (Kind.LOCKED, Reason.ROUNDING)
     assert (found.periods, found.impacts, found.exponent) == (0, 0, -np.inf)

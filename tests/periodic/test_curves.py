@@ -1,24 +1,17 @@
 """Curves of special orbits in two parameters: against closed forms, with cusps and resonances."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from orbits_found import FOUND, balls, first, found_orbit
 
 import bouncing_ball
-from bouncing_ball.beyond.motions.cascade_of_flights import openings
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.long_run.orbit_of_motion import of_motion
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.periodic.branches.curves import Degenerate, curve_through
 from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.orbits.ends import Window
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
-from bouncing_ball.periodic.orbits.steps import STEPS
 
 
 def special(name, kind, to, amplitude=1.3):
@@ -114,39 +107,6 @@ def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):
         curve_through(start, Special.PERIOD_DOUBLING, "amplitude", "stiffness")
     with refusal(ModelError, "'period halving' is not one of"):
         curve_through(start, Special.PERIOD_HALVING, "amplitude", "restitution")
-
-
-# The second opening weekly: its search follows a ball up to the first one again.
-@pytest.mark.parametrize(
-    ("flights", "excess"), [(1, 4.0), pytest.param(2, 15.0, marks=pytest.mark.long)]
-)
-def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens(flights, excess):
-    """Against the equations of beyond.motions.cascade_of_flights, with the multipliers there."""
-    ratio = 20.0
-    zeta = float(damping_ratio(0.85))
-    # The ends of a curve in Λ and ϖ as well; each contact is simulated from below.
-    ends = (18.0, 22.0) if flights == 1 else ()
-    known = openings([zeta], np.array([ratio, *ends]), flights)
-    amplitude = known.amplitude[0, -1]
-    held = float(permanent_contact_threshold(ratio, zeta))
-    lam = held + excess / ratio**2
-    phase = np.pi / 2 + 3 / ratio
-    velocity = lam * np.cos(phase) - 0.1 / ratio**2
-    orbit = of_motion(balls("spring-damper", lam, 0.85, ratio).model, lam, phase, velocity)
-    assert orbit.impacts == flights
-    steps = replace(STEPS, initial=1e-3)
-    found = branch_from(orbit, to=held + (excess + 10.0) / ratio**2, control=steps)
-    opening = first(found, Special.GRAZING_RELEASE)
-    assert opening.amplitude == pytest.approx(amplitude[0], abs=1e-12)
-    largest = abs(opening.multipliers()[0])
-    assert largest == pytest.approx(known.multiplier[0, -1, 0], abs=1e-9)
-    if not ends:
-        return
-    found = curve_of(opening, "frequency_ratio", across_window=Window(*ends))
-    values = found.problem.values(found.branch.points)
-    order = values["frequency_ratio"].argsort()[[0, -1]]
-    assert values["frequency_ratio"][order] == pytest.approx(ends, abs=1e-12)
-    assert np.abs(amplitude[1:] - values["amplitude"][order]).max() < 1e-10
 
 
 @pytest.mark.parametrize("name", ["rigid", "spring-damper"])

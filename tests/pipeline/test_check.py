@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from adapter import function
 from declared_artifacts import ARTIFACTS
-from snakemake.utils import update_config
 from whole_configuration import configuration_type
 
 from bouncing_ball.pipeline.configuration import check_configuration, check_parameters
@@ -40,15 +39,6 @@ def changed(keys, value):
 
 def test_the_shipped_configuration_is_accepted(model):
     check_parameters(model, CONFIG)
-
-
-def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
-    config = copy.deepcopy(CONFIG)
-    larger = read_yaml(FOLDER / "motions-large.yaml")
-    update_config(config, larger)
-    check_parameters(model, config)
-    assert config["beyond"]["ext_locking"]["amplitude"]["min"] == 0.8
-    assert len(larger["beyond"]) == 5
 
 
 FIG05 = ("paper", "fig05")

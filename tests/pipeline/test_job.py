@@ -7,9 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline import jobs
 from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input, using
-from bouncing_ball.pipeline.samples import COMPUTATION, CONTENT
 
 
 @pytest.fixture
@@ -39,39 +37,6 @@ def test_a_variable_without_a_unit_is_refused(refusal):
     job = SimpleNamespace(params=SimpleNamespace(arguments={}), input={}, output=output)
     with refusal(ModelError, "phase has no unit: the study ends with described(...)"):
         make_dataset(job, lambda: xr.Dataset({"phase": 0.0}))
-
-
-class Params(dict):
-    """Named values, as those of a job of Snakemake."""
-
-    __getattr__ = dict.__getitem__
-
-
-@pytest.mark.parametrize("sample", [True, False])
-def test_only_a_sample_has_a_processor_time_which_is_that_of_its_shards_and_its_own(
-    tmp_path, monkeypatch, sample
-):
-    code = {f"{jobs.PREFIX}code": "1f0e models/rigid.py"}
-    monkeypatch.setattr(jobs, "provenance", lambda snakemake: code)
-    monkeypatch.setattr("time.process_time", lambda: 2.0)
-    shards = [str(tmp_path / f"{k}.nc") for k in range(2)]
-    for path in shards:
-        write_dataset(xr.Dataset({"a": ("a_0", [1.0])}, attrs={jobs.SECONDS: "20"}), path)
-    job = SimpleNamespace(
-        params=Params(arguments={"parameters": {}}, title="A sample", compressed=sample),
-        input={"shards": shards},
-        output=SimpleNamespace(data=str(tmp_path / "sample.nc")),
-    )
-
-    def study(parameters: dict, found: dict) -> xr.Dataset:
-        return xr.Dataset({"a": ("place", found["a"], {"units": "1"})})
-
-    make_dataset(job, study)
-    made = read_input(job.output.data)
-    assert made.a.values.tolist() == [1.0, 1.0]
-    assert made.attrs.get(jobs.SECONDS) == ("42" if sample else None)
-    # Only a sample records what computed it, by what the code is now.
-    assert (COMPUTATION in made.attrs) == (CONTENT in made.attrs) == sample
 
 
 def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):

@@ -28,7 +28,6 @@ LATE_FIGURE = (
 # Scripts that import a function by its name: the parameters with its module and its name.
 BY_NAME = {
     "study": ("module", "study"),
-    "shard": ("module", "places"),
     "figure": ("figures", "drawing"),
     "table": ("figures", "table"),
 }

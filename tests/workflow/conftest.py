@@ -38,12 +38,11 @@ OTHERS = ".git .venv* results .snakemake *.egg-info .*_cache"
 IGNORED = shutil.ignore_patterns(*OTHERS.split())
 # The studies that take longest have the first so many entries of these lists only.
 SHORTER = {
-    ("ext_flights", "restitution"): 2,
     ("ext_laws", "further"): 1,
 }
 # What a whole run leaves: its results, and what Snakemake has noted about them.
 MADE = (
-    *(f"results/{name}" for name in ("figures", "code", "logs", "shards", "tally.txt", *TEXTS)),
+    *(f"results/{name}" for name in ("figures", "code", "logs", "tally.txt", *TEXTS)),
     *(f".snakemake/{name}" for name in ("metadata", "incomplete")),
 )
 

@@ -16,7 +16,6 @@ import yaml
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.shards import shard
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.pipeline.samples import SECONDS
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 SMALL = {
@@ -46,16 +45,13 @@ def made(cloned, tmp_path_factory):
     return tree
 
 
-def without_times(tree):
-    """The files of the atlas: the bytes of their variables, and their attributes, all but the
-    processor time that each of them took.
-    """
+def files_of_atlas(tree):
+    """The files of the atlas: the bytes of their variables, and their attributes."""
     folder = tree.path / "results" / "atlas"
     found = {}
     for path in sorted(folder.rglob("*.nc")):
         data = read_dataset(path)
-        named = {name: np.asarray(value).tolist() for name, value in data.attrs.items()}
-        attributes = {name: value for name, value in named.items() if name != SECONDS}
+        attributes = {name: np.asarray(value).tolist() for name, value in data.attrs.items()}
         values = {name: data[name].values.tobytes() for name in data.variables}
         found[str(path.relative_to(folder))] = (attributes, values)
     return found
@@ -74,7 +70,7 @@ def test_a_killed_atlas_is_resumed_without_loss(made, fresh):
     first = min(early, key=lambda name: (shards / name).stat().st_mtime_ns)
     said = fresh.run("--cores", "1", *ATLAS).stdout
     after = fresh.checksums("results/atlas")
-    assert without_times(fresh) == without_times(made)
+    assert files_of_atlas(fresh) == files_of_atlas(made)
     assert 2 == len(early) < len(after)
     assert {name: after[f"shards/{name}"] for name in early} == early
     # The job of the last one was killed before it could say that it was done.
@@ -123,4 +119,4 @@ def test_on_a_cluster_the_bits_are_the_same(made, fresh, slurm):
     prepared(fresh)
     command = [Path(sys.executable).with_name("snakemake"), *OPTIONS, *ATLAS]
     subprocess.run(command, cwd=fresh.path, env=fresh.environment() | slurm, check=True)
-    assert without_times(fresh) == without_times(made)
+    assert files_of_atlas(fresh) == files_of_atlas(made)

@@ -20,7 +20,7 @@ def recorded(complete):
     """A run whose record are its own results."""
     shutil.rmtree(complete.path / "figures")
     shutil.copytree(complete.path / "results" / "figures", complete.path / "figures")
-    for name in ("paper.md", "supplement.md", "motions.md"):
+    for name in ("paper.md", "supplement.md"):
         shutil.copyfile(complete.path / "results" / name, complete.path / name)
     complete.commit("A record")
     return complete

@@ -19,15 +19,14 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
     complete.configure("paper", "fig12", "amplitude", value=1.1)
     # What checks the configuration only, and what only shows, run no science again.
     complete.edit("pipeline/configuration_docs.py")
-    complete.edit("beyond/exhibits/cascades_figures.py")
+    complete.edit("beyond/exhibits/cascade_of_flights_figures.py")
     complete.edit("paper/claims/forensics.py")
     printed = "src/bouncing_ball/paper/exhibits/printed_table1.py"
     complete.rewrite(printed, '"1.032"', '"1.033"')
     (complete.path / "results/figures/formulas.nc").unlink()
     assert complete.planned() == {
         *("fig12", "Drawing fig12"),
-        # Both are drawn by the module of their stage.
-        *("Drawing ext_flights", "Drawing ext_cascades"),
+        "Drawing ext_flights",
         *("forensics", "Setting forensics"),
         *("table1", "Setting table1"),
         # These figures are of one stage with the table.
@@ -44,7 +43,7 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         *(
             "claims",
             "Setting claims",
-            "Writing results/paper.md, results/supplement.md and results/motions.md",
+            "Writing results/paper.md and results/supplement.md",
         ),
     }
 
@@ -69,16 +68,16 @@ def test_no_file_time_hides_a_change_of_the_code(complete):
     assert complete.planned("results/figures/fig02.nc") == set()
 
 
-def test_no_file_time_hides_a_change_of_a_sample_or_of_the_atlas(complete):
-    drawn = ("ext_means", "ext_atlas")
+def test_no_file_time_hides_a_change_of_an_accepted_dataset(complete):
+    drawn = ("ext_bounces", "ext_atlas")
     assert complete.planned(*drawn) == set()
-    for sample in ("config/ext_means.nc", "config/atlas.nc"):
+    for sample in ("config/ext_bounces.nc", "config/atlas.nc"):
         path = complete.path / sample
         data = read_dataset(path)
         name = next(name for name in data.data_vars if data[name].dtype.kind == "f")
         write_dataset(data.assign({name: data[name] / 2}), path)
         os.utime(path, (1.5e9, 1.5e9))
-    # Each figure is drawn from its own sample.
+    # Each figure is drawn from its own dataset.
     assert {f"Drawing {name}" for name in drawn} <= complete.planned(*drawn)
 
 

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def made_by_a_run():
     """The names of the datasets that a run makes."""
-    return {name for name, each in ARTIFACTS.items() if each.study and not each.accepted}
+    return {name for name, each in ARTIFACTS.items() if each.study}
 
 
 def test_a_run_makes_every_figure_and_table(pristine):
@@ -29,7 +29,7 @@ def test_a_run_makes_every_figure_and_table(pristine):
     data = {f"{ARTIFACTS[name].place}.nc" for name in made_by_a_run()}
     recorded = {str(path.with_suffix("").relative_to(ROOT)) for path in figures.rglob("*.csv")}
     texts = {f"{place}.{kind}" for place in recorded for kind in ("csv", "md")}
-    pages = {"figures/beyond/explorer.html", "paper.md", "supplement.md", "motions.md", "tally.txt"}
+    pages = {"figures/beyond/explorer.html", "paper.md", "supplement.md", "tally.txt"}
     assert made == pictures | data | texts | pages
 
 
@@ -46,19 +46,19 @@ def stages():
     """The artifacts of each stage of both sets of studies; the atlas has rules of its own."""
     found = {}
     for each in ARTIFACTS.values():
-        if each.study or not each.accepted:
+        if not each.accepted:
             found.setdefault(each.stage, []).append(each)
     return found
 
 
 # One of them, and weekly further ones of both sets of studies; below all of them at once.
-SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in ("lives", "formulas", "schematics")]
+SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in ("proofs", "formulas", "schematics")]
 
 
 @pytest.mark.parametrize("name", ["permanent_contact", *SELDOM])
 def test_a_stage_is_a_target_that_makes_its_datasets_pictures_and_tables(fresh, name):
     made = set(fresh.planned_files(name))
-    own = {file for each in stages()[name] for file in (each.computed, *each.files) if file}
+    own = {file for each in stages()[name] for file in each.files}
     # The rest is what its studies read.
     assert own and own <= made
     assert all(ARTIFACTS[Path(file).stem].stage != name for file in made - own)
@@ -71,7 +71,7 @@ def test_every_stage_is_a_target(fresh):
     made = set(fresh.planned_files(*names))
     for artifacts in stages().values():
         for each in artifacts:
-            assert {file for file in (each.computed, *each.files) if file} <= made
+            assert {*each.files} <= made
 
 
 def test_a_run_gives_the_accepted_datasets(pristine, recorded, coarse):

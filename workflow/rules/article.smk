@@ -1,5 +1,5 @@
-# The replication article with its supplement and the article on the motions, in which every number
-# comes from a dataset, and the page and the tally of the claims.
+# The replication article with its supplement, in which every number comes from a dataset, and the
+# page and the tally of the claims.
 
 ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 TEMPLATES = sorted(map(str, Path(ARTICLE).glob("*.md.j2")))
@@ -38,7 +38,7 @@ rule set_claims:
 
 rule paper:
     message:
-        "Writing results/paper.md, results/supplement.md and results/motions.md"
+        "Writing results/paper.md and results/supplement.md"
     input:
         code=lambda wildcards: code(
             "paper",
@@ -53,7 +53,6 @@ rule paper:
     output:
         paper="results/paper.md",
         supplement="results/supplement.md",
-        motions="results/motions.md",
         tally="results/tally.txt",
     params:
         templates=ARTICLE,
@@ -71,7 +70,7 @@ rule paper_pdf:
     name:
         "paper.pdf"
     message:
-        "Setting results/paper.pdf, results/supplement.pdf and results/motions.pdf"
+        "Setting results/paper.pdf and results/supplement.pdf"
     input:
         code=lambda wildcards: code(
             "paper_pdf",
@@ -81,13 +80,11 @@ rule paper_pdf:
         texts=[
             rules.paper.output.paper,
             rules.paper.output.supplement,
-            rules.paper.output.motions,
         ],
         figures=[f"results/{each.place}.svg" for each in ARTIFACTS.values() if each.drawing],
     output:
         "results/paper.pdf",
         "results/supplement.pdf",
-        "results/motions.pdf",
     params:
         template=f"{ARTICLE}/article.typ",
     log:

@@ -1,7 +1,5 @@
-# The stages beyond the paper, in the same form as those of the paper. `places`, if a study can be
-# divided into shards, is the function that computes the arrays of some of its places. A dataset
-# with `accepted` is not part of a run: figures and texts read this file. If it has a study, it is a
-# sample that takes longer than a run should, and `make samples ONLY=NAME` makes it again.
+# The stages beyond the paper, in the same form as those of the paper. A dataset with `accepted` is
+# not part of a run: figures and texts read this file.
 
 # Datasets that no study makes: what physics engines computed (`make test-engines`), and the summary
 # of the atlas (workflow/rules/atlas.smk).
@@ -114,123 +112,15 @@ use rule beyond_study as measured_impacts_study with:
         ),
 
 
-use rule beyond_study as cascades_study with:
-    """Flights in a period, and cascades of period doublings."""
+use rule beyond_study as cascade_of_flights_study with:
+    """Flights in a period above the threshold of permanent contact."""
     wildcard_constraints:
         artifact=stage(
-            "beyond.exhibits.cascades",
+            "beyond.exhibits.cascade_of_flights",
             ext_flights=dict(
                 title="From permanent contact to chattering: the cascade of flights in a period",
                 study="cascade_of_flights",
                 drawing="cascade_of_flights",
-            ),
-            ext_cascades=dict(
-                title="Cascades of period doublings, and how a contact of finite stiffness shifts them",
-                study="cascades",
-                drawing="cascades",
-            ),
-        ),
-
-
-use rule beyond_study as orbit_diagram_study with:
-    """Orbit diagrams over the amplitude."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.orbit_diagram",
-            ext_diagram=dict(
-                title="Orbit diagrams over the amplitude, and the largest Lyapunov exponents",
-                study="orbit_diagrams",
-                places="phases_of_impacts",
-                drawing="orbit_diagrams",
-                accepted="config/ext_diagram.nc",
-            ),
-        ),
-
-
-use rule beyond_study as locking_study with:
-    """The motions on which balls lock, over restitution and amplitude."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.locking",
-            ext_locking=dict(
-                title="What balls end on over restitution and amplitude, and where the models agree on it",
-                study="locking",
-                places="motions_at_nodes",
-                drawing="locking",
-                accepted="config/ext_locking.nc",
-            ),
-        ),
-
-
-use rule beyond_study as long_transients_study with:
-    """Whether balls that seem chaotic lock after long transients."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.long_transients",
-            ext_chaos=dict(
-                title="How many balls of the restitution model that seem chaotic lock after long transients",
-                study="long_transients",
-                places="transients_at_nodes",
-                accepted="config/ext_chaos.nc",
-            ),
-        ),
-
-
-use rule beyond_study as lives_study with:
-    """How long balls take to stick to the table."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.lives",
-            ext_lives=dict(
-                title="How long balls take to stick to the table for the first time",
-                study="transients",
-                places="lives",
-                accepted="config/ext_lives.nc",
-            ),
-        ),
-
-
-use rule beyond_study as locked_orbits_study with:
-    """Locked orbits of the restitution model on contacts."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.locked_orbits",
-            ext_locked=dict(
-                title="The frequency ratio at which a contact has a locked orbit of the restitution model, and transients before it",
-                study="locked_orbits",
-                places="returns_at_places",
-                drawing="locked_orbits",
-                reads=("ext_lives",),
-            ),
-        ),
-
-
-use rule beyond_study as basins_study with:
-    """Basins of motions that coexist."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.basins",
-            ext_basins=dict(
-                title="Basins of coexisting motions in three models, and their exponents of uncertainty",
-                study="basins",
-                places="destinations",
-                drawing="basins",
-                accepted="config/ext_basins.nc",
-            ),
-        ),
-
-
-use rule beyond_study as means_study with:
-    """Means over whole motions, such as the power and the height."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.means",
-            ext_means=dict(
-                title="From which frequency ratio on the means over a motion are right, over restitution and amplitude",
-                study="mean_motions",
-                places="errors_at_nodes",
-                drawing="mean_motions",
-                accepted="config/ext_means.nc",
             ),
         ),
 

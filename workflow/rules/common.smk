@@ -94,17 +94,6 @@ def arguments_of(artifact):
     )
 
 
-# The shards that a study merges, if it has several. The dataset is that of one job, byte for byte,
-# and a run that was interrupted goes on with the next shard.
-def shards_of(wildcards):
-    from bouncing_ball.datasets.shards import shard_names
-
-    given = arguments_of(ARTIFACTS[wildcards.artifact])
-    count = given.get("parameters", {}).get("shards", 1)
-    names = shard_names(count) if count > 1 else []
-    return expand(rules.shard.output.data, shard=names, **wildcards)
-
-
 # The one input that stands for the code of a job: a file with the digests of its script, of the
 # named modules, of all modules and data that these import and read, and of the accepted datasets
 # among its data, which no job makes; and with the versions of the libraries. It is written only if

@@ -1,5 +1,4 @@
-# The accepted record in git: figures/, paper.md, supplement.md and motions.md. Its history is
-# `git log figures/`.
+# The accepted record in git: figures/, paper.md and supplement.md. Its history is `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
 from bouncing_ball.pipeline.diff.targets import (

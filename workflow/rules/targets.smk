@@ -18,13 +18,12 @@ for each in TARGETS:
     workflow.get_rule(each.name).docstring = each.title
 
 
-# By the name of each stage its files, also the samples of motions, which take some minutes each.
-# The atlas has rules of its own.
+# By the name of each stage its files. The atlas has rules of its own.
 STAGES = {}
 for each in TARGETS:
-    if each.study or not each.accepted:
+    if not each.accepted:
         files = STAGES.setdefault(each.stage, [])
-        files += [file for file in (each.computed, *each.files) if file and file not in files]
+        files += each.files
 
 for name, files in STAGES.items():
     # The only artifact of its stage may have the name of the stage.

@@ -1,7 +1,6 @@
 """The summary of the atlas, and its charts and tables."""
 
 from pathlib import Path
-from time import process_time
 
 from bouncing_ball.beyond.atlas.figures import charts
 from bouncing_ball.beyond.atlas.plan import Plan
@@ -9,14 +8,13 @@ from bouncing_ball.beyond.atlas.summary import summary
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import style
-from bouncing_ball.pipeline.jobs import earlier_seconds, logged, provenance, publish, read_input
+from bouncing_ball.pipeline.jobs import logged, provenance, publish, read_input
 
 with logged(snakemake), style():
     parameters = snakemake.params.parameters
     (path,) = snakemake.input.parts
     data = summary(Plan(**parameters), read_input(path))
-    seconds = earlier_seconds(snakemake.input.parts) + process_time()
-    publish(snakemake, data, parameter_attributes(parameters), compressed=True, seconds=seconds)
+    publish(snakemake, data, parameter_attributes(parameters))
     metadata = provenance(snakemake)
     folder = Path(snakemake.output.data).parent
     for name, figure in charts(data):

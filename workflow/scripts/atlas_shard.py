@@ -1,7 +1,5 @@
 """One shard of the atlas, or the limits of all its families."""
 
-from time import process_time
-
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.shards import limit_shard, shard
 from bouncing_ball.datasets.files import parameter_attributes
@@ -16,10 +14,4 @@ with logged(snakemake):
     else:
         number, _, _ = name.partition("-")
         dataset = shard(plan, int(number))
-    publish(
-        snakemake,
-        dataset,
-        parameter_attributes(parameters),
-        compressed=True,
-        seconds=process_time(),
-    )
+    publish(snakemake, dataset, parameter_attributes(parameters))

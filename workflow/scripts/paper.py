@@ -1,4 +1,4 @@
-"""The replication article, its supplement and the article on motions, and the tally."""
+"""The replication article, its supplement, and the tally."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from bouncing_ball.pipeline.yaml_files import read_yaml
 
 # The templates, and the names of the texts. The supplement is the first, because the article refers
 # to its sections.
-ARTICLES = {"supplement": "supplement", "article": "paper", "motions": "motions"}
+ARTICLES = {"supplement": "supplement", "article": "paper"}
 
 
 def text_of(path):

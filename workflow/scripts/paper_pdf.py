@@ -1,4 +1,4 @@
-"""The replication article, its supplement and the article on motions as PDFs."""
+"""The replication article and its supplement as PDFs."""
 
 from pathlib import Path
 

@@ -20,9 +20,8 @@ _SYMBOLS = {
 # What makes a single orbit cheaper.
 _SIMPLER = "a spring and a damper in place of a law"
 _OF_DESIGN = (
-    "the orbits of eight families, the ends of many starts, and the means of a motion that does "
-    "not repeat, also with r, k and g changed, are computed, and each impact on a contact law is "
-    "integrated: a single family n, fewer balls, or a spring and a damper in place of a law"
+    "the orbits of eight families and the ends of many starts are computed, and each impact on a "
+    "contact law is integrated: a single family n, or a spring and a damper in place of a law"
 )
 
 

@@ -47,7 +47,7 @@ _OPTIONS = (
     (drop_at_rest, ("speed",)),
     (Question, ("n",)),
     (Contact, ("release", "law")),
-    (Question, ("quantity", "tolerance", "balls")),
+    (Question, ("quantity", "tolerance")),
     (EngineSetup, ("engine", "restitution_error", "time_step")),
     (Contact, ("from_engine", "solref", "solimp", "parameters")),
 )

@@ -10,9 +10,8 @@ The way of a contact through the modules:
     ``named_laws`` the contact laws by their names, and ``law_balls`` makes balls of them
 ``assess``
     is a restitution coefficient good enough? By the orbits in all models (``families``) and the
-    motion on which most balls end (``motion``, ``starts``): where one ball ends (``ends``), and
-    means of what does not repeat (``means``), of as many balls as take seconds (``effort``).
-    ``judgement`` has what decides
+    motion on which most balls end (``motion``, ``starts``), with as many balls and impacts as take
+    seconds (``effort``). ``judgement`` has what decides
 ``choose``
     how stiff must a contact be for that? By the ϖ that a tolerance needs (``needed``)
 ``write``

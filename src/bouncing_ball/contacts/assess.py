@@ -14,7 +14,7 @@ from bouncing_ball.contacts.choose import Choice
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import require_short
 from bouncing_ball.contacts.families import ComparedOrbit, families
-from bouncing_ball.contacts.judgement import MotionJudgement, OrbitJudgement, judged_by_motion
+from bouncing_ball.contacts.judgement import MotionJudgement, OrbitJudgement
 from bouncing_ball.contacts.motion import FinalMotion, of_family
 from bouncing_ball.contacts.needed import Needed, finite, needed
 from bouncing_ball.contacts.notes import notes, remarks
@@ -144,8 +144,7 @@ class Assessment(NumbersOfImpact):
         if self.needed.quantity not in OF_ORBITS or self.motion.restitution_kind is None:
             return None
         share = self.ends.of_orbit(self.n) if self.motion.is_common else None
-        of = self.needed.tolerance, self.n, share, self.amplitude
-        return judged_by_motion(self.motion, *of)
+        return MotionJudgement(self.motion, self.needed.tolerance, self.n, share, self.amplitude)
 
     @property
     def is_good_enough(self) -> bool:
@@ -293,9 +292,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         ),
         orbits=found,
         needed=need,
-        motion=of_family(
-            case, one, need.tolerance, question.balls, ends.first if is_rare else None
-        ),
+        motion=of_family(case, one, ends.first if is_rare else None),
         case=case,
         n=one.n,
         ends=ends,

@@ -1,26 +1,26 @@
 """The motion on which a ball ends, and how accurately the restitution model predicts it.
 
-A ball on a stable orbit stays there. A ball near an unstable one leaves, and the mapper computes
-the motion on which it ends (:mod:`bouncing_ball.long_run.destination`). Motions that repeat
-in the same way in both models are compared by their greatest height. Other motions are compared by
-means over time of the height, and of the power that the table transfers to the ball
-(:mod:`bouncing_ball.contacts.means`).
+A ball on a stable orbit stays there. A ball near an unstable one leaves, and is followed until the
+motion is known on which it ends (:mod:`bouncing_ball.long_run.destination`). If this motion repeats
+in both models, its greatest heights are compared.
 """
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of, on_orbit
 from bouncing_ball.contacts.families import ComparedOrbit
-from bouncing_ball.contacts.means import BESIDE, Mean, compared_means
 from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.long_run.basins import MotionName
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.sequence import ImpactSequence
 from bouncing_ball.periodic.one_impact import n_t
+
+# Relative change of an orbit's impact velocity for a start beside the orbit.
+_BESIDE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -31,21 +31,10 @@ class FinalMotion:
     "permanent contact", "chaotic" or "undecided". The periods of the table and the impacts after
     which the motion repeats follow; they are 0 if it does not repeat. ``laid`` is the kind for a
     ball laid on the table, None if it is the same. If the orbit is not stable, there are the same
-    three values for the restitution model. For motions that repeat in the same way in both models
-    there is then the ``greatest`` height in each model; for other motions there are means over
-    time of the height and of the power that the table transfers, over a number of ``balls``, with
-    the signed deviations of the restitution model from the contact, relative to the value on the
-    contact (:func:`~bouncing_ball.accuracy.errors.deviation`). ``is_laid`` tells whether the ball
-    was laid on the table, because no model has an orbit on which a ball can arrive, and
-    ``is_common`` whether it is the motion on which most balls end, because few end on the orbit.
-    ``changes`` has these deviations of the means if r, k or g change by a thousandth; "r -0.1 %"
-    and the like are the names of these changes. The r of a contact law is changed at the mean speed
-    of the impacts of this motion. For a law that no impact determines, such as an impedance, they
-    are those of the linear contact with its r and duration, also without a change; they are None if
-    that contact has another kind of motion.
-
-    The mean height is the mean over time of the height of the ball above the middle of the table,
-    and the mean power that of the contact force times the velocity of the table.
+    three values for the restitution model, and if the motions of both models repeat without a rest
+    that lasts, the ``greatest`` height in each. ``is_laid`` tells whether the ball was laid on the
+    table, because no model has an orbit on which a ball can arrive, and ``is_common`` whether it is
+    the motion on which most balls end, because few end on the orbit.
     """
 
     kind: str
@@ -56,27 +45,22 @@ class FinalMotion:
     restitution_periods: int | None = None
     restitution_impacts: int | None = None
     greatest: dict[str, float] | None = None
-    mean_height: dict[str, Mean | None] | None = None
-    mean_power: dict[str, Mean | None] | None = None
-    mean_error: dict[str, Mean] | None = None
-    balls: int | None = None
     is_laid: bool = False
     is_common: bool = False
-    changes: dict[str, dict[str, Mean]] | None = None
+
+
+class _Impact(NamedTuple):
+    """An impact: phase of the table and absolute velocity of the ball."""
+
+    phase: float
+    velocity: float
 
 
 def of_family(
-    case: ResolvedContact,
-    family: ComparedOrbit,
-    tolerance: float,
-    balls: int | None = None,
-    start: tuple[float, float] | None = None,
+    case: ResolvedContact, family: ComparedOrbit, start: tuple[float, float] | None = None
 ) -> FinalMotion:
     """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit; or
     from the phase and velocity of a ``start``, if few balls end on the orbit.
-
-    The sample for means over time grows until these decide about the tolerance, up to ``balls``,
-    rounded up to multiples of 256, or of 128 for a contact law.
     """
     if family.attracts and start is None:
         return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
@@ -86,22 +70,20 @@ def of_family(
     if orbit is not None and is_possible and orbit.is_neutral():
         return FinalMotion(str(Kind.UNDECIDED), 0, 0)
     first = None if orbit is None else _beside(case, orbit)
-    first = first if start is None else FirstImpact(*start)
+    first = first if start is None else _Impact(*start)
     is_laid = first is None
     first = first or _laid_down(case)
     # The exact model and the restitution model.
-    ends = {name: end_of(case, name, first) for name in list(case.models)[:2]}
-    ideal = family.standing["restitution"]
-    if start is None and ideal.attracts:
+    ends = {name: _end_of(case, name, first) for name in list(case.models)[:2]}
+    if start is None and family.standing["restitution"].attracts:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
-        ends["restitution"] = on_orbit(case, family.n)
-    exact, simple = (end.motion for end in ends.values())
-    values: dict[str, Any] = {}
+        ends["restitution"] = _on_orbit(case, family.n)
+    exact, simple = (motion for motion, _ in ends.values())
     rests = Kind.PERMANENT_CONTACT in (exact.kind, simple.kind)
-    if exact == simple and exact.periods > 0 and not rests:
-        values["greatest"] = {name: _greatest(case, name, end) for name, end in ends.items()}
-    elif not rests:
-        values = compared_means(case, ends, tolerance, balls, first)
+    repeat = exact.periods > 0 and simple.periods > 0
+    greatest = None
+    if repeat and not rests:
+        greatest = {name: _greatest(case, name, *end) for name, end in ends.items()}
     return FinalMotion(
         kind=str(exact.kind),
         periods=exact.periods,
@@ -109,10 +91,25 @@ def of_family(
         restitution_kind=str(simple.kind),
         restitution_periods=simple.periods,
         restitution_impacts=simple.impacts,
+        greatest=greatest,
         is_laid=is_laid,
         is_common=start is not None,
-        **values,
     )
+
+
+def _end_of(case: ResolvedContact, name: str, first: _Impact) -> tuple[MotionName, _Impact]:
+    """The motion on which a ball of a model ends, and one of its impacts."""
+    lam = case.table.amplitude
+    found = final_motions(case.models[name], lam, *first, impacts=case.effort.impacts)
+    motion = MotionName(Kind(str(found.kind)), int(found.periods), int(found.impacts))
+    return motion, _Impact(float(found.end_phase), float(found.end_velocity))
+
+
+def _on_orbit(case: ResolvedContact, n: int) -> tuple[MotionName, _Impact]:
+    """The n-T orbit of the restitution model, and its impact."""
+    orbit = n_t.orbit(case.models["restitution"], n, case.table.amplitude)
+    impact = _Impact(float(orbit.phase), float(orbit.impact_velocity))
+    return MotionName(Kind.ORBIT, n, 1), impact
 
 
 def _first_orbit(case: ResolvedContact, family: ComparedOrbit) -> Any | None:
@@ -123,20 +120,20 @@ def _first_orbit(case: ResolvedContact, family: ComparedOrbit) -> Any | None:
     return None
 
 
-def _beside(case: ResolvedContact, orbit: Any) -> FirstImpact | None:
+def _beside(case: ResolvedContact, orbit: Any) -> _Impact | None:
     """An impact beside the orbit; None if no ball arrives with it, because it would rise from
     below the table, as on some inadmissible orbits of compliant contacts.
     """
     phase = float(orbit.phase)
-    velocity = float(orbit.impact_velocity) * (1 + BESIDE)
+    velocity = float(orbit.impact_velocity) * (1 + _BESIDE)
     if velocity > case.table.amplitude * math.cos(phase):
         return None
-    return FirstImpact(phase, velocity)
+    return _Impact(phase, velocity)
 
 
-def _laid_down(case: ResolvedContact) -> FirstImpact:
+def _laid_down(case: ResolvedContact) -> _Impact:
     """A ball that is laid on the table at the phase where the table moves down fastest."""
-    return FirstImpact(np.pi, -case.table.amplitude)
+    return _Impact(np.pi, -case.table.amplitude)
 
 
 def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:
@@ -157,11 +154,8 @@ def _tops(sequence: ImpactSequence) -> np.ndarray:
     return sequence.release_displacement + lift + rise * rise / 2
 
 
-def _greatest(case: ResolvedContact, name: str, end: Ending) -> float:
+def _greatest(case: ResolvedContact, name: str, motion: MotionName, impact: _Impact) -> float:
     """Greatest height of a motion that repeats, in m."""
-    once = end.impacts.last()
-    found = case.models[name].simulate(
-        case.table.amplitude, once.phase[0], once.velocity[0], 2 * end.motion.impacts + 1
-    )
-    last = _tops(found)[-1 - end.motion.impacts :]
+    found = case.models[name].simulate(case.table.amplitude, *impact, 2 * motion.impacts + 1)
+    last = _tops(found)[-1 - motion.impacts :]
     return float(np.nanmax(last)) * case.table.length

@@ -11,8 +11,6 @@ from bouncing_ball.contacts.quantities import RestitutionError, TimeStep, Tolera
 from bouncing_ball.errors import (
     FAMILY,
     ModelError,
-    ParameterError,
-    count,
     one_of,
     shortened,
     suggesting,
@@ -20,7 +18,6 @@ from bouncing_ball.errors import (
 
 # The families of which one is judged by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
-MOST_BALLS = count(100_000)
 
 
 @suggesting
@@ -37,9 +34,6 @@ class Question:
     tolerance
         Largest error of the restitution model's quantity against the contact's, relative to that of
         the contact, such as "5 %" or 0.05.
-    balls
-        Largest number of balls whose means over time are compared if the motion does not repeat.
-        By default it takes about a second.
 
     Raises
     ------
@@ -55,15 +49,12 @@ class Question:
     n: Annotated[int, FAMILY] | None = None
     quantity: Annotated[str, Quantity] = "max_height"
     tolerance: Tolerance = 0.01
-    balls: Annotated[int, MOST_BALLS] | None = None
 
     def __post_init__(self) -> None:
         convert(self)
         one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
         if self.n is not None and (isinstance(self.n, bool) or self.n not in FAMILY):
             raise ModelError(f"index of the family n = {shortened(self.n)} is not {FAMILY}")
-        if self.balls is not None and self.balls not in MOST_BALLS:
-            raise ParameterError(f"{{balls}} = {shortened(self.balls)} is not {MOST_BALLS}")
 
     @property
     def families(self) -> Sequence[int]:

@@ -110,7 +110,7 @@ def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dic
     return flat
 
 
-def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = False) -> None:
+def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """Write a dataset under the CF conventions, completely or not at all.
 
     Coordinates have no fill value, because all their values exist.
@@ -121,10 +121,6 @@ def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = F
         If the file cannot be written; if the disk is full, the error says so.
     """
     encoding: dict[str, dict[str, Any]] = {str(x): {"_FillValue": None} for x in dataset.coords}
-    for name, values in dataset.data_vars.items():
-        # Compression makes a map of a few small integers many times smaller.
-        if values.ndim and (compressed or values.dtype == "int8"):
-            encoding[str(name)] = {"zlib": True, "complevel": 4}
     with replacing(path) as temporary:
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)

@@ -120,12 +120,6 @@ Tolerance = Annotated[float, number("largest relative error", gt=0, lt=1)]
 Seed = Annotated[int, number("seed of the random numbers", ge=0)]
 
 
-class Sharded(Parameters):
-    """The parameters of a study whose places may be divided among jobs."""
-
-    shards: Annotated[int, number("jobs among which places are divided", ge=1, le=2000)] = 1
-
-
 class Interval(Parameters):
     """Two ends, of which the second is above the first."""
 

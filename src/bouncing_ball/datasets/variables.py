@@ -131,11 +131,6 @@ SHARED = {
         symbol="Λ_SD, or Λ_F for the force release",
         equation="Eq. 33",
     ),
-    "needed_ratio": Variable(
-        "smallest of the frequency ratios tried from which on the error is known to be within the "
-        "tolerance",
-        symbol="ϖ",
-    ),
     # Comparisons of two computations.
     "disagreement": Variable("largest disagreement between two routes", budget=1.0, scale="budget"),
     "budget": Variable("disagreement allowed"),
@@ -162,16 +157,6 @@ SHARED = {
     ),
     "destination": Variable("motion on which a start ends, index of the motion", budget=math.inf),
     "share": Variable("share of nodes"),
-    "shift": Variable("change of the amplitude"),
-    "uncertainty_exponent": Variable(
-        "exponent of the share that a change of this size moves", symbol="α"
-    ),
-    "uncertainty_exponent_low": Variable(
-        "lower limit of the confidence interval of the exponent of uncertainty"
-    ),
-    "uncertainty_exponent_high": Variable(
-        "upper limit of the confidence interval of the exponent of uncertainty"
-    ),
 }
 """The variables that several stages or calls write; the others stand beside the one that does."""
 

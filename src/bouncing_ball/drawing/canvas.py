@@ -45,14 +45,6 @@ def canvas(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def stacked(height: float, heights: tuple[float, ...]) -> tuple[Figure, Any]:
-    """A two-column figure of a height in inches, and its parts with the given relative heights."""
-    if GIVEN.get():
-        raise ModelError("this figure has parts with panels of their own: draw it without ax")
-    figure = Figure(figsize=(WIDE, height), layout="constrained")
-    return figure, figure.subfigures(len(heights), height_ratios=heights)
-
-
 def lay_out(figure: Figure, engine: LayoutEngine) -> None:
     """Place the panels of a figure, and draw all minor ticks of an axis as one line of marks.
 

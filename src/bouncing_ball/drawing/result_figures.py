@@ -307,20 +307,6 @@ def over_time(data: xr.Dataset) -> Figure:
     return figure
 
 
-def ensemble(data: xr.Dataset) -> Figure:
-    """The speeds of the impacts of an ensemble: the mean, and the range of nine tenths of them."""
-    figure, axes = canvas(WIDE, 2.8)
-    low, middle, high = (data.speed_quantile.isel(quantile=k) for k in (0, 1, -1))
-    look = {"color": COLOURS[0], "linewidth": 1.0}
-    axes.fill_between(data.impact, low, high, color=COLOURS[0], alpha=0.2, label="5 % to 95 %")
-    axes.plot(data.impact, data.speed_mean, label="mean", **look)
-    axes.plot(data.impact, middle, label="median", **look | {"linestyle": "--"})
-    axes.set(xlabel="number of the impact", ylabel="speed $v$ of the impact", title=title(data))
-    axes.set(ylim=(0, None))
-    legend_below(figure, ncols=3)
-    return figure
-
-
 FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "simulate": impacts,
     "history": over_time,
@@ -334,7 +320,6 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "exponent": exponent,
     "diagram": orbit_diagram,
     "basins": basins,
-    "ensemble": ensemble,
     "error_thresholds": error_thresholds,
 }
 """The figure of the result of each command or call."""

@@ -44,7 +44,6 @@ from bouncing_ball.long_run.followed import (
     ROUNDING,
     Tracked,
     concatenated,
-    record,
     store,
     store_ends,
 )
@@ -78,7 +77,6 @@ def final_motions(
     velocity: ArrayLike,
     *,
     impacts: int = IMPACTS,
-    path: np.ndarray | None = None,
 ) -> Motions:
     """The motions on which balls end that start with an impact.
 
@@ -91,9 +89,6 @@ def final_motions(
     impacts : int
         Number of impacts after which the search for a repetition ends. A motion is found if it
         repeats within about a third of them.
-    path : array, optional
-        Contiguous, with the shape (3, impacts) in front of that of the result. It is filled with
-        time, φ and z′ of each impact before the one at which the motion is found.
 
     Returns
     -------
@@ -114,16 +109,6 @@ def final_motions(
     >>> found = final_motions(model, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
     (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
-
-    The path to a motion is the one that a simulation has, up to a rounding of the velocity:
-
-    >>> path = np.empty((3, 20, 2))
-    >>> start = [1.2, 1.6], 1.0, -3.0
-    >>> found = final_motions(model, *start, impacts=20, path=path)
-    >>> way = model.simulate(*start, 20)
-    >>> apart = np.abs(path - [way.time, way.phase, way.impact_velocity])
-    >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
-    ([20, 20], 0.0, True)
     """
     dynamics, start, relative, shape = model.dynamics(amplitude).first_impacts(phase, velocity)
     # After memory of this size has been freed once, the process keeps it and need not request it
@@ -131,17 +116,11 @@ def final_motions(
     np.empty(_KEPT, dtype=np.int8)
     # The derivatives of a long turn may overflow, and those of a ball that sticks are zero.
     with np.errstate(all="ignore"):
-        found = _follow(dynamics, start, relative, impacts, path)
+        found = _follow(dynamics, start, relative, impacts)
     return Motions(**{name: values.reshape(shape) for name, values in vars(found).items()})
 
 
-def _follow(
-    dynamics: Dynamics,
-    start: np.ndarray,
-    relative: np.ndarray,
-    impacts: int,
-    path: np.ndarray | None,
-) -> Motions:
+def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int) -> Motions:
     """Follow all balls, in a block to which new balls are added when a quarter of it is free."""
     found = Motions.unknown(start.size)
     balls: Any = None
@@ -157,8 +136,6 @@ def _follow(
         impact = concatenated(impact, first) if alive else first
         balls = concatenated(balls, new) if alive else new
         for leg in dynamics.take(balls.lane).legs(impact, differentiate=True):
-            if path is not None:
-                record(path.reshape(3, impacts, -1), balls, leg.impact, dynamics.setting)
             done = _departing(leg, balls, found)
             balls = _without(done, leg, leg.impact, balls, found)
             if balls.lane.size:

@@ -132,12 +132,6 @@ def store_ends(
     found.fill(lane, end_phase=phase, end_velocity=velocity)
 
 
-def record(path: np.ndarray, balls: Tracked, impact: Impact, setting: Setting) -> None:
-    """Store time, φ and z′ of the impacts in the path, shape (3, impacts, balls)."""
-    velocity = absolute_velocity(impact.phase, impact.velocity, balls.amplitude, setting)
-    path[:, balls.seen, balls.lane] = balls.time, impact.phase, velocity
-
-
 def absolute_velocity(
     phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray, setting: Setting
 ) -> np.ndarray:

@@ -59,8 +59,6 @@ _FAMILIES = (1, 2, 3)
 _BESIDE = 1e-3
 # The fractional parts of multiples of these two numbers cover a square evenly.
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
-REACH = max(_FURTHER)
-"""The motions at one Λ depend on at most this number of amplitudes on each side."""
 
 
 def motions(

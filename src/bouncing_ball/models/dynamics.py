@@ -4,7 +4,7 @@ A subclass of :class:`Dynamics` defines its contacts and flights
 (:mod:`bouncing_ball.models.contacts_and_flights`); the simulation follows from them.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, ClassVar, Protocol, Self
@@ -54,20 +54,12 @@ class Dynamics(ContactsAndFlights):
         shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
         return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
 
-    def legs(
-        self,
-        impact: Impact,
-        *,
-        differentiate: bool = False,
-        renewed: Callable[[Any], Any] | None = None,
-    ) -> "Iterator[Leg]":
+    def legs(self, impact: Impact, *, differentiate: bool = False) -> "Iterator[Leg]":
         """The legs of a row of balls that begin with these impacts, one after the other.
 
         There is no end to them unless no balls are left: :meth:`Leg.keep` leaves out balls, also
         those that stay on the table, which have no flight. With ``differentiate`` the legs can be
-        differentiated. A flight is computed when it is asked for, or for the next leg; an impact
-        :attr:`Leg.after` that is changed is the start of the next leg. Each leg obeys the dynamics
-        that ``renewed`` makes of those of the balls left, for example with a law drawn anew.
+        differentiated. A flight is computed when it is asked for, or for the next leg.
 
         Examples
         --------
@@ -80,8 +72,6 @@ class Dynamics(ContactsAndFlights):
         """
         dynamics = self
         while impact.phase.size:
-            if renewed:
-                dynamics = renewed(dynamics)
             leg = Leg(dynamics, impact, dynamics.depart(impact, differentiate=differentiate))
             yield leg
             impact, _ = leg.fly()

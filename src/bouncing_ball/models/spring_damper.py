@@ -35,7 +35,6 @@ from bouncing_ball.models.damping import (
     restitution_coefficient,
 )
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.flight import table
 from bouncing_ball.models.held_contact import (
     HeldContactDynamics,
     gap_in_contact,
@@ -232,17 +231,6 @@ class SpringDamper(OscillatorLaw):
         time = check_positive(duration, "duration D")
         return replace(unit, frequency_ratio=unit.free_duration / time)
 
-    def with_impact(self, restitution: float, duration: float, speed: float) -> SpringDamper:
-        """The contact with another ϖ and ζ, whose free impacts have these r and D.
-
-        Examples
-        --------
-        >>> contact = SpringDamper(2.0, 0.1, "approach").with_impact(0.5, 0.25, 1.0)
-        >>> np.allclose([contact.restitution, contact.free_duration], [0.5, 0.25], rtol=1e-14)
-        True
-        """
-        return SpringDamper.of_impact(restitution, duration, self.release)
-
     def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given, or for ζ ≥ 1.
 
@@ -375,23 +363,6 @@ class SpringDamper(OscillatorLaw):
         start = span.displacement, span.velocity, span.phase
         flow = self.flow(time, *start, span.amplitude)
         return flow.displacement, flow.velocity
-
-    def over_contact(
-        self,
-        amplitude: np.ndarray | float,
-        duration: np.ndarray | float,
-        phase: np.ndarray,
-        gap: np.ndarray,
-        rate: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """∫ z dτ and ∫ z′ w dτ over contacts, in closed form where the motion has one.
-
-        The arguments are those of :meth:`.ContactLaw.over_contact`.
-        """
-        if not self.has_closed_form:
-            return super().over_contact(amplitude, duration, phase, gap, rate)
-        numbers = self.frequency_ratio, self.damping_ratio, amplitude
-        return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)
 
     def check_in(self, setting: Setting) -> None:
         """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts cannot be computed on

@@ -1,4 +1,4 @@
-"""The articles and the supplement: from datasets and templates to Markdown and PDF.
+"""The article and its supplement: from datasets and templates to Markdown and PDF.
 
 A template takes every number from a dataset and prints it by one of the functions in
 :data:`FORMATS`. Then headings, figures and tables get their numbers, and pandoc (part of
@@ -104,19 +104,6 @@ def listed(values: Iterable[str | float], word: str = "and") -> str:
     return f"{', '.join(others)} {word} {last}" if others else last
 
 
-def between(data: Any, name: str, low: float, high: float) -> Any:
-    """The part of a dataset with a coordinate from ``low`` to ``high``, up to rounding.
-
-    Examples
-    --------
-    >>> curve = xr.Dataset({"x": ("t", [1, 2, 3])}, {"t": [0.1, 0.2, 0.1 + 0.2]})
-    >>> between(curve, "t", 0.2, 0.3).x.values.tolist()
-    [2, 3]
-    """
-    margin = 1e-9 * max(abs(low), abs(high))
-    return data.sel({name: slice(low - margin, high + margin)})
-
-
 def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
     """Pairs of parameters in brackets.
 
@@ -130,7 +117,6 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
 
 FORMATS = {
     "at_most": percent_at_most,
-    "between": between,
     "decimal": decimal,
     "listed": listed,
     "pairs": pairs,

@@ -5,7 +5,7 @@ the files of an artifact that a folder has. A run writes to a folder, ``results/
 record has the same layout at the top of the repository. ``figures/`` holds the artifacts of the
 paper, ``figures/beyond/`` those that go past it, and all files of an artifact have its name:
 ``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the pictures drawn from it,
-``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. The articles and the
+``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. The article and its
 supplement are texts beside ``figures/``, made from all datasets. The measurements of physics
 engines, ``config/engines.nc``, are an artifact that no run makes.
 """
@@ -30,8 +30,8 @@ PAGE = ".html"
 CARRIERS = (DATASET, *PICTURES)
 """Suffixes of the files that carry their provenance themselves."""
 
-TEXTS = ("paper.md", "supplement.md", "motions.md")
-"""The article of the replication with its supplement, and the article on the motions."""
+TEXTS = ("paper.md", "supplement.md")
+"""The article of the replication, and its supplement."""
 
 MEASURED = "config/engines.nc"
 """Measurements of physics engines, which are compared if both folders have them."""
@@ -55,16 +55,15 @@ class Artifact:
         The modules of the stage, with its studies, and of its figures and tables.
     title : str
         The title of the dataset.
-    study, places : str, optional
-        Functions of ``module``: the study that computes the dataset, and, if it can be divided into
-        shards, the function that computes the arrays of some of its places.
+    study : str, optional
+        The function of ``module`` that computes the dataset.
     drawing, table : str, optional
         Functions of ``figures`` that take the dataset and return a figure, or the columns of a
         table.
     reads : sequence of str
         Names of the artifacts whose datasets the study takes as ``data``.
     accepted : str, optional
-        The file of a dataset that is accepted by hand. A run reads it and does not make it.
+        The file of a dataset that is accepted by hand and has no study. A run reads it.
     page : bool
         Whether the dataset becomes a page in HTML.
 
@@ -89,7 +88,6 @@ class Artifact:
     figures: str
     title: str
     study: str | None = None
-    places: str | None = None
     drawing: str | None = None
     table: str | None = None
     reads: tuple[str, ...] = ()
@@ -118,20 +116,16 @@ class Artifact:
         return f"bouncing_ball.{self.figures}:{self.drawing}" if self.drawing else None
 
     @property
-    def computed(self) -> str | None:
-        """The dataset that the study computes, also where an accepted one is read in its place."""
-        return f"results/{self.place}{DATASET}" if self.study else None
-
-    @property
     def dataset(self) -> str | None:
         """The dataset that others read; None for a figure without data, such as a schematic."""
-        return self.accepted or self.computed
+        computed = f"results/{self.place}{DATASET}" if self.study else None
+        return self.accepted or computed
 
     @property
     def files(self) -> list[str]:
         """The files that a run makes."""
         suffixes: list[str] = []
-        if self.study and not self.accepted:
+        if self.study:
             suffixes += [DATASET]
         if self.drawing:
             suffixes += PICTURES
@@ -168,7 +162,7 @@ class ArtifactFiles:
 
     @property
     def is_text(self) -> bool:
-        """Whether this is an article or the supplement, which are made from all datasets."""
+        """Whether this is the article or its supplement, which are made from all datasets."""
         return self.files[0] in TEXTS
 
 
@@ -237,7 +231,7 @@ def artifacts_among(paths: Iterable[str]) -> list[str]:
 def carrier_of(path: Path) -> Path:
     """The file that carries the provenance of a file: the file itself, or its dataset.
 
-    For the articles and the supplement it is the dataset of the claims, the last one of a run.
+    For the article and its supplement it is the dataset of the claims, the last one of a run.
 
     Raises
     ------

@@ -2,8 +2,7 @@
 
 The signature of a study declares what it takes, for example ``study(parameters, release,
 continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
-the datasets that the stage names; ``part`` and ``found`` are those of
-:mod:`bouncing_ball.datasets.shards`; and each further argument is the setting of the run with that
+the datasets that the stage names; and each further argument is the setting of the run with that
 name. The annotations of the arguments are the types of the configuration, so that the allowed
 values and the reasons for them are defined beside the study.
 
@@ -21,8 +20,6 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model, valid
 from bouncing_ball.datasets.parameters import Parameters
 from bouncing_ball.errors import printable
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
-
-_GIVEN_BY_THE_JOB = ("data", "part", "found")
 
 
 def typed(study: Callable[..., Any]) -> Callable[..., Any]:
@@ -52,7 +49,7 @@ def taken(study: Callable[..., Any]) -> dict[str, Any]:
     {'parameters': <class 'int'>, 'release': <class 'str'>}
     """
     signature = inspect.signature(study).parameters.items()
-    return {name: each.annotation for name, each in signature if name not in _GIVEN_BY_THE_JOB}
+    return {name: each.annotation for name, each in signature if name != "data"}
 
 
 def arguments(

@@ -7,14 +7,12 @@ Snakemake provides for them.
 import gc
 import signal
 import sys
-import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets import DRAWING
@@ -26,9 +24,8 @@ from bouncing_ball.datasets.files import (
     write_text,
 )
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.provenance import PREFIX, gather, read_attributes
-from bouncing_ball.pipeline.samples import CONTENT, SECONDS, computed_by, content_digest
-from bouncing_ball.pipeline.sources import file_of, names_of, without_versions
+from bouncing_ball.pipeline.provenance import PREFIX, gather
+from bouncing_ball.pipeline.sources import without_versions
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -152,27 +149,6 @@ def using(*paths: str) -> Iterator[None]:
         ) from error
 
 
-def earlier_seconds(paths: Sequence[str]) -> float:
-    """The processor time of the files from which a sample is made; 0 for those without it."""
-    return sum(float(read_attributes(Path(path)).get(SECONDS, 0)) for path in paths)
-
-
-def joined_shards(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
-    """The arrays of all places, from the datasets of all shards in their order.
-
-    Examples
-    --------
-    >>> joined_shards([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
-    {'twice': array([0, 0, 1, 1])}
-    """
-    whole = {}
-    for name in shards[0]:
-        values = np.concatenate([shard[name].values for shard in shards], axis=-1)
-        # Texts read from a file have the type object.
-        whole[str(name)] = values.astype(str) if values.dtype == object else values
-    return whole
-
-
 def provenance(snakemake: Any) -> dict[str, str]:
     """The provenance of the files that the job writes, with the digests of its code.
 
@@ -216,20 +192,12 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     from_other_jobs: dict[str, Any] = {}
     if paths := snakemake.input.get("data"):
         from_other_jobs["data"] = {Path(path).stem: read_input(path) for path in paths}
-    earlier = 0.0
-    if paths := snakemake.input.get("shards"):
-        shards = [read_input(path) for path in paths]
-        from_other_jobs["found"] = joined_shards(shards)
-        earlier = earlier_seconds(paths)
     dataset = study(**given, **from_other_jobs)
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")
     parameters = dataset.attrs or recorded(given)
-    # The files of a run are the same, to the last byte, each time; an accepted sample is made once.
-    sample = snakemake.params.get("compressed", False)
-    seconds = earlier + time.process_time() if sample else None
-    publish(snakemake, dataset, parameters, compressed=sample, seconds=seconds)
+    publish(snakemake, dataset, parameters)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     lines = [f"{snakemake.output.data}: {sizes}"]
     if "end_reason" in dataset:
@@ -237,21 +205,9 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     return lines
 
 
-def publish(
-    snakemake: Any,
-    dataset: xr.Dataset,
-    parameters: Mapping[str, Any],
-    *,
-    compressed: bool = False,
-    seconds: float | None = None,
-) -> None:
-    """Write the job's dataset, with its title, parameters and provenance as attributes, among them
-    the processor time in seconds if it is given, and of what is compressed, a sample, its code and
-    a digest of its content.
-    """
+def publish(snakemake: Any, dataset: xr.Dataset, parameters: Mapping[str, Any]) -> None:
+    """Write the job's dataset, with its title, parameters and provenance as attributes."""
     drawing = snakemake.params.get("drawing")
-    made = provenance(snakemake)
-    code = map(file_of, names_of(made[f"{PREFIX}code"]))
     dataset.attrs = {
         "Conventions": CONVENTIONS,
         "title": snakemake.params.title,
@@ -259,10 +215,6 @@ def publish(
         "references": REFERENCE,
         "history": HISTORY,
         **parameters,
-        **made,
-        **(computed_by(code) if compressed else {}),
-        **({} if seconds is None else {SECONDS: f"{seconds:.0f}"}),
+        **provenance(snakemake),
     }
-    if compressed:
-        dataset.attrs[CONTENT] = content_digest(dataset)
-    write_dataset(dataset, snakemake.output.data, compressed=compressed)
+    write_dataset(dataset, snakemake.output.data)

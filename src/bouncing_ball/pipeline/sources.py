@@ -6,15 +6,10 @@ therefore has one small file as its input, which holds the digests of all module
 job uses, and the versions of the libraries that compute and draw. The file is written only when one
 of them changes, and is then newer than what the job has made. A dataset and a picture record the
 same digests, so that a comparison names the files that have changed.
-
-An accepted sample also records digests of the code that computed it, without comments and
-docstrings. If one of these files computes something else today, the sample is older than its code.
 """
 
-import io
 import platform
 import re
-import tokenize
 from collections.abc import Iterable
 from functools import cache
 from hashlib import sha256
@@ -228,89 +223,6 @@ def changed_files(record: str, new: str) -> list[str]:
         return []
     changed = {tuple(line) for line in old} ^ {tuple(line) for line in now}
     return sorted({name for _, name in changed})
-
-
-# What changes no number: the list of public names, texts of errors, names and units of variables,
-# files, pictures, and the workflow, which only calls the package.
-_COMPUTES_NOTHING = re.compile(
-    r"__init__\.py|errors\.py|(datasets|drawing|pipeline|workflow)/|.*figures\.py|.*/as_text\.py"
-)
-_STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
-
-
-# The samples are made by the same modules.
-@cache
-def without_remarks(code: str) -> str:
-    """The lines of Python code without comments, docstrings and empty lines.
-
-    Examples
-    --------
-    >>> print(without_remarks("def f():  # why\\n    'What.'\\n\\n    return '#'\\n"))
-    def f():
-        return '#'
-    """
-    lines = code.splitlines(keepends=True)
-    tokens = list(tokenize.generate_tokens(io.StringIO(code).readline))
-    before = tokenize.ENCODING
-    remarks = []
-    for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
-        is_statement = before in _STARTS and after.type == tokenize.NEWLINE
-        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and is_statement):
-            remarks.append((token.start, token.end))
-        else:
-            before = token.type
-    for (first, start), (last, end) in reversed(remarks):
-        rest = lines[first - 1][:start] + lines[last - 1][end:]
-        lines[first - 1 : last] = [rest]
-    return "\n".join(line.rstrip() for line in "".join(lines).splitlines() if line.strip())
-
-
-def _line_of_computation(path: Path) -> str:
-    """A digest of what a file computes, and the name of the file, as in :func:`digests`."""
-    name = _line_of_file(path).partition(" ")[2]
-    content = path.read_bytes()
-    if path.suffix == ".py":
-        content = without_remarks(content.decode()).encode()
-    return f"{sha256(content).hexdigest()[:_DIGITS]} {name}"
-
-
-def computation(paths: Iterable[Path]) -> str:
-    """A line for each file that computes, with the digest of its code without remarks.
-
-    Files that change no number are left out: texts, names, pictures and the workflow.
-    """
-    lines = [_line_of_computation(path) for path in paths]
-    return "\n".join(x for x in lines if not _COMPUTES_NOTHING.match(x.partition(" ")[2]))
-
-
-def names_of(recorded: str) -> list[str]:
-    """The names of the files in the lines of :func:`digests`."""
-    return [line.partition(" ")[2] for line in recorded.splitlines()]
-
-
-def file_of(name: str) -> Path:
-    """The file with a name of :func:`digests`, in the package or in the repository."""
-    inside = _ROOT / name
-    return inside if inside.exists() else _REPOSITORY / name
-
-
-def changed_since(recorded: str) -> list[str]:
-    """The names of the files of :func:`computation` that compute something else now, or are gone.
-
-    Examples
-    --------
-    >>> changed_since(computation([_ROOT / "models" / "rigid.py"]))
-    []
-    >>> changed_since("1f0e models/rigid.py\\n2a2a models/gone.py")
-    ['models/rigid.py', 'models/gone.py']
-    """
-    changed = []
-    for line in recorded.splitlines():
-        name = line.partition(" ")[2]
-        path = file_of(name)
-        if not path.is_file() or _line_of_computation(path) != line:
-            changed.append(name)
-    return changed
 
 
 def keep_digests(path: Path, found: str) -> None:

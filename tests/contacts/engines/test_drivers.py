@@ -8,7 +8,6 @@ import csv
 import runpy
 from pathlib import Path
 
-import driver_runs
 import pytest
 import xarray as xr
 from driver_runs import DRIVERS, certified, top
@@ -18,14 +17,10 @@ from bouncing_ball.beyond.exhibits.bounces import ALL_VARIABLES, DRIVERS_TITLE
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
-from bouncing_ball.pipeline.samples import computed_by, processor_time, seconds_since
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "docs" / "bounces"
-RUNS = [Path(driver_runs.__file__), *sorted(FOLDER.glob("drivers/*.py"))]
-"""What the numbers depend on, beside the engines."""
-START = processor_time()
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +39,6 @@ def record():
         coords={"driver": list(DRIVERS)},
     )
     origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
-    origin |= computed_by(RUNS) | seconds_since(START)
     target = ROOT / "results" / "config" / "bounce_drivers.nc"
     data = describe(data, ALL_VARIABLES).assign_attrs({"title": DRIVERS_TITLE}, **origin)
     write_dataset(data, target)

@@ -14,7 +14,6 @@ from importlib.metadata import version
 from pathlib import Path
 from time import process_time
 
-import engine_runs
 import numpy as np
 import pytest
 import xarray as xr
@@ -47,14 +46,9 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
-from bouncing_ball.pipeline.samples import computed_by, processor_time, seconds_since
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).parents[3]
-OURS = ROOT / "src" / "bouncing_ball" / "contacts" / "engines"
-RUNS = [Path(engine_runs.__file__), *sorted(OURS.glob("*.py"))]
-"""What the numbers depend on, beside the engines."""
-START = processor_time()
 WRITTEN = read_yaml(ROOT / CONFIGURATION)
 PARAMETERS = WRITTEN["beyond"]["ext_engines"]
 
@@ -179,7 +173,6 @@ def record():
     made = ["not installed" if missing(name) else version(name) for name in RUN]
     data["engine_version"] = ("engine", made)
     origin = gather("make test-engines", [], ROOT, WRITTEN)
-    origin |= computed_by(RUNS) | seconds_since(START)
     target = ROOT / "results" / "config" / "engines.nc"
     write_dataset(describe(data, VARIABLES).assign_attrs(origin), target)
 

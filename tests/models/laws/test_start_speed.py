@@ -8,7 +8,7 @@ from side_by_side import VELOCITY, checked_deviations
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.laws.collocation import contacts, integrals_of_force
+from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 
@@ -117,6 +117,3 @@ def test_a_contact_without_a_start_leaves_the_others_of_its_row_as_they_are(kind
     assert contacts(law, [1.0, -1.0, np.nan]).duration == pytest.approx(
         [alone, np.nan, np.nan], rel=1e-14, nan_ok=True
     )
-    of_both = integrals_of_force(law, [alone, 0.0], 0.0, 1.0, 0.0, 1.0)
-    assert of_both[:, 0] == pytest.approx(integrals_of_force(law, alone, 0.0, 1.0, 0.0, 1.0))
-    assert of_both[:, 1].tolist() == [0.0, 0.0]

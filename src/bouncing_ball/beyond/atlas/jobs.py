@@ -15,9 +15,9 @@ _LEAST_MINUTES = 10
 def names(parameters: Mapping[str, Any]) -> list[str]:
     """The names of the atlas's shards."""
     from bouncing_ball.beyond.atlas.plan import Plan
-    from bouncing_ball.datasets.shards import shard_names
 
-    return shard_names(len(Plan(**parameters).shard_rows()))
+    count = len(Plan(**parameters).shard_rows())
+    return [f"{k:04d}-of-{count:04d}" for k in range(count)]
 
 
 def minutes(parameters: Mapping[str, Any]) -> int:

@@ -1,4 +1,4 @@
-r"""Contacts of any law: their ends, their motion at any time, and their integrals.
+r"""Contacts of any law: their ends, and their motion at any time.
 
 Each function takes starts of contacts as arrays that broadcast, and lets them
 :mod:`march <bouncing_ball.models.laws.march>` to their release.
@@ -86,40 +86,6 @@ def contacts(
     start = Start(depth=0 * v, rate=np.where(v > 0, v, np.nan), phase=phi, amplitude=lam, weight=w)
     found = march(laws, start, differentiate=True)
     return ContactEnds(*(x.reshape((*shape, *x.shape[1:])) for x in found))
-
-
-def integrals_of_force(
-    law: ForceLaw,
-    duration: ArrayLike,
-    depth: ArrayLike,
-    rate: ArrayLike,
-    phase: ArrayLike,
-    amplitude: ArrayLike,
-) -> np.ndarray:
-    """∫ p dt and ∫ p′ w dt over contacts that start with p and p′ and last D, with w = Λ sin τ.
-
-    The shape is (2, ...); a contact without a duration has the integrals 0.
-
-    Examples
-    --------
-    A fast ball hardly feels gravity, so that p = 1000 sin πt, whose integral is 2000/π:
-
-    >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> law = SpringDamper(np.pi, 0.0)
-    >>> sunk, moved = integrals_of_force(law, 1.0, 0.0, 1000.0 * np.pi, 0.0, 0.0)
-    >>> round(float(sunk) / 1000, 3), float(moved)
-    (0.637, 0.0)
-    """
-    laws, (lasts, p, u, phi, lam), shape = _row(law, duration, depth, rate, phase, amplitude)
-    start = Start(
-        depth=p,
-        rate=np.where(lasts > 0, u, np.nan),
-        phase=phi,
-        amplitude=lam,
-        weight=np.ones_like(p),
-    )
-    found = march(laws, start, MOST_PANELS, integrate=True).integrals.T
-    return np.where(lasts > 0, found, 0.0).reshape(2, *shape)
 
 
 def path(

@@ -12,19 +12,16 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, ParameterError, require
+from bouncing_ball.errors import ParameterError, require
 from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.damping import (
-    Release,
     check_damping,
     check_positive,
-    restitution_coefficient,
 )
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.flight import table
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.analytic import require_analytic
-from bouncing_ball.models.laws.collocation import integrals_of_force, states
+from bouncing_ball.models.laws.collocation import states
 from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
@@ -35,11 +32,6 @@ from bouncing_ball.models.setting import PAPER, Setting
 # The closed form of a motion is used for √γ above this value. Its steady part has the size Λ/√γ, so
 # that the motion has errors of some ten roundings over √γ, here 5e-14; the flow has 1e-14 at all γ.
 _RESONANCE = 0.03
-# How closely an oscillator with another r and duration is found, the rounds of the search, and the
-# difference of ζ for its slope.
-_FOUND = 1e-9
-_ROUNDS = 20
-_BESIDE = 1e-4
 
 
 @dataclass(frozen=True, repr=False)
@@ -90,23 +82,6 @@ class ContactLaw(ForceLaw):
         ends = span.duration, -span.release_displacement, -span.release_velocity
         depth, rate = states(self, start, ends, time)
         return -depth, -rate
-
-    def over_contact(
-        self,
-        amplitude: np.ndarray | float,
-        duration: np.ndarray | float,
-        phase: np.ndarray,
-        gap: np.ndarray,
-        rate: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The integrals ∫ z dτ and ∫ z′ w dτ over contacts, with the table w = Λ sin τ.
-
-        ``duration`` is D; ``phase``, ``gap`` and ``rate`` are φ, δ and δ′ at the start and at the
-        end of the contacts, shape (2, ...).
-        """
-        w_rate, w = table(phase, amplitude)
-        sunk, moved = integrals_of_force(self, duration, -gap[0], -rate[0], phase[0], amplitude)
-        return w_rate[0] - w_rate[1] - sunk, (w[1] * w[1] - w[0] * w[0]) / 2 - moved
 
     def permanent_contact_in(self, setting: Setting) -> Any:
         """The largest Λ up to which a steady contact never releases the ball, of the laws' shape.
@@ -237,35 +212,3 @@ class OscillatorLaw(ContactLaw):
     def stiffened(self, factor: float) -> Self:
         """The law with ϖ√factor and the same ζ."""
         return replace(self, frequency_ratio=self.frequency_ratio * math.sqrt(factor))
-
-    def with_impact(self, restitution: float, duration: float, speed: float) -> Self | None:
-        """The law with another ϖ and ζ, whose free impact of speed v has these r and D.
-
-        The search answers which of the contacts beside this one has another impact at a known
-        speed, with all other parameters kept;
-        :func:`~bouncing_ball.models.laws.law_of_impact.law_of_impact` answers which of all laws of
-        a kind has it. r and D must be near those of this law: Newton's method takes the slopes of
-        the linear contact.
-
-        Raises
-        ------
-        ModelError
-            If it does not converge.
-        """
-        middle = max(float(self.damping_ratio), _BESIDE)
-        around = np.array([middle - _BESIDE, middle + _BESIDE])
-        logarithm = np.log(restitution_coefficient(around, Release.FORCE))
-        slope = float(np.diff(logarithm)[0]) / (2 * _BESIDE)
-        one = self
-        for _ in range(_ROUNDS):
-            impact = one.signature(speed)
-            off = math.log(restitution / float(impact.restitution))
-            longer = float(impact.duration) / duration
-            if max(abs(off), abs(longer - 1)) < _FOUND:
-                return one
-            one = replace(
-                one,
-                frequency_ratio=one.frequency_ratio * longer,
-                damping_ratio=max(one.damping_ratio + off / slope, 0.0),
-            )
-        raise ModelError(f"no {self.name} contact has r = {restitution:.6g} at this speed")

@@ -184,17 +184,6 @@ class ForceLaw(Batch, ABC):
             raise ModelError(f"{self.name} has no parameter stiffness")
         return replace(self, **{"stiffness": self.parameters()["stiffness"] * factor})
 
-    def with_impact(self, restitution: float, duration: float, speed: float) -> Self | None:
-        """The law with another r and D of a free impact of speed v, that keeps what these do not
-        determine, such as its release; None if they determine the whole law.
-
-        Raises
-        ------
-        ModelError
-            If no such law was found.
-        """
-        return None
-
     @classmethod
     def parameter_names(cls) -> list[str]:
         """Names of the law's numerical parameters: all fields except ``release``."""

@@ -115,25 +115,3 @@ def law_of_impact(
             f"a {kind.name} contact of duration D = {given} at the impact speed v = {v} "
             "has no stiffness within the range of floating-point numbers"
         ) from None
-
-
-def law_with_impact(law: Law, restitution: float, duration: float, speed: float) -> Law:
-    """The law of the same kind as a given one whose free impact of speed v has these r and D.
-
-    It keeps what these do not determine, such as the release.
-
-    Raises
-    ------
-    ModelError
-        If there is no such law, or it was not found.
-
-    Examples
-    --------
-    >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> law_with_impact(SpringDamper(2.0, 0.1, "approach"), 0.5, 0.25, 1.0).release.value
-    'approach'
-    """
-    found = law.with_impact(restitution, duration, speed)
-    if found is not None:
-        return found
-    return law_of_impact(type(law), restitution, duration, speed)

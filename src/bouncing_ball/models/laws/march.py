@@ -21,9 +21,7 @@ from bouncing_ball.models.laws.panel import (
     BallsInContact,
     Panel,
     Start,
-    gauss_rule,
     lever_of,
-    load_of,
     selected,
 )
 from bouncing_ball.models.laws.scales import scales
@@ -59,9 +57,7 @@ class ContactEnds(NamedTuple):
 
     ``jacobian`` has the derivatives of (D, p_e, p′_e) with respect to (φ, v, Λ, w), shape
     (..., 3, 4). ``contraction`` is the factor by which the contact multiplies areas of the phase
-    plane: exp(-∫ ∂f/∂p′ dt), times a factor for a step of the force at the release. ``integrals``
-    has ∫ p dt and ∫ p′ w dt over the contact, with the table's level w = Λ sin(φ + t), shape
-    (..., 2); they are NaN unless they are computed.
+    plane: exp(-∫ ∂f/∂p′ dt), times a factor for a step of the force at the release.
     """
 
     duration: np.ndarray
@@ -69,7 +65,6 @@ class ContactEnds(NamedTuple):
     rate: np.ndarray
     jacobian: np.ndarray
     contraction: np.ndarray
-    integrals: np.ndarray
 
 
 def _in_plain_time(
@@ -133,16 +128,6 @@ def _longest(m: int, now: BallsInContact, panel: Panel) -> np.ndarray:
     return np.where(rate > 0, length, np.inf)
 
 
-def _integrals(law: ForceLaw, start: Start, panel: Panel) -> np.ndarray:
-    """∫ p dt and ∫ p′ Λ sin(φ + t) dt over panels in s, shape (contacts, 2)."""
-    root = panel.root[:-1]
-    weight = gauss_rule(len(panel.push)).integral[-1]
-    passed = weight[:, np.newaxis] * panel.step * lever_of(law.root, root)
-    sunk = root**law.root
-    moved = panel.rate[:-1] * (start.weight - load_of(start, panel.time[:-1]))
-    return np.stack([(sunk * passed).sum(axis=0), (moved * passed).sum(axis=0)], axis=1)
-
-
 def _begin(law: ForceLaw, start: Start, nodes: int) -> BallsInContact:
     """The balls at the start of their contacts."""
     scale = scales(law, np.abs(start.rate), start.strongest)
@@ -175,7 +160,6 @@ class _March:
         start: Start,
         until: np.ndarray | None,
         differentiate: bool,
-        integrate: bool,
     ) -> None:
         np.empty(_KEPT, dtype=np.int8)
         size = start.rate.size
@@ -183,17 +167,15 @@ class _March:
         self.start = start
         self.until = until
         self.differentiate = differentiate
-        self.integrate = integrate
         self.count = FINER if differentiate else NODES
         # Plain time needs neither the root at the nodes nor the same nodes for all contacts.
-        self.allows_time = law.root > 1 and not (differentiate or integrate)
+        self.allows_time = law.root > 1 and not differentiate
         self.balls = BallsInContact(*np.full((len(BallsInContact._fields), size), np.nan))
         self.by = np.zeros((size, 3, 4))
         self.by[:, 1, 1] = 1.0
         self.strain = np.zeros(size)
         self.jacobian = np.full((size, 3, 4), np.nan)
         self.contraction = np.full(size, np.nan)
-        self.integrals = np.full((size, 2), 0.0 if integrate else np.nan)
         self.done = np.zeros(size, dtype=bool)
         self.states: list[tuple[np.ndarray, BallsInContact]] | None = None
 
@@ -258,8 +240,6 @@ class _March:
         self.balls.side[here[panel.turned]] *= -1
         self.done[here] = panel.last
         self._record(here)
-        if self.integrate:
-            self.integrals[here] += _integrals(law, start, panel)
         if self.differentiate and here.size:
             self.by[here], more = at_end(law, start, panel, self.by[here])
             self.strain[here] += more
@@ -281,14 +261,12 @@ class _March:
         depth = np.maximum(root, 0.0) ** self.law.root
         if self.until is None and self.law.release.at_surface:
             depth *= 0
-        self.integrals[~self.done] = np.nan
         return ContactEnds(
             duration=time,
             penetration=depth,
             rate=rate,
             jacobian=self.jacobian,
             contraction=self.contraction,
-            integrals=self.integrals,
         )
 
 
@@ -299,7 +277,6 @@ def march(
     until: np.ndarray | None = None,
     *,
     differentiate: bool = False,
-    integrate: bool = False,
     longest: float = np.inf,
 ) -> ContactEnds:
     """A row of contacts, from states with p ≥ 0 to the release.
@@ -317,8 +294,6 @@ def march(
         Times after the start at which p and p′ are computed, instead of at the release.
     differentiate : bool
         Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
-    integrate : bool
-        Whether the integrals are computed, for a table with gravity (w = 1).
     longest : float
         The time after which contacts are not followed any further.
 
@@ -332,7 +307,7 @@ def march(
     >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
-    contacts = _March(law, start, until, differentiate, integrate)
+    contacts = _March(law, start, until, differentiate)
     with np.errstate(all="ignore"):
         if start.rate.size:
             contacts.begin()
@@ -368,11 +343,11 @@ def march_through(
     >>> (found.penetration**2).round(12).tolist()
     [0.5, 1.0]
     """
-    contacts = _March(law, start, None, differentiate=False, integrate=False)
+    contacts = _March(law, start, None, differentiate=False)
     last = np.zeros(start.rate.size)
     np.maximum.at(last, contact, time)
     single = Start(*(row[..., contact] for row in start))
-    samples = _March(law, single, time, differentiate=False, integrate=False)
+    samples = _March(law, single, time, differentiate=False)
     with np.errstate(all="ignore"):
         contacts.begin()
         contacts.record()

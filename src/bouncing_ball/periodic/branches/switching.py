@@ -30,8 +30,6 @@ _DOUBLES = 1e-6
 # A change of the parameter over the distance ASIDE that is smaller than this part of it is an
 # error, and the doubling has no side: doublings are located to 1e-12.
 _VERTICAL = 1e-11
-# The distance at which the rise of the parameter is measured.
-_MEASURED = 1e-4
 # The distance from a saddle-node at which its sides are told apart.
 _SIDE = 1e-3
 
@@ -70,23 +68,6 @@ def doubled(
     direction = apart(equations, y)
     guess = at + np.asarray(aside)[..., np.newaxis] * direction
     return whole, newton(whole, guess, plane(direction, guess), PATIENT)
-
-
-def ahead(equations: OrbitEquations, y: np.ndarray, above: np.ndarray) -> np.ndarray:
-    """Orbits of twice the period, at a coordinate of the parameter ``above`` that of the doublings.
-
-    The coordinate rises with the square of the distance from the doubling,
-    by an amount that is measured at a small distance; Newton's method then corrects the orbits.
-    """
-    whole, at = twice(equations, y)
-    _, near = doubled(equations, y, np.full(y.shape[:-1], _MEASURED))
-    step = near.point - at
-    share = np.sqrt(np.abs(above / step[..., -1]))
-    guess = at + share[..., np.newaxis] * step
-    guess[..., -1] = at[..., -1] + above
-    axis = np.eye(guess.shape[-1])[-1]
-    found = newton(whole, guess, plane(axis, guess), PATIENT)
-    return np.where(found.converged[..., np.newaxis], found.point, guess)
 
 
 def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:

@@ -62,7 +62,7 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation, shifted_determi
 _DIFFERENCE = 6e-6
 # An orbit that is moved by h lands earlier or later by about h/v at a slow impact, which must be
 # small against v/a, the time in which its speed changes. The step is therefore shorter by the
-# square of this factor times the slowest impact, in its unit, and by _LEAST at most.
+# square of this factor times the slowest impact, and by _LEAST at most.
 _PER_SLOW = 10.0
 _LEAST = 1e-4
 # The ends of the range of a phase or a velocity.
@@ -96,9 +96,6 @@ class OrbitEquations:
         The names of the parameters that vary.
     selects : bool
         Whether the durations of the contacts are unknowns, which select their releases.
-    unit : float or array
-        The scale of each unknown, which broadcasts to y: the steps of the central differences are
-        proportional to it. The solutions do not depend on it.
     resumes : array of bool
         Which contacts resume below the level of the table, shape (k,); by default none.
     """
@@ -108,7 +105,6 @@ class OrbitEquations:
     turns: Any
     along: tuple[str, ...] = ()
     selects: bool = False
-    unit: Any = 1.0
     resumes: Any = False
 
     def __getstate__(self) -> dict[str, Any]:
@@ -367,13 +363,12 @@ class OrbitEquations:
 
     def _step(self, y: np.ndarray) -> np.ndarray:
         """The steps of the central differences, of the shape of y."""
-        unit = np.asarray(self.unit)
-        _, speed = self.states(np.abs(y / unit))
+        _, speed = self.states(np.abs(y))
         # The whole step where the speed is not known.
         slowest = np.fmin(speed.min(axis=-1) * _PER_SLOW, 1.0)
         share = np.maximum(slowest * slowest, _LEAST)
         step = np.empty(y.shape)
-        step[...] = (_DIFFERENCE * unit) * share[..., np.newaxis]
+        step[...] = _DIFFERENCE * share[..., np.newaxis]
         return step
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:

@@ -3,8 +3,8 @@
 The drift of a number is |new - record| divided by the range of the record's values, or by a
 scale. A study declares the budget and the scale of a variable beside the variable itself (see
 :mod:`bouncing_ball.datasets.variables`); both are attributes of the dataset. The table of this
-module holds budgets that hold in one artifact only, and those that allow more: points that slide
-along a curve, or a share of the entries about which rounding decides.
+module holds budgets that hold in one artifact only, and those of points that may slide along a
+curve.
 
 A budget without another source comes from the convergence study, a test that varies tolerances,
 grids and rounding: it is the next power of ten above ten times the largest change.
@@ -22,21 +22,19 @@ class Budget(NamedTuple):
 
     Without a scale the change is relative to the range of the record's values. With ``over`` two
     curves over that variable are compared, through the samples along the dimension ``point``,
-    because the samples may slide along the curve. The share ``share`` of the entries, of texts and
-    counts as well, may exceed the budget, because rounding decides about some entries.
+    because the samples may slide along the curve.
     """
 
     size: float
     scale: str = ""
     over: str = ""
-    share: float = 0.0
 
 
 ROUNDING = 1e-13
 """The smallest budget, for variables without another one."""
 
 IGNORED = math.inf
-"""The budget of variables that another dataset also has, or about which rounding decides."""
+"""The budget of what another dataset also has, or another machine measures otherwise."""
 
 PICTURE = 1.0
 """The largest root mean square difference of two pictures, in grey levels of 255.
@@ -44,10 +42,6 @@ PICTURE = 1.0
 Changing parameters by two units in the last place changes all rounding errors, as another processor
 does, and moves the pixels of a figure by at most 0.092 (Fig. 15). The budget is the next power of
 ten above ten times this value. It is allowed only if the data of the picture moved."""
-
-PICTURES = {"ext_locked": 40.0}
-"""Budgets of pictures of motions about which rounding decides, if their data moved: three times the
-12 grey levels by which a change of 1e-15 in the start moves the picture."""
 
 PIXEL = 1
 """The largest change of a pixel, in grey levels, if the data of the picture did not move.
@@ -87,11 +81,6 @@ def _branches(coordinate: float, multiplier: float) -> dict[str, Budget]:
     return first | second
 
 
-def _with_limits(name: str) -> tuple[str, str, str]:
-    """A share and the limits of its confidence interval."""
-    return name, f"{name}_low", f"{name}_high"
-
-
 ARTIFACTS: dict[str, dict[str, Budget]] = {
     # As in Fig. 8, with 400 steps.
     "fig03": dict.fromkeys(("stable", "admissible"), Budget(0.003, over="point")),
@@ -118,82 +107,6 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         "bounce_time": Budget(IGNORED),
         "model_time": Budget(IGNORED),
         "engine_version": Budget(IGNORED),
-    },
-    # A chaotic transient ends, and a basin's boundary is met, where rounding decides: a change of
-    # 1e-15 in the start changes the kind at 1.4 % of the nodes, and moves a share of agreement by
-    # 0.022 at most. Three times that is allowed.
-    "ext_locking": {
-        **dict.fromkeys(("kind", "periods", "impacts"), Budget(ROUNDING, share=0.05)),
-        **dict.fromkeys(("agreement_low", "agreement_high"), Budget(0.07, scale="1")),
-        **dict.fromkeys(("agreement_nodes", "many_digits_nodes"), Budget(0.05)),
-        # Five standard errors; the standard error is an estimate itself.
-        "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.05),
-        "lyapunov_error": Budget(0.5, share=0.05),
-    },
-    # Where a ball just leaves its orbit, rounding decides between two places of E.
-    "ext_flights": dict.fromkeys(("leaving", "leaving_periods"), Budget(ROUNDING, share=0.1)),
-    "ext_diagram": {
-        # Densities of some hundred samples of a chaotic motion, and ends of balls that may change.
-        "phase_density": Budget(0.05, scale="1", share=0.05),
-        # Five standard errors. Rounding sends transients to other motions: up to 19 of 288 entries,
-        # whose binomial limit at a chance of 1e-4 is 12.5 %.
-        "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.125),
-        "lyapunov_error": Budget(0.5, share=0.05),
-    },
-    "ext_locked": {
-        # On long locked orbits of contacts a deviation grows beyond the digits of a double, at some
-        # 15 % of the places: rounding decides there. The periods of the restitution model have as
-        # many digits as they need.
-        **dict.fromkeys(("needed_ratio", "refuted_ratio", "last_known"), Budget(1e-6, share=0.3)),
-        # A change of 4e-16 of the contacts' amplitude moves it by 0.6 %, and a concordance by
-        # 0.004. Three times that is allowed.
-        "ordered_pairs": Budget(0.02),
-        # A change of 4e-16 of the amplitude moves a share by 0.0064 at most. Three times that is
-        # allowed.
-        **dict.fromkeys(
-            (
-                "same_known",
-                *_with_limits("same"),
-                *_with_limits("concordance"),
-                *_with_limits("jump_share"),
-                *_with_limits("uncertainty_exponent"),
-            ),
-            Budget(0.02, scale="1"),
-        ),
-    },
-    # A change of 1e-15 of the start moves a share of 60 balls by 0.067 at most, and a mean life by
-    # 11 of 100 periods. Three times the former is allowed.
-    "ext_lives": {
-        **dict.fromkeys(
-            ("survival", *_with_limits("unstuck_share"), *_with_limits("lock_share")),
-            Budget(0.2, scale="1"),
-        ),
-        **dict.fromkeys(_with_limits("mean_life"), Budget(0.5, share=0.2)),
-        # A difference has the error of a mean, which is up to a half of its size.
-        **dict.fromkeys(_with_limits("life_difference"), Budget(0.5, scale="mean_life", share=0.2)),
-        # One ball of 60 that sticks in one of two runs.
-        "pairs": Budget(0.2),
-    },
-    # One start of 2000 at a boundary moves a share by 0.0005. If it is one of the four that the
-    # smallest shift moves, it moves an exponent or a limit of it by 0.04 at most.
-    "ext_basins": dict.fromkeys(
-        (
-            *_with_limits("basin_share"),
-            *_with_limits("uncertain_share"),
-            *_with_limits("uncertainty_exponent"),
-        ),
-        Budget(0.05, scale="1"),
-    ),
-    # As for ext_locking: the same change moves an error by 2.2 of its margins at most, 7 % of the
-    # decisions, a share by 0.12, and a number of nodes by 2 of 48. Three times that is allowed. A
-    # margin is an estimate itself.
-    "ext_means": {
-        "mean_error": Budget(7.0, scale="mean_margin", share=0.05),
-        "mean_margin": Budget(0.5, share=0.05),
-        "decision": Budget(ROUNDING, share=0.2),
-        "needed_ratio": Budget(ROUNDING, share=0.2),
-        **dict.fromkeys(("right_low", "right_high"), Budget(0.37, scale="1")),
-        "right_nodes": Budget(0.15),
     },
     # Saddle-nodes are found as minima here, and some readings are ill-conditioned.
     "forensics": {"computed": Budget(1e-8)},

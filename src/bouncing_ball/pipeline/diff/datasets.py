@@ -209,21 +209,6 @@ def _broadcast_beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
     return data[other].broadcast_like(data[name]).transpose(*data[name].dims).values
 
 
-def _allowed(drift: np.ndarray, share: float) -> np.ndarray:
-    """Drifts over the budget, after capping those of the share of entries that may exceed it.
-
-    Examples
-    --------
-    >>> _allowed(np.array([0.5, np.inf, 0.0, 0.0]), 0.5).tolist()
-    [0.5, 0.5, 0.0, 0.0]
-    >>> _allowed(np.array([np.inf, 0.0]), 0.4).tolist()
-    [inf, 0.0]
-    """
-    beyond = drift > 1
-    part = beyond.mean()
-    return np.where(beyond, part / share, drift) if 0 < part <= share else drift
-
-
 def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> np.ndarray:
     """Distance of two curves, sampled along ``point`` or another dimension of points, such as
     ``long_point``, in units of the scales of both axes.
@@ -248,7 +233,7 @@ def drift_over_budget(name: str, record: xr.Dataset, new: xr.Dataset, budget: Bu
         A variable of both datasets, of the same shape and type.
     record, new : Dataset
     budget : Budget
-        For texts, counts and truth values only ``over`` and ``share`` have an effect.
+        For texts, counts and truth values only ``over`` has an effect.
 
     Raises
     ------
@@ -266,10 +251,6 @@ def drift_over_budget(name: str, record: xr.Dataset, new: xr.Dataset, budget: Bu
     old = record[name]
     if budget.size == IGNORED:
         return np.zeros(old.shape)
-    if budget.share:
-        return _allowed(
-            drift_over_budget(name, record, new, budget._replace(share=0.0)), budget.share
-        )
     if budget.over:
         return _curve_drift(name, record, new, budget.over) / budget.size
     if old.dtype.kind != "f":

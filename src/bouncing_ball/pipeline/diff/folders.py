@@ -44,7 +44,6 @@ from bouncing_ball.pipeline.diff.cause import (
 from bouncing_ball.pipeline.diff.datasets import compare_datasets, word_rows
 from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_drawings, compare_texts, words_of
-from bouncing_ball.pipeline.samples import outdated
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -132,8 +131,7 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[ComparedItem]:
     if old.suffix in PICTURES and (note := redrawn(record, new)):
         return [ComparedItem("", Outcome.WITHIN, note=note)]
     if old.suffix == ".png":
-        of_moved = budgets.PICTURES.get(old.stem, budgets.PICTURE)
-        budget = None if data is Outcome.IDENTICAL else of_moved
+        budget = None if data is Outcome.IDENTICAL else budgets.PICTURE
         rows = compare_pictures(read_picture(old), read_picture(now), budget)
     else:
         rows = compare_texts(words_of(old, data), words_of(now, data), data)
@@ -347,24 +345,5 @@ def compare_folders(
             why = next(filter(None, reasons), "")
             whole = replace(whole, cause=_cause(whole, judged[name], origins, roots, why))
         found.append(whole)
-    used = {path for name in wanted for path in judged[name].new.inputs}
-    if samples := _outdated_samples(record, used if only else None):
-        found.append(samples)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))
-
-
-def _outdated_samples(record: Path, used: Collection[str] | None) -> Whole | None:
-    """The accepted samples of the record that are not what their code computes: all of them, or
-    those that are among these files.
-    """
-    found = outdated(record)
-    reasons = {name: why for name, why in found.items() if used is None or f"config/{name}" in used}
-    if not reasons:
-        return None
-    files = [
-        Whole(f"config/{name}", (ComparedItem("", Outcome.STALE, note=why),))
-        for name, why in reasons.items()
-    ]
-    cause = "accepted samples are older than their code, or were changed by hand"
-    return Whole("samples", tuple(files), cause=cause)

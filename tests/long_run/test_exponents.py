@@ -1,13 +1,11 @@
-"""The sum of both Lyapunov exponents, and the basin entropy of maps that are known."""
+"""The sum of both Lyapunov exponents."""
 
 import math
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import bouncing_ball
-from bouncing_ball.errors import ModelError
 
 
 @pytest.mark.parametrize("amplitude", [1.4, 1.6])
@@ -44,37 +42,3 @@ def test_a_ball_that_forgets_has_two_exponents_of_minus_infinity():
     found = bouncing_ball.lyapunov_exponent(bouncing_ball.rigid(restitution=0.6), amplitude=3.0)
     assert found.kind.item() == "locked"
     assert float(found.second_exponent) == float(found.exponent_sum) == -np.inf
-
-
-def _map(which):
-    return xr.Dataset({"destination": (("start_speed", "start_phase"), np.asarray(which))})
-
-
-def test_the_basin_entropy_of_known_maps():
-    one = bouncing_ball.basin_entropy(_map(np.zeros((10, 10), int)))
-    assert (one.entropy, one.boundary_boxes) == (0.0, 0) and math.isnan(one.boundary_entropy)
-    # Any box of a map at random has the entropy of its shares: with three motions in equal parts
-    # the expectation is below ln 3 by (3 - 1)/(2 · 25) in the first order (Miller's correction).
-    rng = np.random.default_rng(1)
-    mixed = bouncing_ball.basin_entropy(_map(rng.integers(0, 3, (500, 500))), box=5)
-    error = 0.05 / math.sqrt(mixed.boxes)
-    assert mixed.boundary_boxes == mixed.boxes == 10_000 and mixed.is_fractal
-    assert mixed.entropy == pytest.approx(math.log(3) - 2 / 50, abs=3 * error + 1 / 25**2)
-    # A straight boundary along a diagonal: only boxes on the diagonal have two motions, and a
-    # box of 4 × 4 has 6 starts below the diagonal and 10 on it or above.
-    smooth = bouncing_ball.basin_entropy(_map(np.triu(np.ones((40, 40), int))), box=4)
-    share = np.array([6, 10]) / 16
-    expected = -np.sum(share * np.log(share))
-    assert smooth.boundary_boxes == 10 and not smooth.is_fractal
-    assert smooth.boundary_entropy == pytest.approx(expected, rel=1e-14)
-    assert smooth.entropy == pytest.approx(expected / 10, rel=1e-14)
-
-
-def test_starts_beyond_whole_boxes_are_left_out_and_mistakes_are_one_line(refusal):
-    found = bouncing_ball.basins(bouncing_ball.rigid(restitution=0.5), amplitude=1.2, starts=11)
-    entropy = bouncing_ball.basin_entropy(found)
-    assert entropy.boxes == 4 and 0 < entropy.entropy <= entropy.boundary_entropy
-    with refusal(ModelError, "box = 12 is not a whole number from 2 to 11"):
-        bouncing_ball.basin_entropy(found, box=12)
-    with refusal(ModelError, "basin_entropy needs the result of basins"):
-        bouncing_ball.basin_entropy(found[["share"]])

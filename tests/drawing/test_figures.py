@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from adapter import function
 from declared_artifacts import ARTIFACTS
+from matplotlib.contour import ContourSet
 
 import bouncing_ball
 from bouncing_ball.beyond.exhibits.motion_maps import LOWEST_RATE
@@ -65,6 +66,14 @@ def lines(figure):
     return [line for axes in figure.axes for line in axes.lines]
 
 
+def contours(figure):
+    """The points of all contours."""
+    drawn = (each for axes in figure.axes for each in axes.collections)
+    return [
+        path.vertices for each in drawn if isinstance(each, ContourSet) for path in each.get_paths()
+    ]
+
+
 @pytest.mark.parametrize("name", WITH_DATA)
 def test_a_figure_follows_its_data_and_names_its_axes(record, name, accepted_figure):
     data = record[name]
@@ -82,9 +91,10 @@ def test_a_figure_follows_its_data_and_names_its_axes(record, name, accepted_fig
     # One in a panel may follow from the parameters alone: the table of Figure 12, or the
     # arrows at the end of a range. Basins are areas, with numbers in their titles.
     titles = ([axes.get_title() for axes in figure.axes] for figure in (before, after))
+    levels = ([path.tolist() for path in contours(figure)] for figure in (before, after))
     # Strokes fill the area of a kind of motion.
     assert sum(x for line, x in same.items() if line.get_linestyle() != "None") <= len(before.axes)
-    assert not all(same.values()) if same else operator.ne(*titles)
+    assert not all(same.values()) if same else operator.ne(*titles) or operator.ne(*levels)
 
 
 @pytest.mark.parametrize("name", ACCEPTED)

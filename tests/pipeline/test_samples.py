@@ -43,7 +43,7 @@ def checkout(tmp_path, monkeypatch):
 
 
 def test_no_accepted_sample_is_older_than_its_code():
-    """`make samples`, `snakemake --cores 2 atlas` and `make test-engines` make them again."""
+    """`make samples` and `make test-engines` make them again."""
     assert outdated(ROOT) == {}
 
 

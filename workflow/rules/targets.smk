@@ -19,7 +19,6 @@ for each in TARGETS:
 
 
 # By the name of each stage its files, also the samples of motions, which take some minutes each.
-# The atlas has rules of its own.
 STAGES = {}
 for each in TARGETS:
     if each.study or not each.accepted:

@@ -20,6 +20,7 @@ RUN = read_yaml(CONFIG / "config.yaml")
 SLOW = {
     "ext_laws",
     "ext_locked",
+    "ext_map",
 }
 
 

@@ -272,7 +272,7 @@ use rule beyond_study as proofs_study with:
         artifact=stage(
             "beyond.exhibits.proofs",
             ext_proofs=dict(
-                title="Printed numbers and the thresholds of Table 2, certified by ball arithmetic",
+                title="Printed numbers, certified by ball arithmetic",
                 study="proofs",
                 table="ext_proofs",
             ),

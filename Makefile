@@ -73,7 +73,7 @@ quick: $(SETUP)
 speed: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python tests/speed/side_by_side.py $(COLD)
 
-# The atlas with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
+# Two stages with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
 test-cluster: $(SETUP)
 	$(BIN)/python -m pytest -m cluster tests/workflow
 

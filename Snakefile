@@ -61,8 +61,6 @@ rule replication:
 
 # The accepted record in git, and the comparison of the results with it.
 include: "workflow/rules/record.smk"
-# The atlas: how stiff is stiff enough, for more orbits than a run can include.
-include: "workflow/rules/atlas.smk"
 
 
 # `snakemake --list` shows the message of a rule without a docstring.

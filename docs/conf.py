@@ -78,7 +78,6 @@ PARTS = {
         "docs/bounces",
         "docs/contact-laws",
         "docs/measured",
-        "docs/atlas",
         "docs/speed",
     ],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],

@@ -7,7 +7,6 @@ import pytest
 from declared_artifacts import ARTIFACTS
 from jinja2 import BytecodeCache, Environment
 
-from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.beyond.exhibits import (
     certified_verdicts_figures,
     contact_laws_figures,
@@ -97,7 +96,6 @@ def all_texts(data, verdicts=None):
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     other = [path for path in (ROOT / "config").glob("*.nc") if path.stem not in data]
     data |= {path.stem: read_dataset(path) for path in other}
-    texts["atlas"] = to_markdown(*shares(data["atlas"]))
     about = read_yaml(ROOT / "CITATION.cff")
     decided = rows.Claims(data["claims"])
     sections = {}

@@ -79,7 +79,11 @@ SPAN = (*FIG05, "frequency_ratio")
         # What fits together.
         ((*SPAN, "max"), 1.0, "fig05.frequency_ratio: min = 1 must be less than max = 1"),
         (("continuation", "largest_step"), 0.01, "continuation.largest_step = 0.01 must be at lea"),
-        (("atlas", "restitution", "max"), 0.05, "restitution: min = 0.05 must be less than max"),
+        (
+            ("beyond", "ext_map", "restitution", "max"),
+            0.05,
+            "restitution: min = 0.05 must be less than max",
+        ),
         # What the physics forbids.
         ((*FIG05, "cases", 3, "amplitude"), 2.57, "must be at least 2.57039, the saddle-node of"),
         ((*FIG05, "cases", 3, "amplitude"), 2.5704, ""),

@@ -54,7 +54,7 @@ def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):
 
 
 def test_a_file_that_is_accepted_by_hand_is_restored_from_git(tmp_path, refusal):
-    path = tmp_path / "config" / "atlas.nc"
+    path = tmp_path / "config" / "engines.nc"
     path.parent.mkdir()
     path.write_bytes(b"no dataset")
     with refusal(ModelError, f"{path} is damaged: restore it, git checkout -- {path}"):
@@ -62,6 +62,6 @@ def test_a_file_that_is_accepted_by_hand_is_restored_from_git(tmp_path, refusal)
 
 
 def test_a_readable_file_with_other_content_is_named(refusal):
-    with refusal(ModelError, "config/atlas.nc has not the content that is needed ("):
-        with using("config/atlas.nc"):
+    with refusal(ModelError, "config/engines.nc has not the content that is needed ("):
+        with using("config/engines.nc"):
             _ = xr.Dataset().needed

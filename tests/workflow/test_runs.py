@@ -43,7 +43,7 @@ def test_the_replication_makes_the_artifacts_of_the_paper_and_nothing_else(fresh
 
 
 def stages():
-    """The artifacts of each stage of both sets of studies; the atlas has rules of its own."""
+    """The artifacts of each stage of both sets of studies."""
     found = {}
     for each in ARTIFACTS.values():
         if not each.accepted:

@@ -1,8 +1,7 @@
 # The stages beyond the paper, in the same form as those of the paper. A dataset with `accepted` is
 # not part of a run: figures and texts read this file.
 
-# Datasets that no study makes: what physics engines computed (`make test-engines`), and the summary
-# of the atlas (workflow/rules/atlas.smk).
+# Datasets that no study makes: what physics engines computed (`make test-engines`).
 stage(
     "contacts.engines",
     engines=dict(title="Orbits that physics engines ran", accepted="config/engines.nc"),
@@ -24,15 +23,6 @@ stage(
         drawing="settings",
         table="ext_bounce_settings",
         accepted="config/ext_bounce_settings.nc",
-    ),
-)
-stage(
-    "beyond.atlas",
-    figures="beyond.atlas.figures",
-    ext_atlas=dict(
-        title="How stiff a contact must be, over the whole range of orbits",
-        drawing="over_range",
-        accepted="config/atlas.nc",
     ),
 )
 
@@ -58,6 +48,19 @@ use rule beyond_study as corrected_model_study with:
                 study="orders",
                 drawing="orders",
                 table="ext_orders",
+            ),
+        ),
+
+
+use rule beyond_study as stiffness_map_study with:
+    """How stiff a contact must be for the greatest height, over all stable orbits."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.stiffness_map",
+            ext_map=dict(
+                title="How stiff a contact must be for the greatest height, over r and Λ",
+                study="stiffness_map",
+                drawing="stiffness_map",
             ),
         ),
 
@@ -159,7 +162,7 @@ use rule beyond_study as proofs_study with:
         artifact=stage(
             "beyond.exhibits.proofs",
             ext_proofs=dict(
-                title="Printed numbers and the thresholds of Table 2, certified by ball arithmetic",
+                title="Printed numbers, certified by ball arithmetic",
                 study="proofs",
                 table="ext_proofs",
             ),

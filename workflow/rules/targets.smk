@@ -18,7 +18,7 @@ for each in TARGETS:
     workflow.get_rule(each.name).docstring = each.title
 
 
-# By the name of each stage its files. The atlas has rules of its own.
+# By the name of each stage its files.
 STAGES = {}
 for each in TARGETS:
     if not each.accepted:

@@ -2,13 +2,12 @@
 
 from pathlib import Path
 
-from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article, sections_of
-from bouncing_ball.pipeline.jobs import logged, read_input, using
+from bouncing_ball.pipeline.jobs import logged, read_input
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 # The templates, and the names of the texts. The supplement is the first, because the article refers
@@ -23,11 +22,8 @@ def text_of(path):
 with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
-    data["atlas"] = read_input(snakemake.input.atlas)
     # Its page begins with words, which the supplement has already.
     tables["claims"] = to_markdown(*rows.claims(data["claims"]))
-    with using(snakemake.input.atlas):
-        tables["atlas"] = to_markdown(*shares(data["atlas"]))
     claims = rows.Claims(data["claims"])
     artifacts = snakemake.params.artifacts
     about = read_yaml(snakemake.input.citation)

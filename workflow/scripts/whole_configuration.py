@@ -1,17 +1,16 @@
-"""The type of the whole configuration, from the studies of all artifacts and the atlas."""
+"""The type of the whole configuration, from the studies of all artifacts."""
 
 from collections.abc import Iterable
 
 from adapter import function
 from pydantic import BaseModel
 
-from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.configuration import configuration_model
 
 
 def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
-    """The type of the configuration: both sets of studies, the atlas, and settings of the run.
+    """The type of the configuration: both sets of studies, and settings of the run.
 
     Raises
     ------
@@ -22,4 +21,4 @@ def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
     for each in artifacts:
         if each.study:
             studies[each.part][each.name] = function(each.module, each.study)
-    return configuration_model(studies, {"atlas": Plan})
+    return configuration_model(studies)

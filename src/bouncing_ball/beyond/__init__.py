@@ -1,4 +1,4 @@
-"""The studies that go past the paper: exhibits, the atlas, proofs of the paper's numbers.
+"""The studies that go past the paper: exhibits and proofs of the paper's numbers.
 
 Nothing in the library and nothing in :mod:`bouncing_ball.paper` imports it.
 """

@@ -22,7 +22,6 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.makers import spring_damper
@@ -166,28 +165,23 @@ def _certified(
     *,
     frequency_ratio: float | None,
     restitution: float | None,
-    damping_ratio: float | None,
-    release: str | None,
     **others: Any,
 ) -> Answer:
     """Λ of both limits as decimal texts with bounds of their errors, and what was proved."""
-    given = [name for name, value in others.items() if value not in (None, "spring-damper")]
+    usual = (None, "spring-damper", "displacement")
+    given = [name for name, value in others.items() if value not in usual]
     if given:
         raise ParameterError(f"{{certify}} is not allowed with {{{given[0]}}}")
     if frequency_ratio is None:
         raise ParameterError("{certify} needs {frequency_ratio}: it is for spring-damper contacts")
+    if restitution is None:
+        raise ParameterError("{certify} needs {restitution}")
     with extra("proofs"):
         from bouncing_ball.beyond.proofs import certificates
         from bouncing_ball.beyond.proofs.balls import exactly
         from bouncing_ball.beyond.proofs.problem import RationalProblem
 
-    problem = RationalProblem(
-        exactly(frequency_ratio),
-        restitution=None if restitution is None else exactly(restitution),
-        damping_ratio=None if damping_ratio is None else exactly(damping_ratio),
-        n=n,
-        release=Release(release or "displacement"),
-    )
+    problem = RationalProblem(exactly(frequency_ratio), exactly(restitution), n)
     proofs = {
         "saddle_node": certificates.saddle_node(problem, digits),
         "period_doubling": certificates.period_doubling(problem, digits),

@@ -74,7 +74,7 @@ class _Sections(Parameters, strict=False):
 
 
 def configuration_model(
-    studies: Mapping[str, Mapping[str, Callable[..., Any]]], others: Mapping[str, type]
+    studies: Mapping[str, Mapping[str, Callable[..., Any]]],
 ) -> type[BaseModel]:
     """The type of the complete configuration.
 
@@ -82,10 +82,8 @@ def configuration_model(
     ----------
     studies : mapping
         For each section, the study of each artifact in it.
-    others : mapping
-        The types of the sections that belong to no study.
     """
-    keys: dict[str, Any] = {name: (kind, ...) for name, kind in others.items()}
+    keys: dict[str, Any] = {}
     for section, of_artifacts in studies.items():
         fields: dict[str, Any] = {}
         for artifact, study in of_artifacts.items():

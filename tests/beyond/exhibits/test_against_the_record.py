@@ -17,7 +17,7 @@ RUN = read_yaml(CONFIG / "config.yaml")
 
 # More than two seconds each: `make test` takes theirs from its run of the pipeline
 # (tests/workflow/test_runs.py).
-SLOW = {"ext_laws"}
+SLOW = {"ext_laws", "ext_map"}
 
 
 def drifts(recorded, names):

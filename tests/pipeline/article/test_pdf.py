@@ -39,7 +39,7 @@ def uris(reader):
 
 @pytest.mark.long
 def test_the_article_is_set_with_its_headings_captions_and_figures(accepted):
-    text = accepted["article"].replace("figures/beyond/ext_atlas.png", "figures/fig01.png")
+    text = accepted["article"].replace("figures/beyond/ext_map.png", "figures/fig01.png")
     reader = PdfReader(io.BytesIO(article_pdf(text, TEMPLATE, ROOT)))
     words = re.sub(r"\s+", "", "".join(page.extract_text() for page in reader.pages))
     headings = re.findall(r"^##+ (.*)$", text, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""Certified numbers: Table 1, other printed numbers, thresholds, and what is proved."""
+"""Certified numbers: those that the paper prints, and what is proved of each."""
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 from flint import arb
 
-from bouncing_ball.accuracy.simple_models import SIMPLE, errors, search
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.simple_models import errors, search
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal_with_bound, exactly, precision
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,
@@ -19,12 +20,10 @@ from bouncing_ball.beyond.proofs.certificates import (
 )
 from bouncing_ball.beyond.proofs.problem import RationalProblem, damping_of, working_bits
 from bouncing_ball.beyond.proofs.thresholds import (
-    MEASURED,
     CertifiedNumber,
-    Comparison,
+    ComparedOrbit,
     apparent_restitution,
-    error_threshold,
-    permanent_contact_minimum,
+    height_threshold,
     permanent_contact_threshold,
 )
 from bouncing_ball.datasets.parameters import (
@@ -52,7 +51,7 @@ VARIABLES = {
     "certified_claim": Variable("claim of the paper whose number it is"),
 }
 
-# The grid of ϖ in which the thresholds are first sought in double precision.
+# The grid of ϖ in which the threshold is first sought in double precision.
 _GRID = np.geomspace(1.0, 1e4, 101)
 
 
@@ -108,7 +107,7 @@ def ends_of_table_1(parameters: Proofs) -> Iterator[CertifiedRow]:
     certify = {Bifurcation.SADDLE_NODE: saddle_node, Bifurcation.PERIOD_DOUBLING: period_doubling}
     r = exactly(parameters.restitution)
     for ratio, n, kind in product(parameters.frequency_ratio, parameters.n, certify):
-        problem = RationalProblem(exactly(ratio), restitution=r, n=n)
+        problem = RationalProblem(exactly(ratio), r, n)
 
         def prove(problem: RationalProblem = problem, kind: Bifurcation = kind) -> CertifiedNumber:
             found = certify[kind](problem, parameters.digits)
@@ -135,7 +134,7 @@ def certified_apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     ratio = exactly(parameters.frequency_ratio)
     r = exactly(parameters.restitution)
     lam = parameters.amplitude
-    problem = RationalProblem(ratio, restitution=r, n=parameters.n)
+    problem = RationalProblem(ratio, r, parameters.n)
 
     def prove() -> CertifiedNumber:
         found = certified_orbit(problem, exactly(lam), digits=digits)
@@ -149,59 +148,13 @@ def certified_apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     return _row(name, prove, f"compliant end of {lam:g}")
 
 
-def comparisons(parameters: ToleratedError) -> Iterator[tuple[str, Comparison, float, Fraction]]:
-    """The thresholds and zeros of the errors of both simple models (Eq. 37), as Table 2 has them.
-
-    Each has a name, the comparison, ϖ in double precision and the signed value of the error.
-    """
-    zeta = damping_ratio(parameters.restitution)
-    n = parameters.n
-    lam = parameters.amplitude
-    names = list(MEASURED)
-    found = search(
-        zeta,
-        Release.DISPLACEMENT,
-        n=n,
-        amplitude=lam,
-        ratios=_GRID,
-        tolerance=parameters.tolerance,
-        quantities=names,
-    )
-    for (model, simple), (k, quantity) in product(enumerate(SIMPLE), enumerate(names)):
-        comparison = Comparison(
-            quantity,
-            exactly(parameters.restitution),
-            n,
-            exactly(lam),
-            corrected=simple == "corrected",
-        )
-        words = quantity.replace("_", " ")
-        ending = ", corrected model" if comparison.corrected else ""
-        start = float(found.threshold[model, k, 0])
-        sign = 0
-        if np.isfinite(start):
-            there = errors(SpringDamper(start, zeta, Release.DISPLACEMENT), n, lam, [quantity])
-            sign = int(np.sign(np.nan_to_num(there[model, 0])))
-        tolerated = sign * exactly(parameters.tolerance)
-        yield f"ϖ for {parameters.tolerance:.0%} of {words}{ending}", comparison, start, tolerated
-        zero = float(found.zero[model, k, 0])
-        if not comparison.corrected and np.isfinite(zero):
-            yield f"ϖ where the error of {words} is 0", comparison, zero, Fraction(0)
-
-
 def certified_thresholds(parameters: ToleratedError, digits: int) -> Iterator[CertifiedRow]:
-    """The ϖ at which errors of the simple models have certain values, and permanent contact."""
-    for name, comparison, start, error in comparisons(parameters):
-
-        def prove(
-            comparison: Comparison = comparison, start: float = start, error: Fraction = error
-        ) -> CertifiedNumber:
-            if not np.isfinite(start):
-                raise ProofError("no threshold was found to start from")
-            return error_threshold(comparison, error, start, digits)
-
-        of_height = comparison.quantity == "max_height" and not comparison.corrected
-        yield _row(name, prove, "height threshold" if of_height else "")
+    """The ϖ of Eq. 37, of the greatest height, and that of Eq. 38, of permanent contact."""
+    yield _row(
+        f"ϖ for {parameters.tolerance:.0%} of max height",
+        lambda: _threshold_of_height(parameters, digits),
+        "height threshold",
+    )
     r = exactly(parameters.restitution)
     tolerance = exactly(parameters.tolerance)
     yield _row(
@@ -209,7 +162,29 @@ def certified_thresholds(parameters: ToleratedError, digits: int) -> Iterator[Ce
         lambda: permanent_contact_threshold(r, tolerance, digits),
         "permanent contact threshold",
     )
-    yield _row("least Λ of permanent contact", lambda: permanent_contact_minimum(r, digits))
+
+
+def _threshold_of_height(parameters: ToleratedError, digits: int) -> CertifiedNumber:
+    """The threshold of the height, from that of double precision and the sign of its error."""
+    zeta = damping_ratio(parameters.restitution)
+    n = parameters.n
+    lam = parameters.amplitude
+    height = [Quantity.MAX_HEIGHT]
+    found = search(
+        zeta,
+        Release.DISPLACEMENT,
+        n=n,
+        amplitude=lam,
+        ratios=_GRID,
+        tolerance=parameters.tolerance,
+        quantities=height,
+    )
+    start = float(found.threshold[0, 0, 0])
+    if not np.isfinite(start):
+        raise ProofError("no threshold was found to start from")
+    sign = int(np.sign(errors(SpringDamper(start, zeta), n, lam, height)[0, 0]))
+    compared = ComparedOrbit(exactly(parameters.restitution), n, exactly(lam))
+    return height_threshold(compared, sign * exactly(parameters.tolerance), start, digits)
 
 
 def proofs(parameters: Proofs) -> xr.Dataset:

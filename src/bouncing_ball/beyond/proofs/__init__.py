@@ -1,4 +1,4 @@
-"""Proofs by ball arithmetic: bifurcations, orbits and thresholds with intervals that contain them.
+"""Proofs by ball arithmetic: intervals that contain the numbers that the paper prints.
 
 The closed branch (:mod:`bouncing_ball.periodic.one_impact.spring_damper_branch`) reduces an n-T
 orbit to one unknown. Here its equations are evaluated with balls, midpoints with an error bound, of

@@ -1,9 +1,8 @@
 """Proof that an orbit's contact holds and its flight stays above the table, by bounds.
 
-The orbit is admissible if the grip y = δ + κ δ′ is negative between the start and the release,
-and if the ball meets neither the table nor its contact during the flight. At the ends of both,
-where these functions vanish, the sign of their derivative decides; between them balls of time
-are divided until the enclosure of the function has one sign.
+The orbit is admissible if δ is negative during the contact and positive during the flight. At the
+ends of both, where δ vanishes, the sign of δ′ decides; between them balls of time are divided until
+the enclosure of δ has one sign.
 """
 
 from collections.abc import Callable
@@ -53,38 +52,27 @@ def _near_end(function: Callable[[arb], arb], start: arb, length: arb, sign: int
 
 
 def contact_holds(contact: EnclosedContact, orbit: Point) -> bool:
-    """Whether y < 0 is proved for all times in the contact."""
-    lag = contact.lag
+    """Whether δ < 0 is proved for all times in the contact."""
 
-    def grip(time: arb) -> arb:
-        gap, rate = contact.state(time, orbit.u, orbit.x, orbit.y)
-        return gap + lag * rate
+    def gap(time: arb) -> arb:
+        return contact.state(time, orbit.u, orbit.x, orbit.y)[0]
 
-    def pace(time: arb) -> arb:
-        gap, rate = contact.state(time, orbit.u, orbit.x, orbit.y)
-        push = orbit.x * time.sin() + orbit.y * time.cos()
-        return rate + lag * contact.acceleration(gap, rate, push)
+    def rate(time: arb) -> arb:
+        return contact.state(time, orbit.u, orbit.x, orbit.y)[1]
 
     duration = orbit.duration
-    last = _near_end(pace, duration, -duration / 2, +1)
-    if last is None:
+    first = _near_end(rate, arb(0), duration / 2, -1)
+    last = _near_end(rate, duration, -duration / 2, +1)
+    if first is None or last is None:
         return False
-    first = arb(0)
-    if contact.release_sine.is_zero():
-        # y = δ starts at 0 and falls, because δ′ < 0.
-        found = _near_end(pace, arb(0), duration / 2, -1)
-        if found is None:
-            return False
-        first = found
-    return keeps_sign(grip, first, duration + last, -1)
+    return keeps_sign(gap, first, duration + last, -1)
 
 
-def flight_is_free(contact: EnclosedContact, orbit: Point) -> bool:
-    """Whether the ball is proved to meet neither the table nor its contact during the flight."""
+def flight_is_free(orbit: Point) -> bool:
+    """Whether δ > 0 is proved for all times in the flight."""
     turn_sine, turn_cosine = orbit.duration.sin_cos()
     x = orbit.x * turn_cosine - orbit.y * turn_sine
     y = orbit.y * turn_cosine + orbit.x * turn_sine
-    lag = contact.lag
 
     def gap(time: arb) -> arb:
         sine, cosine = time.sin_cos()
@@ -96,15 +84,9 @@ def flight_is_free(contact: EnclosedContact, orbit: Point) -> bool:
         sine, cosine = time.sin_cos()
         return orbit.rate - time + y * sine + x * (1 - cosine)
 
-    def rising(time: arb) -> arb:
-        sine, cosine = time.sin_cos()
-        return rate(time) + lag * (y * cosine + x * sine - 1)
-
     flight = orbit.flight
-    first = _near_end(rising, arb(0), flight / 4, +1)
+    first = _near_end(rate, arb(0), flight / 4, +1)
     last = _near_end(rate, flight, -flight / 4, -1)
     if first is None or last is None:
         return False
-    # With the force release the ball leaves below the table, and rises through its level while y,
-    # which starts at 0, is positive.
     return keeps_sign(gap, first, flight + last, +1)

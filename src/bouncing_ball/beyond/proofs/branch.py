@@ -1,9 +1,9 @@
 """The closed branch of n-T orbits with balls in place of numbers (docs/closed-form.md).
 
 With a contact of duration D, the conditions of release, velocity and landing are linear in (u,
-X, Y) = (δ′, Λ cos φ, Λ sin φ). The unknown is the excess angle ε = ϖ_d D - θ₀, with θ₀ the angle
-at which a free contact ends. All functions take balls or :class:`Series` and evaluate the
-formulas as they stand; nothing is iterated.
+X, Y) = (δ′, Λ cos φ, Λ sin φ). The unknown is the excess angle ε = ϖ_d D - π over the angle at
+which a free contact ends. All functions take balls or series and evaluate the formulas as they
+stand; nothing is iterated.
 """
 
 from dataclasses import dataclass
@@ -11,8 +11,6 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from flint import arb
-
-from bouncing_ball.beyond.proofs.series import Series
 
 Number = Any
 """A ball or a series."""
@@ -30,14 +28,10 @@ class EnclosedResponses(NamedTuple):
 
 @dataclass(frozen=True)
 class EnclosedContact:
-    """A spring-damper contact whose parameters are balls: ζ in [0, 1), ϖ > 0, and κϖ/2 = sin α.
-
-    ``release_sine`` is 0 for the displacement release and ζ for the force release.
-    """
+    """A contact with the displacement release whose parameters are balls: ζ in [0, 1) and ϖ > 0."""
 
     frequency_ratio: Number
     damping_ratio: Number
-    release_sine: Number
 
     @cached_property
     def root(self) -> Number:
@@ -55,22 +49,9 @@ class EnclosedContact:
         """a = ζϖ."""
         return self.damping_ratio * self.frequency_ratio
 
-    @cached_property
-    def lag(self) -> Number:
-        """κ: the contact ends where δ + κ δ′ = 0."""
-        return 2 * self.release_sine / self.frequency_ratio
-
-    @cached_property
-    def free_angle(self) -> Number:
-        """θ₀ = π - 2 arcsin(sin α)."""
-        sine = self.release_sine
-        if isinstance(sine, Series):
-            raise TypeError("the angle of a free contact is needed for a fixed damping only")
-        return arb.pi() - 2 * arb(sine).asin()
-
     def duration(self, excess: Number) -> Number:
-        """D = (θ₀ + ε)/ϖ_d."""
-        return (excess + self.free_angle) / self.damped
+        """D = (π + ε)/ϖ_d."""
+        return (excess + arb.pi()) / self.damped
 
     def responses(self, time: Number) -> EnclosedResponses:
         """g, g′, G, P and Q after a time in contact.
@@ -103,10 +84,6 @@ class EnclosedContact:
         gap = u * r.impulse + x * r.sine + y * r.cosine - r.gravity
         rate = u * r.impulse_rate + x * r.cosine + y * (r.impulse - r.sine) - r.impulse
         return gap, rate
-
-    def acceleration(self, gap: Number, rate: Number, push: Number) -> Number:
-        """δ″ in contact, with ``push`` = Λ sin(s + φ)."""
-        return push - 1 - 2 * self.decay * rate - self.frequency_ratio * self.frequency_ratio * gap
 
 
 class Point(NamedTuple):
@@ -145,19 +122,17 @@ def point(contact: EnclosedContact, n: int, excess: Number) -> Point:
     flight = -duration + 2 * n * arb.pi()
     r = contact.responses(duration)
     sine, cosine = duration.sin_cos()
-    lag = contact.lag
     # δ and δ′ at the end of the contact are linear in (u, X, Y), with these coefficients.
     gap = (r.impulse, r.sine, r.cosine)
     rate = (r.impulse_rate, r.cosine, r.impulse - r.sine)
-    release = [a + lag * b for a, b in zip(gap, rate, strict=True)]
     velocity = [rate[0] - 1, rate[1] + cosine - 1, rate[2] - sine]
     landing = [gap[0] + flight, gap[1] + sine + flight, gap[2] + cosine - 1]
     right = (
-        r.gravity + lag * r.impulse,
+        r.gravity,
         r.impulse + flight,
         r.gravity - flight * flight / 2,
     )
-    (u, x, y), matrix = _solved(release, velocity, landing, right)
+    (u, x, y), matrix = _solved(gap, velocity, landing, right)
     end, speed = contact.state(duration, u, x, y)
     return Point(
         duration=duration,

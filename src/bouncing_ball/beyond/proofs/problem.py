@@ -8,7 +8,6 @@ from flint import arb
 
 from bouncing_ball.beyond.proofs.balls import ProofError, rational
 from bouncing_ball.beyond.proofs.branch import EnclosedContact
-from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Bits beyond the requested digits and those that stiff contacts cost by cancellation,
@@ -32,59 +31,39 @@ class RationalProblem:
     ----------
     frequency_ratio : Fraction
         ϖ > 0.
-    restitution, damping_ratio : Fraction, optional
-        One of r and ζ (Eq. 16), both in (0, 1).
+    restitution : Fraction
+        r in (0, 1), from which ζ follows (Eq. 16).
     n : int
         Index of the family.
-    release : Release
 
     Raises
     ------
     ProofError
-        If a parameter is outside its range, or if not one of r and ζ is given.
+        If a parameter is outside its range.
     """
 
     frequency_ratio: Fraction
-    restitution: Fraction | None = None
-    damping_ratio: Fraction | None = None
+    restitution: Fraction
     n: int = 1
-    release: Release = Release.DISPLACEMENT
 
     def __post_init__(self) -> None:
-        if (self.restitution is None) == (self.damping_ratio is None):
-            raise ProofError("give either the restitution r or the damping ratio ζ")
         if self.frequency_ratio <= 0:
             raise ProofError(f"frequency ratio ϖ = {self.frequency_ratio} must be above 0")
         if self.n < 1:
             raise ProofError(f"index of the family n = {self.n} must be at least 1")
-        if self.restitution is not None:
-            _require_loss("restitution r", self.restitution, lossless=1)
-        if self.damping_ratio is not None:
-            _require_loss("damping ratio ζ", self.damping_ratio, lossless=0)
-
-    def damping(self) -> arb:
-        """ζ as a ball (Eq. 16)."""
-        if self.damping_ratio is not None:
-            return rational(self.damping_ratio)
-        assert self.restitution is not None
-        return damping_of(self.restitution)
+        if self.restitution == 1:
+            raise ProofError(f"restitution r = 1 must lie between 0 and 1: {_LOSSLESS}")
+        if not 0 < self.restitution < 1:
+            raise ProofError(f"restitution r = {self.restitution} must lie between 0 and 1")
 
     def contact(self) -> EnclosedContact:
         """The contact with balls as parameters, at the present precision."""
-        zeta = self.damping()
-        sine = zeta if self.release is Release.FORCE else arb(0)
-        return EnclosedContact(rational(self.frequency_ratio), zeta, sine)
+        return EnclosedContact(rational(self.frequency_ratio), damping_of(self.restitution))
 
     def approximate(self) -> SpringDamper:
         """The contact in double precision."""
-        return SpringDamper(float(self.frequency_ratio), float(self.damping().mid()), self.release)
-
-
-def _require_loss(name: str, value: Fraction, lossless: int) -> None:
-    if value == lossless:
-        raise ProofError(f"{name} = {value} must lie between 0 and 1: {_LOSSLESS}")
-    if not 0 < value < 1:
-        raise ProofError(f"{name} = {value} must lie between 0 and 1")
+        zeta = float(damping_of(self.restitution).mid())
+        return SpringDamper(float(self.frequency_ratio), zeta)
 
 
 def working_bits(frequency_ratio: Fraction, digits: int) -> int:

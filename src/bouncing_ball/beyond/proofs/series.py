@@ -120,9 +120,6 @@ class Series:
             return Series([a / other for a in self.terms], self.order)
         return self * other.composed(_reciprocal)
 
-    def __rtruediv__(self, other: Any) -> "Series":
-        return self.composed(_reciprocal) * other
-
     def composed(self, derivatives: Callable[[arb, int], list[arb]]) -> "Series":
         """f of the series, where ``derivatives(c, N)`` are the Taylor coefficients of f at c."""
         outer = derivatives(self.value, self.order)
@@ -139,10 +136,6 @@ class Series:
     def sin_cos(self) -> "tuple[Series, Series]":
         """Sine and cosine of the series."""
         return self.composed(_sine), self.composed(_cosine)
-
-    def sqrt(self) -> "Series":
-        """The square root of the series; its value must be positive."""
-        return self.composed(_root)
 
 
 def _exponential(c: arb, order: int) -> list[arb]:
@@ -177,37 +170,3 @@ def _reciprocal(c: arb, order: int) -> list[arb]:
     for _ in range(order):
         found.append(-found[-1] * found[0])
     return found
-
-
-def _root(c: arb, order: int) -> list[arb]:
-    found = [c.sqrt()]
-    for k in range(1, order + 1):
-        found.append(found[-1] * (3 - 2 * k) / (2 * k * c))
-    return found
-
-
-def angle(x: Any, y: Any) -> Any:
-    """The polar angle of the point (x, y), which are balls or series.
-
-    The angle by which a series turns the point is small, so that its arctangent has a Taylor series
-    about 0.
-
-    Examples
-    --------
-    >>> x, y = Series.variable(arb(1), 0, 2), Series.constant(arb(1), 2)
-    >>> [round(float(c), 12) for c in angle(x, y).terms[:2]]
-    [0.785398163397, -0.5]
-    """
-    if not isinstance(x, Series):
-        return arb.atan2(y, x)
-    along = x * x.value + y * y.value
-    across = y * x.value - x * y.value
-    # At the point itself the turned angle is exactly 0.
-    turned = (across / along).without_value().composed(_arctangent)
-    return turned + arb.atan2(y.value, x.value)
-
-
-def _arctangent(c: arb, order: int) -> list[arb]:
-    """Taylor coefficients of the arctangent at 0."""
-    assert c.is_zero()
-    return [arb(0) if k % 2 == 0 else arb((-1) ** (k // 2)) / k for k in range(order + 1)]

@@ -1,12 +1,11 @@
-"""Certified thresholds: the frequency ratio ϖ at which an error of a simple model has a value.
+"""Certified numbers of the comparison of both models: the printed thresholds of Eqs. 37 and 38.
 
-Two equations determine ε and ϖ: one for the orbit (its Λ, or the bifurcation), and one for the
-error of a quantity (Eq. 37). A step of Krawczyk's method proves that a box contains exactly one
-solution. The damping ratio is fixed by r (Eq. 16), and the contact ends with the displacement
-release. The threshold of permanent contact (Eq. 38) follows from Eq. 34 in closed form.
+Two equations determine ε and ϖ where the error of the greatest height has a given value: one for
+the Λ of the orbit, and one for the error (Eq. 37). A step of Krawczyk's method proves that a box
+contains exactly one solution. The damping ratio is fixed by r (Eq. 16). The threshold of permanent
+contact (Eq. 38) follows from Eq. 34 in closed form.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -14,21 +13,10 @@ from flint import arb
 
 from bouncing_ball.beyond.proofs.balls import ProofError, precision, rational
 from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point, point
-from bouncing_ball.beyond.proofs.certificates import (
-    Properties,
-    Proved,
-    doubling_test,
-    fold_test,
-    orbit_properties,
-    orbit_start,
-    period_doubling_properties,
-    saddle_node_properties,
-)
+from bouncing_ball.beyond.proofs.certificates import Proved, orbit_properties, orbit_start
 from bouncing_ball.beyond.proofs.newton import certified_box
 from bouncing_ball.beyond.proofs.problem import RationalProblem, damping_of, working_bits
-from bouncing_ball.beyond.proofs.series import Series, angle
-from bouncing_ball.beyond.proofs.simple_models import SimpleModel
-from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as double
+from bouncing_ball.beyond.proofs.series import Series
 
 
 @dataclass(frozen=True)
@@ -41,77 +29,39 @@ class CertifiedNumber:
 
 
 @dataclass(frozen=True)
-class Comparison:
-    """A quantity whose relative error ``(q_SD - q)/q`` of a simple model is followed along ϖ.
+class ComparedOrbit:
+    """The orbits of one r, n and Λ, whose greatest heights in both models are compared.
 
     Parameters
     ----------
-    quantity : str
-        One of :data:`MEASURED`.
     restitution, amplitude : Fraction
-        r in (0, 1), and Λ of the orbit; the bifurcations do not depend on Λ.
+        r in (0, 1), and Λ above the saddle-node of the restitution model.
     n : int
-    corrected : bool
-        Whether the simple model is the corrected one, and not the restitution model.
     """
 
-    quantity: str
     restitution: Fraction
     n: int
     amplitude: Fraction
-    corrected: bool = False
 
-    def error(self, contact: EnclosedContact, orbit: Point) -> Series:
-        """The signed error of Eq. 37 for an orbit of the contact."""
-        make = SimpleModel.corrected if self.corrected else SimpleModel.restitution_model
-        simple = make(contact, rational(self.restitution), self.n)
-        wanted = getattr(simple, self.quantity)(rational(self.amplitude))
-        return MEASURED[self.quantity](orbit) / wanted - 1
-
-    def condition(self, contact: EnclosedContact, excess: Series) -> Series:
-        """The function that vanishes on the orbits that are compared."""
-        if self.quantity == "saddle_node":
-            return fold_test(contact, self.n, excess)
-        if self.quantity == "period_doubling":
-            return doubling_test(contact, self.n, excess)
-        return point(contact, self.n, excess).square - rational(self.amplitude) ** 2
-
-    @property
-    def properties(self) -> Properties:
-        """What else is proved for the orbits that are compared."""
-        if self.quantity == "saddle_node":
-            return saddle_node_properties
-        if self.quantity == "period_doubling":
-            return period_doubling_properties
-        return orbit_properties
+    def restitution_height(self) -> arb:
+        """max z of the restitution model, Λ sin φ + (nπ)²/2."""
+        r = rational(self.restitution)
+        launch = self.n * arb.pi()
+        fold = launch * (1 - r) / (1 + r)
+        return (rational(self.amplitude) ** 2 - fold**2).sqrt() + launch**2 / 2
 
     def start(self, frequency_ratio: float) -> float:
-        """The excess angle of the orbit at this ϖ in double precision."""
-        problem = RationalProblem(Fraction(frequency_ratio), restitution=self.restitution, n=self.n)
-        approximate = problem.approximate()
-        if self.quantity in ("saddle_node", "period_doubling"):
-            return float(getattr(double, self.quantity)(approximate, self.n))
-        return orbit_start(approximate, self.n, float(self.amplitude))
+        """The excess angle of the contact's orbit at this ϖ in double precision."""
+        problem = RationalProblem(Fraction(frequency_ratio), self.restitution, self.n)
+        return orbit_start(problem.approximate(), self.n, float(self.amplitude))
 
 
-MEASURED: dict[str, Callable[[Point], Series]] = {
-    "max_height": lambda orbit: orbit.top,
-    "bounce_velocity": lambda orbit: orbit.bounce_velocity,
-    "phase": lambda orbit: angle(orbit.x, orbit.y),
-    "apparent_restitution": lambda orbit: -orbit.rate / orbit.u,
-    "saddle_node": lambda orbit: orbit.square.sqrt(),
-    "period_doubling": lambda orbit: orbit.square.sqrt(),
-}
-"""The quantities of Eq. 37 as functions of an orbit of the contact."""
-
-
-def error_threshold(
-    comparison: Comparison, error: Fraction, start: float, digits: int = 30
+def height_threshold(
+    compared: ComparedOrbit, error: Fraction, start: float, digits: int = 30
 ) -> CertifiedNumber:
-    """The certified ϖ, near a start, at which the error of a simple model has a signed value.
+    """The certified ϖ, near a start, at which the error of the greatest height has a value.
 
-    ``error`` is the value, for example -1/100, and 0 where the error changes its sign; ``start`` is
-    ϖ in double precision.
+    ``error`` is the signed value, for example -1/100, and ``start`` is ϖ in double precision.
 
     Raises
     ------
@@ -121,36 +71,30 @@ def error_threshold(
     """
     bits = working_bits(Fraction(start), digits)
     with precision(bits):
-        value = rational(error)
-        zeta = damping_of(comparison.restitution)
+        zeta = damping_of(compared.restitution)
+        square = rational(compared.amplitude) ** 2
+        height = compared.restitution_height()
 
         def equations(box: list[arb]) -> tuple[Series, Series]:
             epsilon, ratio = (Series.variable(x, k, 2) for k, x in enumerate(box))
-            contact = EnclosedContact(ratio, zeta, arb(0))
-            first = comparison.condition(contact, epsilon)
-            second = comparison.error(contact, point(contact, comparison.n, epsilon)) - value
-            return first, second
+            orbit = point(EnclosedContact(ratio, zeta), compared.n, epsilon)
+            return orbit.square - square, orbit.top / height - 1 - rational(error)
 
-        box = certified_box(equations, [comparison.start(start), start])
+        box = certified_box(equations, [compared.start(start), start])
         epsilon, ratio = box
-        contact = EnclosedContact(ratio, zeta, arb(0))
-        proved = comparison.properties(contact, comparison.n, epsilon)
-        if comparison.quantity == "max_height":
-            _require_apex(point(contact, comparison.n, epsilon))
-        crossing = _crossing(*equations(box), error)
-        return CertifiedNumber(ratio, bits, (Proved.UNIQUE, crossing, *proved))
+        contact = EnclosedContact(ratio, zeta)
+        proved = orbit_properties(contact, compared.n, epsilon)
+        _require_apex(point(contact, compared.n, epsilon))
+        _require_falling(*equations(box), error)
+        return CertifiedNumber(ratio, bits, (Proved.UNIQUE, Proved.FALLS, *proved))
 
 
-def _crossing(orbit: Series, error: Series, value: Fraction) -> Proved:
-    """How the error passes its value: its derivative with respect to ϖ along the orbits."""
+def _require_falling(orbit: Series, error: Series, value: Fraction) -> None:
+    """Check that the modulus of the error falls with ϖ along the orbits."""
     along = orbit.coefficient(1, 0)
     volume = error.coefficient(0, 1) * along - error.coefficient(1, 0) * orbit.coefficient(0, 1)
-    slope = volume / along
-    if value == 0 and not slope.contains(0):
-        return Proved.SIGN
-    if rational(value) * slope < 0:
-        return Proved.FALLS
-    raise ProofError("the modulus of the error is not proved to fall with rising ϖ")
+    if not rational(value) * volume / along < 0:
+        raise ProofError("the modulus of the error is not proved to fall with rising ϖ")
 
 
 def _require_apex(orbit: Point) -> None:
@@ -185,35 +129,12 @@ def permanent_contact_threshold(
     """
     bits = working_bits(Fraction(1), digits)
     with precision(bits):
-        half = _least_at(restitution)
+        zeta = damping_of(restitution)
+        lowest = 1 - 2 * zeta * zeta
         level = 1 - rational(tolerance)
-        inside = half * half - 1 + level * level
-        if not (inside > 0 and level > 0 and level < 1):
+        inside = lowest * lowest - 1 + level * level
+        if not (lowest > 0 and inside > 0 and level > 0 and level < 1):
             raise ProofError("Λ_SD is not proved to fall so far below 1")
-        square = half - inside.sqrt()
+        square = lowest - inside.sqrt()
         ratio = (1 / square).sqrt()
         return CertifiedNumber(ratio, bits, (Proved.UNIQUE, Proved.FALLS, Proved.ONLY))
-
-
-def permanent_contact_minimum(restitution: Fraction, digits: int = 30) -> CertifiedNumber:
-    """The smallest Λ_SD over ϖ, 2ζ√(1 - ζ²) (Eq. 36, Fig. 11).
-
-    Raises
-    ------
-    ProofError
-        If Λ_SD has no minimum at a finite ϖ.
-    """
-    bits = working_bits(Fraction(1), digits)
-    with precision(bits):
-        _least_at(restitution)
-        zeta = damping_of(restitution)
-        return CertifiedNumber(2 * zeta * (1 - zeta * zeta).sqrt(), bits, (Proved.LEAST,))
-
-
-def _least_at(restitution: Fraction) -> arb:
-    """1 - 2ζ², the value of 1/ϖ² at which Λ_SD is least."""
-    zeta = damping_of(restitution)
-    least = 1 - 2 * zeta * zeta
-    if not least > 0:
-        raise ProofError("Λ_SD has no minimum at a finite ϖ, because ζ ≥ 1/√2")
-    return least

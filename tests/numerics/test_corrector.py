@@ -130,6 +130,27 @@ def test_the_tangent_is_unknown_only_where_the_jacobian_is_not_finite():
     assert np.all(np.isnan(found[1:]))
 
 
+class Steep:
+    """x = p, with the slopes of 10¹³ (x - p) for p < 0."""
+
+    def residual(self, y):
+        return y[..., :1] - y[..., 1:]
+
+    def jacobian(self, y):
+        slope = np.where(y[..., 1:] < 0, 1e13, 1.0)
+        return np.stack([slope, -slope], axis=-1)
+
+
+def test_a_short_step_to_a_point_that_is_no_solution_has_not_converged():
+    guess = np.array([[1.0, -1.0], [-1.0, -1.0], [2.0, 1.0]])
+    found = newton(Steep(), guess, plane(np.array([0.0, 1.0]), guess))
+    assert (found.step <= NewtonSettings().tolerance).all()
+    assert found.converged.tolist() == [False, True, True]
+    assert found.point[1:] == pytest.approx(np.array([[-1.0, -1.0], [1.0, 1.0]]), abs=EPS)
+    one = newton(Steep(), guess[0], plane(np.array([0.0, 1.0]), guess[0]))
+    assert failure(Steep(), one) == "residual 2.0e+00 after 1 Newton iterations"
+
+
 class Broken:
     """x p = 0 for p > 0, without derivatives at p = 0."""
 

@@ -77,6 +77,21 @@ def test_a_short_step_next_to_a_pole_is_no_zero():
     assert locate(Line(), event, np.zeros(2), np.full(2, 0.6), values=(-1.0, 1.0)) is None
 
 
+class Steep(Parabola):
+    """The parabola with a Jacobian that is wrong and large for p < 0."""
+
+    def jacobian(self, y):
+        return np.where(y[..., np.newaxis, 1:] < 0, 1e14, 1.0) * super().jacobian(y)
+
+
+def test_an_event_at_a_point_that_is_not_on_the_branch_is_not_located():
+    ends = np.array([4.0, -2.0]), np.array([0.0, 0.0])
+    event = Event("level", lambda y: y[..., 1] + 1)
+    assert locate(Steep(), event, *ends) is None
+    found = locate(Parabola(), event, *ends)
+    assert found.point == pytest.approx(np.array([1.0, -1.0]), abs=1e-15)
+
+
 def test_with_tangents_the_first_estimate_is_next_to_the_curve_and_the_zero_is_the_same():
     ends = np.array([0.36, 0.6]), np.array([0.64, 0.8])
     tangents = tuple(np.array([2 * p, 1.0]) / np.hypot(2 * p, 1.0) for p in (0.6, 0.8))

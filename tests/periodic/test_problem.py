@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import shooting
-from orbits_found import FOUND, balls, found_orbit, known_orbit
+from orbits_found import FOUND, balls, first, found_orbit, known_orbit
 
-from bouncing_ball.periodic.branches.following import point_near
+from bouncing_ball.periodic.branches.following import branch_from, point_near
 from bouncing_ball.periodic.orbits.halves import twice
 from bouncing_ball.periodic.orbits.simulation import is_admissible
-from bouncing_ball.periodic.orbits.special import flight_margin, opening_rate
+from bouncing_ball.periodic.orbits.special import Special, flight_margin, opening_rate
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
@@ -65,6 +65,28 @@ def test_the_jacobian_is_that_of_differences(name):
     slopes = (moved[0] - moved[1]).T / (2 * step)
     # The residuals are of order one; central differences of both kinds have errors of 1e-9.
     assert np.abs(whole.jacobian(y) - slopes).max() < 1e-7
+
+
+@pytest.mark.parametrize("later", [-1e-6, 1e-6])
+def test_the_jacobian_is_that_of_differences_on_both_sides_of_a_contact_without_speed(later):
+    """A contact resumes with δ′ = 0 at the level of the table; beside it δ′ and δ have both signs,
+    and the flight before it still ends where δ + κ δ′ vanishes.
+    """
+    orbit = found_orbit(FOUND[-2])
+    grazing = first(branch_from(orbit, "frequency_ratio", 20.0), Special.GRAZING_IMPACT)
+    problem = grazing.problem("frequency_ratio")
+    y = grazing.point(problem)
+    assert problem.resuming.tolist() == [False, True]
+    assert abs(y[3]) < 1e-12
+    y[2] += later
+    rise = problem.legs(y).landing.velocity[0]
+    # δ″ is about -1 there.
+    assert rise == pytest.approx(-later, rel=0.1)
+    step = 1e-6
+    moved = [problem.residual(y + sign * step * np.eye(y.size)) for sign in (1, -1)]
+    slopes = (moved[0] - moved[1]).T / (2 * step)
+    # The residuals at y are of the order of its distance from the orbit, and so is the error.
+    assert np.abs(problem.jacobian(y) - slopes).max() < 10 * abs(later)
 
 
 @pytest.mark.parametrize("kind", list(Bifurcation))

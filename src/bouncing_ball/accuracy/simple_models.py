@@ -70,8 +70,8 @@ def errors(
 
     Examples
     --------
-    >>> errors(SpringDamper(100.0, 0.1), 1, 1.0, ["max_height"]).round(4).tolist()
-    [[-0.0083], [-0.0]]
+    >>> errors(SpringDamper(100.0, 0.1), 1, 1.0, ["max_height"]).round(8).tolist()
+    [[-0.00829759], [-1.78e-06]]
     """
     exact, *simple = exact_and_simple_models(contact)
     return relative_errors(exact, simple, n, amplitude, quantities)
@@ -87,8 +87,8 @@ def orbit_errors(orbit: Orbit) -> np.ndarray:
     --------
     >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
-    >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(4)[:, 0].tolist()
-    [-0.0083, -0.0]
+    >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(8)[:, 0].tolist()
+    [-0.00829759, -1.78e-06]
     """
     exact = [getattr(orbit, quantity) for quantity in OF_ORBITS]
     simple = (

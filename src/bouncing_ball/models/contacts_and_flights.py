@@ -32,7 +32,9 @@ class Level(NamedTuple):
 class Impact(NamedTuple):
     """Starts of contact: the table's phase, δ and δ′, and further results of the model.
 
-    ``level`` is the table's state at this phase, if it is known.
+    ``level`` is the table's state at this phase, if it is known. ``resumes`` tells which contacts
+    resume below the level of the table, if it is known: an orbit is also computed where δ′ vanishes
+    at such a start, and thus δ.
     """
 
     phase: np.ndarray
@@ -40,11 +42,17 @@ class Impact(NamedTuple):
     velocity: np.ndarray
     known: Any = None
     level: Level | None = None
+    resumes: np.ndarray | None = None
 
     @classmethod
     def at_level(cls, phase: np.ndarray, velocity: np.ndarray, known: Any = None) -> "Impact":
         """Starts at the table's level, δ = 0."""
         return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
+
+    @property
+    def is_resumption(self) -> np.ndarray:
+        """Whether the contacts resume; those with δ < 0 unless it is known."""
+        return self.displacement < 0 if self.resumes is None else self.resumes
 
 
 class DurationSlopes(NamedTuple):

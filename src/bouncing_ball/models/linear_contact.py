@@ -319,7 +319,7 @@ class LinearContactDynamics(ResumingDynamics):
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
         """Derivative of the map over contact and flight, in closed form."""
-        lag = self.law.lag * (after.displacement < _ZERO)
+        lag = self.law.lag * after.is_resumption
         released = departure.by or self._released(impact, departure)
         return self.over_flight(released, departure, after, passed, lag)
 
@@ -355,7 +355,7 @@ class LinearContactDynamics(ResumingDynamics):
         speed = flight.velocity
         last = (flight.y - _ONE) - loss * speed - stiffness * flight.displacement
         # A contact that resumes starts at δ + κ δ′ = 0: its displacement deviates by -κ dδ′.
-        lag = contact.lag * (impact.displacement < _ZERO)
+        lag = contact.lag * impact.is_resumption
         first = (y - _ONE) - loss * impact.velocity - stiffness * impact.displacement
         # The last digits of this form are multiplied by ϖ and by the decay.
         forgets = decay * contact.frequency_ratio < _ONE

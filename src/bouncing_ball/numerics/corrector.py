@@ -14,6 +14,9 @@ import scipy
 _TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
+# Largest defect of a solution, relative to (1 + |y|)² because the equations have products of two
+# unknowns, such as speed and time. Next to singular ends of branches rounding leaves 1e-11.
+_DEFECT = 1e-10
 _ROUNDING = np.finfo(float).eps
 # A change of an unknown by this share of it is a rounding error.
 _UNCERTAIN = 4 * _ROUNDING
@@ -102,7 +105,7 @@ def newton(
     -------
     Correction
         An iteration has not converged if it reached the greatest number of steps, met a singular
-        matrix or left the domain of F.
+        matrix, left the domain of F, or ended at a point that does not satisfy F(y) = 0.
     """
 
     def equations(y):
@@ -111,7 +114,27 @@ def newton(
         matrix = np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
         return values, matrix
 
-    return solve(equations, guess, settings)
+    return checked(solve(equations, guess, settings), problem.residual)
+
+
+def checked(found: Correction, residual: Callable[[np.ndarray], np.ndarray]) -> Correction:
+    """The outcome of :func:`solve`, whose points have converged only if their residual is small.
+
+    A short step is no sign of a solution where the Jacobian is wrong and large, as it may be on the
+    other side of a special point.
+
+    Examples
+    --------
+    >>> found = solve(lambda y: (y - 4, np.full((*y.shape, 1), 1e15)), np.array([[1.0], [4.0]]))
+    >>> found.converged.tolist(), checked(found, lambda y: y - 4).converged.tolist()
+    ([True, True], [False, True])
+    """
+    if not found.converged.any():
+        return found
+    with np.errstate(all="ignore"):
+        defect = np.abs(residual(found.point)).max(axis=-1)
+        largest = _DEFECT * (1 + _norm(found.point)) ** 2
+    return found._replace(converged=found.converged & (defect <= largest))
 
 
 def solve(

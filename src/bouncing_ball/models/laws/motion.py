@@ -208,7 +208,7 @@ class ContactDynamics(ResumingDynamics):
         """Derivative of the map over contact and flight; NaN if either impact is a resumption, or
         if the ball meets no force.
         """
-        known = (impact.displacement >= 0) & (after.displacement >= 0)
+        known = ~(impact.is_resumption | after.is_resumption)
         after = after._replace(velocity=np.where(known, after.velocity, np.nan))
         by_phase = departure.by.jacobian[:, :, 0]
         # v = -δ′, so that the derivatives with respect to δ′ have the other sign.

@@ -9,7 +9,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.numerics.corrector import solve
+from bouncing_ball.numerics.corrector import checked, solve
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.balls import Balls
@@ -93,7 +93,7 @@ def orbit_of_law(
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         law = law_of_impact(kind, restitution, taken, speed)
         problem = replace(problem, balls=Balls(ContactModel(law), amplitude))
-        found = solve(problem.equations_at, y, OF_A_ROUND)
+        found = checked(solve(problem.equations_at, y, OF_A_ROUND), problem.residual)
         y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
         if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):
             return orbit_of_point(problem, y)

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.corrector import newton, solve, tangent
+from bouncing_ball.numerics.corrector import checked, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.branches.following import branches_through_points
 from bouncing_ball.periodic.one_impact import corrected_branch as line
@@ -133,7 +133,7 @@ def _solved(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
         if not todo.size:
             break
         fixed, unknowns = problem.take(todo).fixed(y[todo])
-        found = solve(fixed.equations_at, unknowns, IN_ROUNDS)
+        found = checked(solve(fixed.equations_at, unknowns, IN_ROUNDS), fixed.residual)
         y[todo, : fixed.size] = found.point
         todo = todo[~found.converged]
     y[todo] = np.nan

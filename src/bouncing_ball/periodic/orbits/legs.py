@@ -239,7 +239,7 @@ def without_force(impact: Impact, lag: np.ndarray) -> Impact:
     """
     if not (lag.ndim and lag.any()):
         return impact
-    return impact._replace(displacement=-lag * impact.velocity)
+    return impact._replace(displacement=-lag * impact.velocity, resumes=lag != 0)
 
 
 def time_to_section(dynamics: Dynamics, impact: Impact) -> np.ndarray:

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.numerics.corrector import solve
+from bouncing_ball.numerics.corrector import checked, solve
 from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
 from bouncing_ball.periodic.orbits.steps import PATIENT
@@ -96,6 +96,7 @@ def lost_release(equations: OrbitEquations, y: np.ndarray) -> np.ndarray | None:
         return None
     slowest = int(np.argmin(rise_of_release(legs)))
     with np.errstate(all="ignore"):
-        found = solve(_LostRelease(equations, slowest).equations_at, y, PATIENT)
+        lost = _LostRelease(equations, slowest)
+        found = checked(solve(lost.equations_at, y, PATIENT), lost.residual)
     near = bool(found.converged) and np.linalg.norm(found.point - y) < _NEAR
     return found.point if near else None

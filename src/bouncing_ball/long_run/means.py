@@ -22,7 +22,6 @@ from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Leg
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.linear_flow import change_in_contact
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.setting import require_paper
 
 
 def over_steps(
@@ -98,7 +97,6 @@ def means(model: HasDynamics, amplitude: ArrayLike, found: Motions, samples: int
     phase = np.where(falls, phase, 0 * lam)
     velocity = np.where(falls, velocity, lam)
     dynamics, start, relative, shape = model.dynamics(lam).first_impacts(phase, velocity)
-    require_paper(dynamics.setting, "means over a motion")
     impacts = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
     total = np.full((5, impacts.size), np.nan)
     _add_up(dynamics, dynamics.start(start, relative), impacts, total)

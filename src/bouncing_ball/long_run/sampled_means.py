@@ -40,7 +40,6 @@ from bouncing_ball.long_run.means import over_leg
 from bouncing_ball.models.contacts_and_flights import Impact
 from bouncing_ball.models.dynamics import Dynamics, HasDynamics
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.setting import require_paper
 from bouncing_ball.numerics.arrays import BLOCK
 
 # The largest relative change of an impact after sticking, with instantaneous impacts.
@@ -147,7 +146,6 @@ def sums_at(
 def start(model: HasDynamics, amplitude: float, starts: Starts) -> tuple[Dynamics, Impact]:
     """The dynamics and the first impacts of balls."""
     dynamics, phase, relative, _ = model.dynamics(amplitude).first_impacts(*starts)
-    require_paper(dynamics.setting, "means over a motion")
     return dynamics, dynamics.start(phase, relative)
 
 

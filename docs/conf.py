@@ -72,7 +72,6 @@ PARTS = {
         "docs/python",
         "docs/periodic-orbits",
         "docs/thesis",
-        "docs/other-tables",
         "docs/design",
         "docs/engines",
         "docs/bounces",

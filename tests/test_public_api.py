@@ -45,7 +45,6 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
         ("docs/python.md", 14),
         ("docs/error-law.md", 8),
         ("docs/periodic-orbits.md", 14),
-        ("docs/other-tables.md", 40),
         ("docs/thesis.md", 24),
         ("docs/how-an-orbit-is-found.md", 4),
         ("docs/proofs.md", 7),

@@ -82,9 +82,6 @@ if TYPE_CHECKING:
     from bouncing_ball.models.makers import spring_damper as spring_damper
     from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
-    from bouncing_ball.models.suspension import Drag as Drag
-    from bouncing_ball.models.suspension import Spring as Spring
-    from bouncing_ball.models.waveform import Waveform as Waveform
     from bouncing_ball.periodic.branches.follow import follow as follow
     from bouncing_ball.periodic.branches.grazing import grazing_form as grazing_form
     from bouncing_ball.periodic.branches_of_ball import branch as branch
@@ -102,7 +99,6 @@ __version__ = "0.1.0"
 _MODULES = {
     "Contact": "contacts.contact",
     "ContactModel": "models.contact_model",
-    "Drag": "models.suspension",
     "EngineSetup": "contacts.question",
     "Flores": "models.laws.start_speed",
     "LankaraniNikravesh": "models.laws.start_speed",
@@ -110,10 +106,8 @@ _MODULES = {
     "NoOrbitError": "errors",
     "Question": "contacts.question",
     "RestitutionModel": "models.rigid",
-    "Spring": "models.suspension",
     "SpringDamper": "models.spring_damper",
     "Table": "contacts.table",
-    "Waveform": "models.waveform",
     "assess_contact": "contacts.assess",
     "basins": "long_run.motion_of",
     "branch": "periodic.branches_of_ball",

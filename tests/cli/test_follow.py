@@ -219,9 +219,6 @@ def test_lines_change_from_solid_to_dashed_at_the_period_doubling():
 
 DRAWN = {
     "rigid": RIGID,
-    "table and drag": bouncing_ball.rigid(
-        restitution=0.6, table=bouncing_ball.Waveform([1, 0.2]), flight=bouncing_ball.Drag(0.05)
-    ),
     "spring and damper": bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0),
     "corrected": bouncing_ball.corrected(
         bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)

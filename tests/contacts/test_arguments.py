@@ -1,7 +1,5 @@
 """Arguments of a wrong class in the questions about a contact."""
 
-from functools import partial
-
 import pytest
 
 import bouncing_ball
@@ -119,10 +117,3 @@ def test_a_value_of_a_wrong_type_is_named_in_one_line(refusal, kind, given, word
 def test_a_number_of_too_many_digits_is_refused_in_one_line(huge, refusal):
     with refusal(ModelError, "acceleration"):
         bouncing_ball.Table(frequency="50 Hz", acceleration=huge)
-
-
-@pytest.mark.parametrize("flight", ["x", [1.0], 0.1, {"drag": 0.1}])
-def test_what_moves_a_ball_in_flight_is_a_drag_or_a_spring(flight, refusal):
-    for ball in (bouncing_ball.rigid, partial(bouncing_ball.spring_damper, frequency_ratio=10.0)):
-        with refusal(ModelError, "flight", "neither Drag nor Spring"):
-            ball(restitution=0.5, flight=flight)

@@ -110,7 +110,6 @@ WRONG = {
 }
 CALLS = {
     "restitution": lambda wrong: bb.rigid(restitution=wrong),
-    "table": lambda wrong: bb.rigid(restitution=0.5, table=wrong),
     "amplitude": lambda wrong: bb.orbit(BALL, amplitude=wrong),
     "impacts": lambda wrong: bb.simulate(BALL, amplitude=1.0, impacts=wrong),
     "ball": lambda wrong: bb.orbit(wrong, amplitude=1.0),
@@ -127,7 +126,6 @@ CALLS = {
     "contact": lambda wrong: bb.describe_contact(wrong),
     "damping ratio": lambda wrong: bb.SpringDamper(10.0, wrong),
     "release": lambda wrong: bb.SpringDamper(10.0, 0.1, wrong),
-    "sine": lambda wrong: bb.Waveform(wrong),
 }
 
 

@@ -194,7 +194,7 @@ KINDS = {
 def test_scenes_end_as_their_commands_say(seen, answered):
     assert set().union(
         *(KINDS[end["kind"]] for one in seen["scenes"] for end in one["ends"])
-    ) == set(Kind) - {Kind.ALOFT, Kind.UNDECIDED}
+    ) == set(Kind) - {Kind.UNDECIDED}
     for scene in seen["scenes"]:
         commands = scene["command"].splitlines()
         assert len(commands) == len(scene["ends"]) and scene["look"] != "Balls on one table."

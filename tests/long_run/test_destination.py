@@ -232,18 +232,6 @@ def test_the_last_digit_of_the_start_decides_only_where_the_others_are_lost():
     assert kept.sum() > 50 and another.any() and not another[kept].any()
 
 
-def test_lift_offs_of_a_second_harmonic_may_alternate():
-    # A table whose second harmonic is the larger one throws the ball off twice in each period.
-    for first, impacts, lift_offs in ((0.05, 16, 2), (0.3, 8, 1)):
-        ball = bouncing_ball.rigid(restitution=0.2, table=bouncing_ball.Waveform([first, 0.25]))
-        found = bouncing_ball.motion_of(ball, amplitude=1.1, velocity=-6.0)
-        assert (found.kind.item(), found.periods.item()) == ("locked", 1)
-        assert found.impacts.item() == impacts
-        path = ball.simulate(1.1, 0.0, -6.0, 60)
-        rests = path.contact_duration > 0.01
-        assert np.unique(path.release_phase[rests][-6:].round(9)).size == lift_offs
-
-
 def test_all_calls_that_judge_a_motion_have_one_default():
     defaults = {
         inspect.signature(call).parameters["impacts"].default

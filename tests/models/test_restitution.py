@@ -11,7 +11,7 @@ from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.setting import lift_off_phase
+from bouncing_ball.models.sticking import lift_off_phase
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():

@@ -1,10 +1,8 @@
 """A second code for periodic orbits of all models, which shares nothing with the package.
 
-Contacts and flights are integrated by scipy's DOP853 in the distance δ from the table, whose shape
-is a sum of sines and cosines::
+Contacts and flights are integrated by scipy's DOP853 in the distance δ from the table ::
 
-    δ″ = f(δ, δ′) - 1 - c (δ′ + w′) - w″               gravity and a drag
-    δ″ = f(δ, δ′) - 2ζν δ′ - ν² (δ - σ) - w″           a spring
+    δ″ = f(δ, δ′) - 1 + Λ sin φ
 
 with the force f of the contact. An orbit is given by its phases, velocities and durations, and the
 code says by how much it fails to close. The delay, the restitution, the load sensitivity and the
@@ -18,74 +16,23 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 EXACT = {"rtol": 1e-12, "atol": 1e-14, "method": "DOP853"}
-# Samples of one period of the table, of which the largest load is known to six digits.
-SAMPLES = 20_001
 
 
-class Outside(NamedTuple):
-    """The table Λ Σ a_k sin kφ + b_k cos kφ, and what moves the ball beside its contact: the drag
-    c, or a spring with ν, ζ and σ; ν is 0 if there is none.
-    """
+def pull(amplitude, phase):
+    """δ″ in flight."""
+    return amplitude * np.sin(phase) - 1
 
-    amplitude: float
-    sine: np.ndarray
-    cosine: np.ndarray
-    drag: float = 0.0
-    frequency: float = 0.0
-    damping: float = 0.0
-    gap: float = 0.0
 
-    @classmethod
-    def of(cls, orbit):
-        parameters = orbit.model.numbers()
-        shape = orbit.model.place.waveform.coefficients
-        return cls(
-            amplitude=float(orbit.amplitude),
-            sine=shape.real,
-            cosine=shape.imag,
-            drag=float(parameters.get("drag", 0.0)),
-            frequency=float(parameters.get("spring_frequency", 0.0)),
-            damping=float(parameters.get("spring_damping", 0.0)),
-            gap=float(parameters.get("gap", 0.0)),
-        )
+def moved(amplitude, start, lasts, force=None):
+    """δ and δ′ after a time from a phase, δ and δ′ on, with the force of a contact or none."""
+    phase, gap, rate = start
 
-    def table(self, phase):
-        """w, w′ and w″."""
-        k = np.arange(1, len(self.sine) + 1)
-        turn = k * np.asarray(phase, dtype=float)[..., np.newaxis]
-        sin = np.sin(turn)
-        cos = np.cos(turn)
-        height = sin @ self.sine + cos @ self.cosine
-        velocity = cos @ (k * self.sine) - sin @ (k * self.cosine)
-        acceleration = -(sin @ (k**2 * self.sine) + cos @ (k**2 * self.cosine))
-        lam = self.amplitude
-        return lam * height, lam * velocity, lam * acceleration
+    def motion(t, y):
+        away = pull(amplitude, phase + t)
+        return [y[1], away if force is None else away + force(y[0], y[1])]
 
-    def pull(self, phase, gap, rate):
-        """δ″ in flight."""
-        _, velocity, acceleration = self.table(phase)
-        if self.frequency:
-            nu = self.frequency
-            return -2 * self.damping * nu * rate - nu**2 * (gap - self.gap) - acceleration
-        return -1 - self.drag * (rate + velocity) - acceleration
-
-    def moved(self, start, lasts, force=None):
-        """δ and δ′ after a time from a phase, δ and δ′ on, with the force of a contact or none."""
-        phase, gap, rate = start
-
-        def motion(t, y):
-            pull = self.pull(phase + t, y[0], y[1])
-            return [y[1], pull if force is None else pull + force(y[0], y[1])]
-
-        run = solve_ivp(motion, (0.0, lasts), [gap, rate], **EXACT)
-        return run.y[0, -1], run.y[1, -1]
-
-    def threshold(self):
-        """The Λ up to which a ball at rest stays on the table."""
-        phase = np.linspace(0, 2 * np.pi, SAMPLES)
-        still = self._replace(amplitude=0.0).pull(0.0, 0.0, 0.0)
-        most = np.max(self.pull(phase, 0.0, 0.0) - still)
-        return -still / most * self.amplitude
+    run = solve_ivp(motion, (0.0, lasts), [gap, rate], **EXACT)
+    return run.y[0, -1], run.y[1, -1]
 
 
 def _force(orbit):
@@ -102,13 +49,11 @@ def _force(orbit):
 
 def closing_of(orbit):
     """δ′ at the impacts of an orbit."""
-    _, velocity, _ = Outside.of(orbit).table(orbit.phases)
-    return orbit.velocities - velocity
+    return orbit.velocities - orbit.amplitude * np.cos(orbit.phases)
 
 
 def _released(orbit, k):
     """δ and δ′ at the release of one impact, and the time of the contact."""
-    outside = Outside.of(orbit)
     phase = float(orbit.phases[k])
     lasts = float(orbit.durations[k])
     closing = float(closing_of(orbit)[k])
@@ -120,12 +65,12 @@ def _released(orbit, k):
     if np.broadcast_to(orbit.resumes, (orbit.impacts,))[k]:
         law = orbit.model.impact_law
         start = -2 * float(law.damping_ratio) / float(law.frequency_ratio) * closing
-    return *outside.moved((phase, start, closing), lasts, _force(orbit)), lasts
+    return *moved(float(orbit.amplitude), (phase, start, closing), lasts, _force(orbit)), lasts
 
 
 def defect_of(orbit):
     """The largest distance of the landings of the second code from the next impacts."""
-    outside = Outside.of(orbit)
+    lam = float(orbit.amplitude)
     closing = closing_of(orbit)
     k = orbit.impacts
     turns = np.broadcast_to(orbit.turns, (k,))
@@ -136,8 +81,8 @@ def defect_of(orbit):
         whole = float(orbit.phases[after] - orbit.phases[i]) + 2 * np.pi * int(turns[i])
         leave = float(orbit.phases[i]) + lasts
         if orbit.model.name == "restitution" and lasts > 0:
-            worst = max(worst, abs(outside.pull(leave, 0.0, 0.0)))
-        here, arrives = outside.moved((leave, gap, rate), whole - lasts)
+            worst = max(worst, abs(pull(lam, leave)))
+        here, arrives = moved(lam, (leave, gap, rate), whole - lasts)
         expected = 0.0
         if np.broadcast_to(orbit.resumes, (k,))[after]:
             law = orbit.model.impact_law
@@ -151,15 +96,15 @@ def rates_of_release(orbit):
     """The rates at which the release functions δ + κ δ′ of an orbit pass 0; κ is 0 for the release
     by displacement.
     """
-    outside = Outside.of(orbit)
     law = orbit.model.impact_law
     lag = 0.0
     if type(law).__name__ == "SpringDamper" and str(law.release) == "force":
         lag = 2 * float(law.damping_ratio) / float(law.frequency_ratio)
     rates = []
     for k in range(orbit.impacts):
-        gap, rate, lasts = _released(orbit, k)
-        rates.append(rate + lag * outside.pull(float(orbit.phases[k]) + lasts, gap, rate))
+        _, rate, lasts = _released(orbit, k)
+        away = pull(float(orbit.amplitude), float(orbit.phases[k]) + lasts)
+        rates.append(rate + lag * away)
     return np.array(rates)
 
 

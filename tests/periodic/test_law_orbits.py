@@ -187,9 +187,6 @@ def test_the_linear_law_is_the_ball_of_the_spring_and_damper(release):
     assert len(found) == 3
     # Newton's method for the orbits of any law has a tolerance of 1e-12.
     assert max(one.distance(other) for one, other in zip(found, searched, strict=True)) < 1e-11
-    with_drag = contact_law("linear", flight=bouncing_ball.Drag(0.1), **given)
-    assert with_drag == bouncing_ball.spring_damper(flight=bouncing_ball.Drag(0.1), **given)
-    assert with_drag.parameters["drag"] == 0.1
 
 
 def test_an_overdamped_contact_with_a_force_release_has_orbits():

@@ -74,20 +74,6 @@ def test_a_branch_comes_back_from_a_file_with_the_same_bits(name, tmp_path):
         np.testing.assert_allclose(values, found[along], rtol=1e-15)
 
 
-@pytest.mark.parametrize(
-    "flight", [bouncing_ball.Drag(0.1), bouncing_ball.Spring(0.5, 0.05, gap=1.0)]
-)
-def test_another_table_and_flight_come_back(flight, tmp_path):
-    ball = bouncing_ball.rigid(
-        restitution=0.5, table=bouncing_ball.Waveform([1.0, 0.3], [0.1]), flight=flight
-    )
-    one = bouncing_ball.orbits(ball, amplitude=1.5)[0]
-    found = bouncing_ball.follow(one, to=1.6, points=20)
-    again = _written_and_read(found, tmp_path)
-    assert all(map(_same_bits, found.states(), again.states()))
-    assert [*again.states()][-1].max_height == [*found.states()][-1].max_height
-
-
 def test_a_curve_comes_back_and_its_orbits_are_followed(tmp_path):
     one = bouncing_ball.orbit(LINEAR, amplitude=1.0)
     doubling = bouncing_ball.follow(one, to=1.2).first("period doubling")

@@ -234,28 +234,3 @@ def test_a_branch_with_bounces_that_shrink_by_a_hundred_ends_at_permanent_contac
     assert str(found.end_reason.values[-1]) == why
     assert found.sizes["point"] < 60
     assert 0 < float(found.amplitude[-1]) - 1 < 2e-4
-
-
-@pytest.mark.parametrize(
-    ("flight", "amplitude", "along", "to", "threshold"),
-    [
-        # At rest δ″ = ν²σ + Λ sin φ, and with drag δ″ = -1 - cΛ cos φ + Λ sin φ.
-        (bouncing_ball.Spring(0.5, 0.05, gap=-4.0), 1.3, "gap", -6.0, -1.3 / 0.5**2),
-        (bouncing_ball.Drag(0.5), 0.98, "drag", 0.0, np.sqrt(1 / 0.98**2 - 1)),
-    ],
-)
-def test_a_rest_ends_at_permanent_contact_along_a_parameter_of_the_flight(
-    flight, amplitude, along, to, threshold
-):
-    """The threshold of permanent contact changes along the branch; it was an error of numpy."""
-    ball = bouncing_ball.rigid(restitution=0.25, flight=flight)
-    orbit = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude)
-    assert np.any(orbit.contact_duration > 0)
-    found = bouncing_ball.follow(orbit, along=along, to=to)
-    *_, last = found.states()
-    why = "the flights vanish: the orbit merges with permanent contact"
-    assert str(found.end_reason.values[-1]) == why
-    aloft = 2 * np.pi - last.durations.sum()
-    assert aloft == pytest.approx(0.01, abs=1e-9)
-    # The lift-off is at the phase at which the load rises from 0, within the flights.
-    assert last.parameters[along] == pytest.approx(threshold, abs=aloft**2)

@@ -34,10 +34,7 @@ from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball.models.makers import corrected, flattened, numbers_of_flight
-from bouncing_ball.models.setting import PAPER, Setting, require_paper, setting_of
-from bouncing_ball.models.suspension import Suspension
-from bouncing_ball.models.waveform import Waveform
+from bouncing_ball.models.makers import corrected, flattened
 from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.stability import Side
@@ -63,15 +60,12 @@ class FreeImpactBall(Ball):
         D of the free impact.
     is_corrected : bool
         Whether the ball obeys the corrected restitution model of the contact.
-    setting : Setting
-        The motion of the table.
     """
 
     law_type: type[ContactLaw]
     restitution: float
     duration: Any
     is_corrected: bool = False
-    setting: Setting = PAPER
 
     is_known = False
 
@@ -87,13 +81,7 @@ class FreeImpactBall(Ball):
     def at_speed(self, speed: ArrayLike) -> Any:
         return self._with(law_of_impact(self.law_type, self.restitution, self.duration, speed))
 
-    @property
-    def place(self) -> Setting:
-        """How the table moves."""
-        return self.setting
-
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
-        require_paper(self.setting, "the speed at an orbit, at which {duration} is that of the law")
         given = self.law_type, self.restitution, self.duration
         return self._with(orbit_of_law(*given, n, amplitude, Side(side)).law)
 
@@ -101,12 +89,11 @@ class FreeImpactBall(Ball):
         return self.at_speed(rigid_speed(n, self.restitution))
 
     def _with(self, law: ContactLaw) -> Ball:
-        model = ContactModel(law, self.setting).labelled(self.parameters)
+        model = ContactModel(law).labelled(self.parameters)
         return corrected(model) if self.is_corrected else model
 
     def corrected(self) -> FreeImpactBall:
         """The ball of the corrected restitution model of this contact."""
-        require_paper(self.setting, "the corrected restitution model")
         return replace(self, is_corrected=True)
 
     def row(self, grid: Grid) -> FreeImpactBall:
@@ -126,8 +113,6 @@ def contact_law(
     restitution: float | None = None,
     duration: PositiveAxis | None = None,
     release: ReleaseName | Literal["approach"] | None = None,
-    table: Waveform | None = None,
-    flight: Suspension | None = None,
     **parameters: Axis,
 ) -> Ball:
     """A ball on a contact of any law by its name.
@@ -152,11 +137,6 @@ def contact_law(
     release : str, optional
         Where a contact of the linear law ends, "displacement" or "force", or "approach" if its
         damper acts on approach only; other laws determine it.
-    table : Waveform, optional
-        The shape of a table with several harmonics, in place of the sine.
-    flight : Drag or Spring, optional
-        Only ``Drag(0.0)``, the free flight: others are known for :func:`rigid` and
-        :func:`spring_damper`, and therefore for the linear law with ζ < 1.
     **parameters : float or array
         The parameters of the law.
 
@@ -179,17 +159,16 @@ release='displacement'))
     >>> ball.at_speed(3.0)
     ContactModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
     """
-    setting = setting_of(table, flight)
     if isinstance(law, ContactLaw):
         given = {"speed": speed, "restitution": restitution, "duration": duration}
         _refuse_beside(law, given | {"release": release} | parameters)
-        model = ContactModel(law, setting)
+        model = ContactModel(law)
         return model.labelled({"law": law.name, **model.parameters})
     kind = law_named(law if isinstance(law, str) else shortened(law))
     if parameters:
         _refuse_free_impact(kind, parameters, restitution, duration, speed)
         found, labels = _law_of_parameters(kind, parameters, release)
-        return ContactModel(found, setting).labelled(labels | numbers_of_flight(flight))
+        return ContactModel(found).labelled(labels)
     if restitution is None or duration is None:
         raise ParameterError(
             f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"
@@ -202,7 +181,6 @@ release='displacement'))
         law_type=kind,
         restitution=checked("restitution", restitution, RESTITUTION),
         duration=checked("duration", duration, POSITIVE),
-        setting=setting,
     )
     # An r that no contact of this law has is refused here.
     reference(kind, ball.restitution)

@@ -34,7 +34,6 @@ _WORDS = {
     Kind.LOCKED: "on a locked motion",
     Kind.PERMANENT_CONTACT: "at rest on the table",
     Kind.CHAOTIC: "in chaotic motion",
-    Kind.ALOFT: "in a motion without impacts",
     Kind.UNDECIDED: "in no motion that is recognized",
 }
 

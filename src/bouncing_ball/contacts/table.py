@@ -76,9 +76,6 @@ class TableMotion:
 class Table:
     """A vibrating table: one parameter for its frequency, one for its amplitude, and gravity.
 
-    Its motion is a sine with SI units. The shape of another motion, without units, is a
-    :class:`~bouncing_ball.models.waveform.Waveform`, the argument ``table`` of the balls.
-
     Parameters
     ----------
     frequency

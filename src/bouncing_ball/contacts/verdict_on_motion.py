@@ -18,7 +18,6 @@ _DOES: Mapping[str, str] = {
     Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "comes to rest on the table",
     Kind.CHAOTIC: "ends in chaotic motion",
-    Kind.ALOFT: "does not touch the table again",
     Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",
 }
 # The same for a ball that is laid on the table.

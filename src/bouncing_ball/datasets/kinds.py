@@ -18,8 +18,6 @@ class Kind(StrEnum):
     oscillations. The period is 0 if the ball sticks again and again, but after a number of impacts
     that rounding errors decide."""
     PERMANENT_CONTACT = "permanent contact"
-    ALOFT = "aloft"
-    """A mass on a spring swings with the table and never reaches its stop again."""
     CHAOTIC = "chaotic"
     """The motion is not known to repeat as long as it was followed, and neighbouring motions
     separate from it at an exponential rate. If it is followed for longer, it may turn out to be a

@@ -27,7 +27,6 @@ _HUES = {
     Kind.PERMANENT_CONTACT: COLOURS[3],
     Kind.CHAOTIC: "#9a9a9a",
     Kind.UNDECIDED: "#d9b8d9",
-    Kind.ALOFT: "#000000",
 }
 # Basins are areas, coloured in order of their shares with light and dark colours in turn.
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")

@@ -42,8 +42,7 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     """A speed above which every impact slows the ball, (1 + r) max(Λ, 1)/(1 - r), 1 - r ≥ 0.05.
 
     An impact changes the absolute speed v of the ball to r v + (1 + r) Λ at most, which is less
-    than v above this value. For a table of several harmonics Λ stands for its greatest speed. r is
-    that of a free impact with the speed 2π.
+    than v above this value. r is that of a free impact with the speed 2π.
 
     Examples
     --------
@@ -52,7 +51,6 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     6.0
     """
     lam = np.asarray(amplitude, dtype=float)
-    lam = lam * model.dynamics(lam).setting.waveform.fastest
     r = np.asarray(model.signature(2 * np.pi).restitution)
     return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
 
@@ -85,8 +83,7 @@ def basins(
     phase = 2 * np.pi * middle - np.pi
     speed = (float(fastest(model, amplitude)) if fast is None else fast) * middle
     start_phase, start_speed = np.meshgrid(phase, speed)
-    waveform = model.dynamics(amplitude).setting.waveform
-    velocity = amplitude * waveform.velocity(start_phase) - start_speed
+    velocity = amplitude * np.cos(start_phase) - start_speed
     found = final_motions(model, amplitude, start_phase, velocity, impacts=impacts)
     kinds = list(Kind)
     kind_number = np.argmax(found.kind[..., np.newaxis] == np.array(kinds), axis=-1)

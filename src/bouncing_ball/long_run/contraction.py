@@ -47,7 +47,8 @@ def exponent_sum(
                 break
             _, passed = leg.fly()
             with np.errstate(divide="ignore"):
-                logarithm[going] += np.log(np.abs(leg.contraction()))
+                factor = leg.dynamics.contraction(leg.impact, leg.departure)
+                logarithm[going] += np.log(np.abs(factor))
             time[going] += passed
     with np.errstate(invalid="ignore", divide="ignore"):
         return 2 * np.pi * np.where(time > 0, logarithm / time, np.nan)

@@ -65,9 +65,6 @@ _BLOCK = 1 << 16
 # Number of bytes that are allocated once at the start.
 _KEPT = 1 << 24
 _BOUNCING = np.array(Status.BOUNCING)
-# The part of a period by which two times of the same lift-off may differ, far above rounding errors
-# and far below the distance of two lift-offs.
-_SAME_LIFT_OFF = 1e-6
 
 
 def final_motions(
@@ -155,7 +152,7 @@ def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Tracked, found: 
     if not done.any():
         return balls
     (going,) = (~done).nonzero()
-    store_ends(found, balls, impact, going, leg.dynamics.setting)
+    store_ends(found, balls, impact, going)
     (balls,) = leg.keep(going, balls)
     return balls
 
@@ -169,10 +166,7 @@ def _departing(leg: Leg, balls: Tracked, found: Motions) -> np.ndarray:
     if done.any():
         stays = departure.status == Status.PERMANENT_CONTACT
         store(found, balls, stays, kind=Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
-        aloft = departure.status == Status.ALOFT
-        store(found, balls, aloft, kind=Kind.ALOFT, periods=1, exponent_error=0.0)
-        lost = done & ~stays & ~aloft
-        store(found, balls, lost, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
+        store(found, balls, done & ~stays, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
     sticks = ~done & departure.sticks
     if sticks.any():
         lift_off = balls.time + departure.duration
@@ -191,11 +185,7 @@ def _sticking_again(
     time of the present lift-off is ``time``.
     """
     sticking = balls.sticking
-    # A table of several harmonics may have several lift-offs in one period. Only the same one
-    # repeats the motion; if they alternate, the return to a mark shows it.
-    turns = (time - sticking.time) / (2 * np.pi)
-    same = np.abs(turns - np.rint(turns)) < _SAME_LIFT_OFF
-    again = sticks & (sticking.impact >= 0) & same
+    again = sticks & (sticking.impact >= 0)
     resolved = again & ~balls.stretch.lost()
     store(
         found,
@@ -245,7 +235,8 @@ def _advance(balls: Tracked, leg: Leg) -> None:
         first = sticking.store(forgot, leg.impact, balls.seen)
     balls.seen[:] += 1
     balls.time[:] += leg.passed
-    stretch.add(grown, leg.contraction(), forgot, balls.time, balls.seen)
+    contraction = leg.dynamics.contraction(leg.impact, leg.departure)
+    stretch.add(grown, contraction, forgot, balls.time, balls.seen)
     if forgot.size:
         stretch.restart(first, balls.time)
 

@@ -9,7 +9,7 @@ from bouncing_ball.long_run.lyapunov import Stretching
 from bouncing_ball.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.long_run.recurrence import Mark
 from bouncing_ball.models.contacts_and_flights import Impact
-from bouncing_ball.models.setting import Setting
+from bouncing_ball.models.flight import table
 
 # The reasons as an array, so that a ball can hold the index of one.
 REASONS = np.array(list(Reason))
@@ -115,9 +115,7 @@ def store(found: Motions, balls: Tracked, which: np.ndarray, **values: ArrayLike
     )
 
 
-def store_ends(
-    found: Motions, balls: Tracked, impact: Impact, going: np.ndarray, setting: Setting
-) -> None:
+def store_ends(found: Motions, balls: Tracked, impact: Impact, going: np.ndarray) -> None:
     """Store the last impacts of all balls except those that continue."""
     last = np.delete(np.arange(balls.lane.size), going)
     lane = balls.lane[last]
@@ -128,12 +126,10 @@ def store_ends(
     phase = np.where(unresolved, balls.sticking.phase[last], phase)
     relative = np.where(unresolved, balls.sticking.velocity[last], relative)
     phase[found.kind[lane] == Kind.PERMANENT_CONTACT] = np.nan
-    velocity = absolute_velocity(phase, relative, balls.amplitude[last], setting)
+    velocity = absolute_velocity(phase, relative, balls.amplitude[last])
     found.fill(lane, end_phase=phase, end_velocity=velocity)
 
 
-def absolute_velocity(
-    phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray, setting: Setting
-) -> np.ndarray:
+def absolute_velocity(phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """z′ of balls with δ′ at phases of the table; NaN where the phase is NaN."""
-    return relative + setting.level(phase, amplitude)[0]
+    return relative + table(phase, amplitude)[0]

@@ -17,7 +17,6 @@ from bouncing_ball.long_run.basins import fastest
 from bouncing_ball.long_run.contraction import exponent_sum
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Motions
-from bouncing_ball.models.waveform import Waveform
 from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
@@ -126,8 +125,7 @@ def diagram(
     lam = amplitude[:, np.newaxis]
     phase, speed = _first_starts(model, lam, starts)
     found = _ends(model, lam, phase, speed, impacts)
-    waveform = model.dynamics(amplitude).setting.waveform
-    phase, speed = _starts_from_neighbours(found, amplitude, waveform)
+    phase, speed = _starts_from_neighbours(found, amplitude)
     swept = _ends(model, lam, phase, speed, impacts)
     found = _beside(found, swept)
     impact_phase, impact_speed = _impacts(model, lam, found, samples)
@@ -155,16 +153,14 @@ def _first_starts(model: Any, lam: np.ndarray, starts: int) -> tuple[np.ndarray,
     return phase, speed
 
 
-def _starts_from_neighbours(
-    found: Motions, amplitude: np.ndarray, waveform: Waveform
-) -> tuple[np.ndarray, np.ndarray]:
+def _starts_from_neighbours(found: Motions, amplitude: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Phases and speeds of the ends of the first balls at two lower and at two higher Λ."""
     steps = np.multiply.outer([-1, 1], _FURTHER).ravel()
     place = np.arange(amplitude.size)[:, np.newaxis] + steps
     place = np.clip(place, 0, amplitude.size - 1)
     phase = found.end_phase[place, 0]
     velocity = found.end_velocity[place, 0]
-    return phase, amplitude[place] * waveform.velocity(phase) - velocity
+    return phase, amplitude[place] * np.cos(phase) - velocity
 
 
 def _beside(found: Motions, more: Motions) -> Motions:
@@ -186,7 +182,7 @@ def _ends(
     """
     phase = np.nan_to_num(phase)
     speed = np.where(speed > 0, speed, 1.0)
-    velocity = amplitude * model.dynamics(amplitude).setting.waveform.velocity(phase) - speed
+    velocity = amplitude * np.cos(phase) - speed
     return final_motions(model, amplitude, phase, velocity, impacts=impacts)
 
 
@@ -194,8 +190,7 @@ def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) ->
     """Phase and speed of the impacts of motions, shape (2, ..., samples); NaN beyond a period."""
     seen = np.full((2, samples, *found.shape), np.nan)
     lam = np.broadcast_to(amplitude, found.shape)
-    waveform = model.dynamics(amplitude).setting.waveform
-    falls = found.end_velocity < lam * waveform.velocity(found.end_phase)
+    falls = found.end_velocity < lam * np.cos(found.end_phase)
     if falls.any():
         sequence = model.simulate(
             lam[falls], found.end_phase[falls], found.end_velocity[falls], samples

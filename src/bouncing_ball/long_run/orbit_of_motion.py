@@ -17,6 +17,7 @@ from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.long_run.over_time import first_impacts
 from bouncing_ball.models.ball import Ball
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -120,8 +121,7 @@ def of_impact(balls: Balls, phase: float, velocity: float, impacts: int) -> Orbi
         If there is no such orbit.
     """
     dynamics = balls.dynamics()
-    level = dynamics.setting.level(np.asarray(phase), dynamics.amplitude)
-    relative = velocity - float(level[0])
+    relative = velocity - float(table(np.asarray(phase), dynamics.amplitude)[0])
     row, (start, before), _ = dynamics.in_a_row([phase], [relative])
     theta, closing = row.section(row.start(start, before))
     problem, guess = simulated(balls, float(theta[0]), float(closing[0]), impacts, (LAMBDA,))

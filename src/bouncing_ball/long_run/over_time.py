@@ -32,10 +32,9 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ModelError, require, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
-from bouncing_ball.models.flight import land
+from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.sequence import ImpactSequence, Status
-from bouncing_ball.models.setting import PAPER, Setting
 
 # A single simulation of the command line needs no labels, and importing xarray takes longer: it is
 # imported where results are labelled.
@@ -60,7 +59,7 @@ class FirstImpacts(NamedTuple):
 
     def model(self, ball: Ball, grid: Grid) -> Any:
         """The model of each ball, whose law may depend on the speed of its first impact."""
-        speed = self.amplitude * place_of(ball).waveform.velocity(self.phase) - self.velocity
+        speed = self.amplitude * np.cos(self.phase) - self.velocity
         return ball.row(grid).at_speed(speed if grid.shape else float(speed[0]))
 
 
@@ -285,34 +284,19 @@ def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:
     start = grid.row("height")
     lam = grid.row("amplitude")
     phi = grid.row("phase")
-    place = place_of(ball)
-    rate, level = place.level(phi, lam)
+    rate, level = table(phi, lam)
     require(start >= level, start, "height", "at or above the table, Λ sin φ")
-    flight = place.flight(start - level, -rate, phi, (rate, level), lam)
-    landing = land(flight, flight.earliest_landing())
-    falling = landing.time
-    before = -falling if place.is_paper else place.level(phi + falling, lam)[0] - landing.rate
-    first = FirstImpacts(lam, phi + falling, before)
+    flight = Flight(start - level, -rate, rate, level, lam)
+    falling = land(flight, flight.earliest_landing()).time
+    first = FirstImpacts(lam, phi + falling, -falling)
     since = time - falling[:, np.newaxis]
     found = _at_times(first.model(ball, grid), first, since)
     above = since < 0
-    w_rate, w = place.level(first.phase[:, np.newaxis] + since, lam[:, np.newaxis])
-    if place.is_paper:
-        fallen = start[:, np.newaxis] - time * time / 2
-        speed = -time
-    else:
-        path = [flight.gap(np.full(start.shape, each)) for each in time]
-        fallen = np.array([each[0] for each in path]).T + w
-        speed = np.array([each[1] for each in path]).T + w_rate
+    fallen = start[:, np.newaxis] - time * time / 2
     found["ball"] = np.where(above, fallen, found["ball"])
-    found["ball_velocity"] = np.where(above, speed, found["ball_velocity"])
-    found["table"] = w
+    found["ball_velocity"] = np.where(above, -time, found["ball_velocity"])
+    _, found["table"] = table(first.phase[:, np.newaxis] + since, lam[:, np.newaxis])
     return found
-
-
-def place_of(ball: Ball) -> Setting:
-    """The setting of a ball; that of the paper for a ball whose model is not known yet."""
-    return getattr(ball, "place", PAPER)
 
 
 def _at_times(model: Any, starts: FirstImpacts, time: np.ndarray) -> dict[str, np.ndarray]:

@@ -2,18 +2,15 @@
 
 The modules in reading order:
 
-``flight``                    free flight and the landing that ends it
-``waveform``, ``suspension``  tables of several harmonics, drag and springs
-``linear_flight``, ``setting``     flights over them, and where a ball bounces
+``flight``                    the table, free flight and the landing that ends it
 ``contact``, ``deviations``   the interface of a contact, and how small deviations of a ball grow
 ``contacts_and_flights``      what a model says of them, for simulations and for periodic orbits
 ``sequence``, ``dynamics``    simulated impacts, and the simulation by contacts and flights
-``restitution``, ``sticking``      impacts with a restitution coefficient, and rest on the table
+``restitution``, ``sticking``      impacts with a restitution coefficient, rest on the table
 ``damping``, ``oscillator``, ``linear_flow``   the formulas of a linear contact and of its motion
 ``resumption``                flight below the table's level, after a contact
 ``laws``                      contact laws, of which the linear one is a case
 ``linear_contact``            linear contacts to their release
-``held_contact``              the same on any table, and beside a drag or a further spring
 ``permanent_contact``, ``approach_threshold``   the Λ up to which a ball stays on the table
 ``instant``                   a contact seen from outside, as an impact at an instant
 ``ball``, ``model``           what all balls share, and the interface of every model

@@ -6,7 +6,7 @@ array is left out: the text names the variable of the dataset beside it that has
 """
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -23,24 +23,14 @@ from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import GeneralSetting, PaperSetting
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.suspension import Drag, Spring
-from bouncing_ball.models.waveform import Sine, Waveform
 
 _MODELS = (RestitutionModel, ContactModel, CorrectedModel, RestitutionLawModel)
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
 _OTHERS = (ElastoBacklash, LankaraniNikravesh, Flores)
-_PARTS = (PaperSetting, GeneralSetting, Drag, Spring, Waveform, Sine, SpringDamper, Signature)
+_PARTS = (SpringDamper, Signature)
 _OF_USERS = (ForceLaw, RestitutionLaw, Model)
-# What makes the objects of older files by the names that they have there.
-_FORMER: dict[str, Callable[..., Any]] = {
-    "Setting": PaperSetting,
-    "OtherSetting": GeneralSetting,
-    "LawModel": ContactModel,
-    "SpringDamperModel": lambda contact, setting: ContactModel(contact, setting),
-}
-_KNOWN = _FORMER | {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
+_KNOWN = {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
 # The keys of the type of an object, and of the name of the variable with an array.
 _TYPE = "type"
 _ARRAY = "array"
@@ -53,8 +43,7 @@ def text_of(model: Model) -> tuple[str, dict[str, np.ndarray]]:
     --------
     >>> text, arrays = text_of(RestitutionModel(np.array([0.5, 0.6])))
     >>> text, list(arrays)
-    ('{"type": "RestitutionModel", "restitution": {"array": "restitution"}, "setting": \
-{"type": "PaperSetting"}}', ['restitution'])
+    ('{"type": "RestitutionModel", "restitution": {"array": "restitution"}}', ['restitution'])
     """
     arrays: dict[str, np.ndarray] = {}
     return json.dumps(_written(model, "", arrays), ensure_ascii=False), arrays
@@ -96,11 +85,6 @@ def _subclasses(base: type) -> Iterator[type]:
 
 def _written(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:
     kind = {_TYPE: type(value).__name__}
-    if isinstance(value, Sine):
-        return kind
-    if isinstance(value, Waveform):
-        c = value.coefficients
-        return kind | {"sine": c.real.tolist(), "cosine": c.imag.tolist()}
     if is_dataclass(value):
         names = [field.name for field in fields(value)]
         return kind | {part: _written(getattr(value, part), part, arrays) for part in names}
@@ -112,7 +96,7 @@ def _written(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:
     return np.asarray(value).item()
 
 
-def _read(value: Any, arrays: Mapping[str, Any], known: Mapping[str, Callable[..., Any]]) -> Any:
+def _read(value: Any, arrays: Mapping[str, Any], known: Mapping[str, type]) -> Any:
     if not isinstance(value, dict):
         return value
     if _ARRAY in value:

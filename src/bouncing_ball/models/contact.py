@@ -8,15 +8,13 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from bouncing_ball.models.setting import PAPER, Setting
-
 
 class ContactSpan(NamedTuple):
     """Contacts from their start to their release, arrays with one entry per contact.
 
     ``displacement`` δ, ``velocity`` δ′ and ``phase`` φ are those at the start, ``amplitude`` is Λ,
     ``duration`` is D, and ``release_displacement`` and ``release_velocity`` are δ and δ′ at the
-    release. ``setting`` says how the table moves.
+    release.
     """
 
     displacement: np.ndarray
@@ -26,7 +24,6 @@ class ContactSpan(NamedTuple):
     duration: np.ndarray
     release_displacement: np.ndarray
     release_velocity: np.ndarray
-    setting: Setting = PAPER
 
 
 class FiniteContact(Protocol):

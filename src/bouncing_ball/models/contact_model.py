@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ParameterError, Range, shortened
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.analytic import require_analytic
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.model import Model
-from bouncing_ball.models.setting import PAPER, Setting, require_setting
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,14 +32,12 @@ class ContactModel(Model):
     law : ContactLaw
         One law, or an array of laws: for the paper's contact ϖ, ζ and the release rule of a
         :class:`.SpringDamper`.
-    setting : Setting, optional
-        The motion of the table and what moves the ball in flight, by default those of the paper.
 
     Raises
     ------
     ModelError
-        If the law is none, or its contacts are not known in the setting, or if the derivatives of
-        its force by imaginary steps are not those by differences.
+        If the law is none, or if the derivatives of its force by imaginary steps are not those by
+        differences.
 
     Examples
     --------
@@ -56,13 +55,12 @@ class ContactModel(Model):
     """
 
     law: ContactLaw
-    setting: Setting = PAPER
 
     def __post_init__(self) -> None:
         if not isinstance(self.law, ContactLaw):
             raise ParameterError("law = {} is not a law of a contact", shortened(self.law))
-        require_setting(self.setting)
-        self.law.check_in(self.place)
+        if not self.law.is_linear_and_underdamped:
+            require_analytic(self.law.started(1.0))
 
     @property
     def name(self) -> str:
@@ -75,15 +73,6 @@ class ContactModel(Model):
         found = super().parameters
         return found if self.law.is_linear_and_underdamped else {"law": self.law.name, **found}
 
-    def numbers(self) -> dict[str, Any]:
-        """The numerical parameters, all of which can vary: a drag only if contacts are known with
-        it.
-        """
-        found = super().numbers()
-        if not self.law.is_linear_and_underdamped:
-            found.pop("drag", None)
-        return found
-
     def range_of(self, name: str) -> Range:
         """As for every model, but that an overdamped contact stays overdamped: the unknowns of its
         orbits are others than those below ζ = 1.
@@ -94,7 +83,7 @@ class ContactModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""
-        return self.law.dynamics(amplitude, self.place)
+        return self.law.dynamics(amplitude)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature of free impacts with speeds v > 0.
@@ -113,6 +102,16 @@ class ContactModel(Model):
         """Λ up to which a steady contact never releases the ball, of the model's shape.
 
         It is Λ_SD(ϖ) or Λ_F(ϖ) for the paper's contact, depending on its release.
+
+        Raises
+        ------
+        ModelError
+            If a law has no closed form of it, and no such contact was found.
         """
-        found: Any = self.law.permanent_contact_in(self.place)
+        found: Any = self.law.permanent_contact
+        if found is None:
+            laws = self.law.flat(self.law.shape)
+            found = np.reshape(
+                [permanent_contact(laws.take(k)) for k in range(laws.size)], laws.shape
+            )
         return np.broadcast_to(found, self.shape).astype(float)[()]

@@ -14,16 +14,14 @@ import numpy as np
 
 from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.flight import land
-from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero, first_zero
+from bouncing_ball.numerics.first_zero import Zero
 
 
 class Level(NamedTuple):
-    """The table's velocity w′ and height w, in the paper Λ cos φ and Λ sin φ."""
+    """The table's velocity w′ = Λ cos φ and height w = Λ sin φ."""
 
     x: np.ndarray
     y: np.ndarray
@@ -69,7 +67,7 @@ class Departure(NamedTuple):
     the :class:`~bouncing_ball.models.sequence.Status`.
 
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
-    flight before which the ball has not landed; it is used if it exceeds
+    flight before which a ball of the corrected model has not landed; it is used if it exceeds
     :meth:`.Flight.earliest_landing`.
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
     ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
@@ -79,25 +77,13 @@ class Departure(NamedTuple):
 
     phase: np.ndarray
     duration: np.ndarray
-    flight: Any
+    flight: Flight
     status: np.ndarray
     settling: np.ndarray | float = 0.0
     aloft: np.ndarray | float = 0.0
     by: Any = None
     sticks: Any = None
     slopes: DurationSlopes | None = None
-
-    def with_landings(self, which: np.ndarray, start: np.ndarray) -> "Departure":
-        """The departures with the times of the landings of the balls with these indices, and with
-        those of their flights marked that never end; before ``start`` the balls have not landed.
-        """
-        found = first_zero(self.flight.take(which), start)
-        status = self.status.copy()
-        status[which[found.ended]] = Status.ALOFT
-        status[which[found.undecided]] = Status.UNDECIDED
-        aloft = np.zeros(status.shape)
-        aloft[which] = found.time
-        return self._replace(status=status, aloft=aloft)
 
 
 @dataclass(frozen=True, repr=False)
@@ -121,7 +107,6 @@ class ContactsAndFlights(Batch, ABC):
 
     law: Any
     amplitude: np.ndarray
-    setting: Setting = PAPER
 
     forgets: ClassVar[bool] = False
     """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
@@ -143,11 +128,11 @@ class ContactsAndFlights(Batch, ABC):
 
     def with_table(self, impact: Impact) -> Impact:
         """The impacts with the state of the table, which is used several times."""
-        return impact._replace(level=Level(*self.setting.level(impact.phase, self.amplitude)))
+        return impact._replace(level=Level(*table(impact.phase, self.amplitude)))
 
     def table_at(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """w′ and w at impacts, in the paper Λ cos φ and Λ sin φ."""
-        return impact.level or self.setting.level(impact.phase, self.amplitude)
+        """w′ = Λ cos φ and w = Λ sin φ at impacts."""
+        return impact.level or table(impact.phase, self.amplitude)
 
     @abstractmethod
     def depart(
@@ -182,10 +167,8 @@ class ContactsAndFlights(Batch, ABC):
         ModelError
             If a flight is too long for floating-point numbers.
         """
-        start = departure.flight.earliest_landing()
-        if departure.flight.may_miss:
-            start = np.maximum(start, departure.aloft)
-        return self.arrive(departure, land(departure.flight, start))
+        flight = departure.flight
+        return self.arrive(departure, land(flight, flight.earliest_landing()))
 
     def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
         """The next impact after a landing, and the time from the last impact to it."""
@@ -204,10 +187,11 @@ class ContactsAndFlights(Batch, ABC):
 
         The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
         """
+        start = departure.flight.x, departure.flight.y
         end = self.table_at(after)
         time = passed - departure.duration
         both = Deviation.pair(*released)
-        return Jacobian.of_columns(departure.flight.carried(both, end, time, after.velocity, lag))
+        return Jacobian.of_columns(both.flown(start, end, time, after.velocity, lag))
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The state of an impact on the Poincaré section: a phase and a relative velocity."""
@@ -234,8 +218,7 @@ class ContactsAndFlights(Batch, ABC):
 
     @abstractmethod
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """The factor by which the contacts multiply areas of the phase plane. Free flights keep
-        them, and others multiply them by :meth:`.Setting.contraction`.
+        """The factor by which the contacts multiply areas of the phase plane, which flights keep.
 
         The determinant of the monodromy of a periodic orbit is the product of these factors.
         Without dissipation it is exactly 1, whereas the rounding errors of the entries of the

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.contacts_and_flights import ContactsAndFlights, Departure, Impact
 from bouncing_ball.models.deviations import Jacobian
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import RECORDED, Cycle, ImpactSequence, Status
-from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import BLOCK, as_numbers, blocks, pick
 
 # Rounding may give a ball at rest on the table a small upward velocity.
@@ -34,8 +34,8 @@ class Dynamics(ContactsAndFlights):
     block: ClassVar[int] = BLOCK
 
     @classmethod
-    def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
-        """The dynamics of a law at Λ, in the setting of the paper or in another one.
+    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+        """The dynamics of a law at Λ.
 
         Raises
         ------
@@ -46,7 +46,7 @@ class Dynamics(ContactsAndFlights):
         allowed = "finite and ≥ 0"
         lam = as_numbers(amplitude, name, allowed)
         require((lam >= 0) & np.isfinite(lam), lam, name, allowed)
-        return cls(law, lam, setting)
+        return cls(law, lam)
 
     def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
         """The dynamics and states of balls, flattened, and the shape to which they broadcast."""
@@ -94,10 +94,9 @@ class Dynamics(ContactsAndFlights):
         flat, (start, before), shape = self.in_a_row(phase, velocity)
         if not np.all(np.isfinite(start) & np.isfinite(before)):
             raise ModelError("the phase and the velocity of the impact must be finite")
-        of_table = flat.setting.level(start, flat.amplitude)[0]
+        of_table = table(start, flat.amplitude)[0]
         relative = before - of_table
-        fastest = flat.amplitude * flat.setting.waveform.fastest
-        rises = ~(relative <= _ROUNDING * (np.abs(before) + fastest))
+        rises = ~(relative <= _ROUNDING * (np.abs(before) + flat.amplitude))
         if np.any(rises):
             k = int(np.argmax(rises))
             raise ModelError(
@@ -138,7 +137,6 @@ class Dynamics(ContactsAndFlights):
         return ImpactSequence(
             amplitude=np.broadcast_to(self.amplitude, shape),
             contact=self.contact,
-            setting=self.setting,
             status=status.reshape(shape),
             **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
         )
@@ -235,12 +233,6 @@ class Leg:
         if self.after is None:
             self.after, self.passed = self.dynamics.fly(self.departure)
         return self.after, self.passed
-
-    def contraction(self) -> np.ndarray:
-        """The factor by which this leg, contact and flight, multiplies areas of the phase plane."""
-        _, passed = self.fly()
-        of_contact = self.dynamics.contraction(self.impact, self.departure)
-        return of_contact * self.dynamics.setting.contraction(passed - self.departure.duration)
 
     def jacobian(self) -> Jacobian:
         """The derivative of the map over this leg, if its departures are differentiated."""

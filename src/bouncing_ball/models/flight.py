@@ -49,14 +49,12 @@ def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray,
 
 class Lagged(NamedTuple):
     """y = δ + κ δ′ and its derivatives up to the third order, bounds of those of the orders 2 to 4,
-    and δ; of a :class:`.LinearFlight` also p + κ p′ with its rate of change.
+    and δ.
     """
 
     values: tuple[np.ndarray, ...]
     bounds: tuple[np.ndarray, ...]
     gap: np.ndarray
-    free: Any = None
-    free_rate: Any = None
 
     def derivatives(self, ended: np.ndarray) -> Derivatives:
         """y as a search for its zero takes it, which may stop for the functions marked."""
@@ -134,33 +132,10 @@ class Flight(Motion):
             fourth_bound=lam,
         )
 
-    @property
-    def may_miss(self) -> bool:
-        """Whether a flight may never end; a ball that falls freely always lands."""
-        return False
-
-    def carried(
-        self, by: Any, end: tuple, time: np.ndarray, velocity: np.ndarray, lag: np.ndarray | float
-    ) -> Any:
-        """The deviation at the event that ends the flight, of a deviation at its start: see
-        :meth:`.Deviation.flown`.
-        """
-        return by.flown((self.x, self.y), end, time, velocity, lag)
-
     def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
         """The end of the time in which z > Λ, or the time itself if it is not within this time."""
         begins, ends = self.above
         return np.where((time >= begins) & (time < ends), ends, time)
-
-    @property
-    def strongest(self) -> Any:
-        """1 + Λ, a bound of the acceleration δ″."""
-        return 1 + self.amplitude
-
-    @property
-    def largest_change(self) -> Any:
-        """Λ, a bound of the rate of change of δ″."""
-        return self.amplitude
 
     def lagged(self, time: np.ndarray, lag: Any) -> Lagged:
         """y = δ + κ δ′ after a time of flight, with the bounds of its derivatives."""
@@ -256,12 +231,9 @@ class Flight(Motion):
 
 
 class Rise(Motion):
-    """The motion δ of balls below the table's level; the search stops if they fall ever faster.
+    """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
 
-    ``flight`` is a :class:`Flight` or a :class:`.LinearFlight`.
-    """
-
-    def __init__(self, flight: Any):
+    def __init__(self, flight: Flight):
         self.flight = flight
 
     def __call__(self, time: np.ndarray) -> Derivatives:
@@ -271,12 +243,9 @@ class Rise(Motion):
 
 
 class Unloaded(Motion):
-    """The motion -(δ + κ δ′) in flight; the search ends where δ ≥ 0.
+    """The motion -(δ + κ δ′) in flight; the search ends where δ ≥ 0."""
 
-    ``flight`` is a :class:`Flight` or a :class:`.LinearFlight`.
-    """
-
-    def __init__(self, flight: Any, lag: Any):
+    def __init__(self, flight: Flight, lag: Any):
         self.flight = flight
         self.lag = lag
 
@@ -329,7 +298,7 @@ def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     return time, rising
 
 
-def land(flight: Any, start: np.ndarray) -> Zero:
+def land(flight: Flight, start: np.ndarray) -> Zero:
     """The first landing; ``start`` is a time before which there is certainly none.
 
     The ``rate`` of the result is minus the relative impact velocity.
@@ -350,6 +319,6 @@ def land(flight: Any, start: np.ndarray) -> Zero:
     ([6.0], [3.0])
     """
     landing = first_zero(flight, flight.skip(start))
-    if landing.undecided.any() or landing.ended.any():
+    if landing.undecided.any():
         raise ModelError("a landing was not found: the flight is out of floating-point range")
     return landing

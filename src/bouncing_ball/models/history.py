@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.contact import ContactSpan
+from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.sequence import ImpactSequence, Status
 
 
@@ -59,16 +60,14 @@ def motion_at(sequence: ImpactSequence, time: ArrayLike) -> History:
     # The end of the last flight is not known.
     flying = (since > duration) & ((row < last) | (sequence.status != Status.BOUNCING))
     left = sequence.phase[row] + np.where(flying, duration, 0.0)
-    setting = sequence.setting
-    level = setting.level(left, lam)
     displacement = sequence.release_displacement[row]
     velocity = sequence.relative_bounce_velocity[row]
-    flight = setting.flight(displacement, velocity, left, level, lam)
+    flight = Flight(displacement, velocity, *table(left, lam), lam)
     gap, speed, _, _ = flight.gap(np.where(flying, since - duration, 0.0))
     gap = np.where(flying, gap, np.nan)
     speed = np.where(flying, speed, np.nan)
     gap[touching], speed[touching] = _in_contact(sequence, row[touching], since[touching])
-    w_rate, w = setting.level(sequence.phase[row] + since, lam)
+    w_rate, w = table(sequence.phase[row] + since, lam)
     return History(
         time=t, height=gap + w, velocity=speed + w_rate, table=w, gap=gap, touching=touching
     )
@@ -88,6 +87,5 @@ def _in_contact(
         duration=sequence.contact_duration[row],
         release_displacement=sequence.release_displacement[row],
         release_velocity=sequence.relative_bounce_velocity[row],
-        setting=sequence.setting,
     )
     return sequence.contact.during(span, since)

@@ -21,13 +21,13 @@ bounds of the higher derivatives follow from the equation of motion.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from bouncing_ball.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian, Released
-from bouncing_ball.models.flight import table
+from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_flow import flow as linear_flow
 from bouncing_ball.models.oscillator import steady_response, table_response
@@ -41,10 +41,10 @@ from bouncing_ball.numerics.elementary import (
 )
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
 
-PATIENCE = 12
-"""The number of steps after which the expensive bound of ``skip`` is used."""
-ROUNDING = np.array(8 * np.finfo(float).eps)
-"""A bound of the rounding errors of the three terms of the inequality above."""
+# The number of steps after which the expensive bound of ``skip`` is used.
+_PATIENCE = 12
+# A bound of the rounding errors of the three terms of the inequality above.
+_ROUNDING = np.array(8 * np.finfo(float).eps)
 # Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
 _ZERO = np.array(0.0)
 _ONE = np.array(1.0)
@@ -165,7 +165,7 @@ class ClosedFormMotion(ContactMotion):
             second_bound=bound + self.steady,
             third_bound=self.omega * bound + self.steady,
             fourth_bound=self.stiffness * bound + self.steady,
-            ended=envelope + (self.steady - level) <= ROUNDING * level,
+            ended=envelope + (self.steady - level) <= _ROUNDING * level,
         )
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
@@ -174,7 +174,7 @@ class ClosedFormMotion(ContactMotion):
         The bound is negative until the steady part rises through 1/ϖ² - R e^{-as}. Without it
         a stiff, weakly damped contact would need steps over about ϖ oscillations.
         """
-        if steps < PATIENCE:
+        if steps < _PATIENCE:
             return time
         level = 1 / self.stiffness - self.envelope * exponential(-self.decay * time)
         ratio = level / np.maximum(self.steady, 1e-300)
@@ -242,11 +242,6 @@ class LinearContactDynamics(ResumingDynamics):
 
     continues: ClassVar[bool] = True
 
-    @property
-    def oscillator(self) -> Any:
-        """What moves the balls in contact: its ``loss`` and its ``damped_frequency``."""
-        return self.law
-
     def depart(
         self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
     ) -> Departure:
@@ -285,22 +280,22 @@ class LinearContactDynamics(ResumingDynamics):
         return lambda time: motion(time).value
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """exp(-LD), because areas contract in contact at the rate L, which is 2ζϖ in the paper."""
-        return np.exp(-self.oscillator.loss * departure.duration)
+        """exp(-2ζϖD), because areas contract in contact at the rate 2ζϖ."""
+        return np.exp(-self.law.loss * departure.duration)
 
-    def _motion(self, impact: Impact) -> Any:
-        """y = δ + κ δ′ in contact, as a motion with ``earliest_release`` and ``release``."""
+    def _motion(self, impact: Impact) -> ClosedFormMotion | ResonantMotion:
+        """y = δ + κ δ′ in contact."""
         x, y = self.table_at(impact)
         kind = ClosedFormMotion if self.law.has_closed_form else ResonantMotion
         return kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
 
-    def _ended(self, impact: Impact, motion: Any, end: Zero) -> Departure:
+    def _ended(self, impact: Impact, motion: ContactMotion, end: Zero) -> Departure:
         """The departures of contacts that end at these zeros of their motion."""
         status = np.full(end.time.shape, int(Status.BOUNCING))
         duration = end.time
         phase = impact.phase + end.time
-        level = self.setting.level(phase, self.amplitude)
-        velocity = motion.release(end, level[1])
+        x, y = table(phase, self.amplitude)
+        velocity = motion.release(end, y)
         forever = end.ended | end.undecided
         if forever.any():
             # Where the search ended without a release, the contact is permanent.
@@ -309,10 +304,10 @@ class LinearContactDynamics(ResumingDynamics):
             duration = np.where(forever, np.inf, duration)
             velocity = np.where(forever, np.nan, velocity)
         displacement = -self.law.lag * velocity
-        flight = self.setting.flight(displacement, velocity, phase, level, self.amplitude)
+        flight = Flight(displacement, velocity, x, y, self.amplitude)
         # An undamped contact that starts at zero speed under a constant load lasts exactly one
         # oscillation. A longer contact therefore ends because the load changes.
-        sticks = duration * self.oscillator.damped_frequency > _TURN
+        sticks = duration * self.law.damped_frequency > _TURN
         return Departure(phase, duration, flight, status, sticks=sticks)
 
     def jacobian(

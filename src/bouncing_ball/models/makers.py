@@ -9,7 +9,6 @@ arrays make several balls.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 from typing import Any
 
 from bouncing_ball.datasets.arguments import (
@@ -32,32 +31,20 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import require_paper, setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.suspension import Suspension
-from bouncing_ball.models.waveform import Waveform
 
 LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""
 
 
 @suggesting
-def rigid(
-    *,
-    restitution: RestitutionAxis,
-    table: Waveform | None = None,
-    flight: Suspension | None = None,
-) -> RestitutionModel:
+def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
     """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
     Parameters
     ----------
     restitution : float or array
         Restitution coefficient r in (0, 1].
-    table : Waveform, optional
-        The shape of a table with several harmonics, in place of the sine.
-    flight : Drag or Spring, optional
-        What moves the ball between its impacts, in place of gravity alone.
 
     Raises
     ------
@@ -68,37 +55,9 @@ def rigid(
     --------
     >>> rigid(restitution=0.85)
     RestitutionModel(restitution=0.85)
-
-    A ball that falls through air, and a mass on a spring that hits a stop:
-
-    >>> from bouncing_ball import Drag, Spring
-    >>> in_air = rigid(restitution=0.85, flight=Drag(0.1))
-    >>> oscillator = rigid(restitution=0.85, flight=Spring(0.5, 0.05, gap=1.0))
-    >>> dict(oscillator.parameters)["gap"]
-    1.0
     """
-    r = checked("restitution", restitution, RESTITUTION)
-    flat = flattened({"restitution": r})
-    setting = setting_of(table, flight)
-    given = {"restitution": r} | numbers_of_flight(flight)
-    return RestitutionModel(flat["restitution"], setting).labelled(given)
-
-
-def numbers_of_flight(flight: Suspension | None) -> dict[str, float]:
-    """The parameters of what moves the ball in flight, which must be single numbers.
-
-    Raises
-    ------
-    ParameterError
-        If one of them is an array.
-    """
-    if flight is None:
-        return {}
-    found = {field.name: getattr(flight, field.name) for field in fields(flight)}
-    for name, value in found.items():
-        if is_array(value):
-            raise ParameterError(f"{{{name}}} must be a single number here")
-    return {name: float(value) for name, value in found.items()}
+    given = {"restitution": checked("restitution", restitution, RESTITUTION)}
+    return RestitutionModel(flattened(given)["restitution"]).labelled(given)
 
 
 @suggesting
@@ -109,8 +68,6 @@ def spring_damper(
     damping_ratio: DampingRatioAxis | None = None,
     measured_restitution: RestitutionAxis | None = None,
     release: ReleaseName = "displacement",
-    table: Waveform | None = None,
-    flight: Suspension | None = None,
 ) -> ContactModel:
     """A ball on a contact with a spring and a damper (Eqs. 10-27).
 
@@ -131,10 +88,6 @@ def spring_damper(
     release : str
         Where a contact ends: "displacement" at the table's level, as in the paper (default), or
         "force" where the contact force vanishes.
-    table : Waveform, optional
-        The shape of a table with several harmonics, in place of the sine.
-    flight : Drag or Spring, optional
-        What moves the ball beside the contact, in flight and in contact, in place of gravity alone.
 
     Raises
     ------
@@ -165,9 +118,7 @@ def spring_damper(
     else:
         measured = loss == "measured_restitution"
         contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
-    setting = setting_of(table, flight)
-    given = {**parameters, "release": str(release)} | numbers_of_flight(flight)
-    return ContactModel(contact, setting).labelled(given)
+    return ContactModel(contact).labelled({**parameters, "release": str(release)})
 
 
 def the_loss(
@@ -213,7 +164,6 @@ def corrected(ball: Ball) -> Ball:
     known: Any = a_ball(ball)
     if not known.is_known:
         return known.corrected()
-    require_paper(known.place, "the corrected restitution model")
     law = known.impact_law
     if not isinstance(law, ContactLaw):
         raise ModelError(f"{known.name} impacts have no contact that could be corrected")

@@ -31,19 +31,15 @@ from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, Ra
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
-from bouncing_ball.models.setting import PAPER, PaperSetting, Setting
-from bouncing_ball.models.suspension import DRAG, SPRING_FREQUENCY
-from bouncing_ball.numerics.arrays import Batch, in_words
+from bouncing_ball.numerics.arrays import Batch
 
 RANGES: Mapping[str, Range] = {
     "frequency_ratio": FREQUENCY_RATIO,
     "restitution": RESTITUTION,
     "damping_ratio": DAMPING_RATIO,
     "damping": Range(0, np.inf, "[)"),
-    "drag": DRAG,
-    "spring_frequency": SPRING_FREQUENCY,
-    "spring_damping": DAMPING_RATIO,
 }
 """The ranges of the parameters of models that have one; other parameters are finite numbers."""
 
@@ -51,8 +47,7 @@ RANGES: Mapping[str, Range] = {
 class Model(Batch, Ball, ABC):
     """A law of the impact, for one ball or for a row of balls.
 
-    A subclass is a frozen dataclass whose first field holds the law; a field ``setting`` says where
-    its balls bounce, if this may be elsewhere than in the paper.
+    A subclass is a frozen dataclass whose first field holds the law.
     """
 
     @property
@@ -60,25 +55,10 @@ class Model(Batch, Ball, ABC):
     def name(self) -> str:
         """The name of the model in messages, which a subclass may define as a class variable."""
 
-    def __repr__(self) -> str:
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
-        # The setting of the paper is not shown.
-        shown = (name for name in values if not isinstance(values[name], PaperSetting))
-        text = ", ".join(f"{name}={in_words(values[name])}" for name in shown)
-        return f"{type(self).__name__}({text})"
-
     @property
     def impact_law(self) -> Any:
         """The law of the impact, which is the first field of the model."""
         return getattr(self, fields(self)[0].name)
-
-    @property
-    def place(self) -> Setting:
-        """How the table moves, and what moves the ball in flight: :data:`.PAPER` with its closed
-        forms for every ``setting`` with the values of the paper.
-        """
-        setting: Setting = getattr(self, "setting", PAPER)
-        return PAPER if setting.is_paper else setting
 
     @property
     def label(self) -> str:
@@ -108,10 +88,9 @@ class Model(Batch, Ball, ABC):
     def permanent_contact_threshold(self) -> Any:
         """Λ up to which the ball stays on the table, of the model's shape.
 
-        By default it is that of instantaneous impacts: 1 in the paper (Eq. 9), and 0 for a spring
-        that does not press the mass on its stop.
+        By default it is that of instantaneous impacts, Λ_CR = 1 (Eq. 9).
         """
-        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)[()]
+        return np.full(self.shape, RESTITUTION_THRESHOLD)[()]
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int

@@ -17,21 +17,21 @@ change of g. Then ::
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
-A drag l subtracts ``l T₀/6`` from the bracket. This sum replaces the bounces once Λ T₀ and T₀ are
+This sum replaces the bounces once Λ T₀ and T₀ are
 below 10⁻⁵ g, where the next term is below 10⁻¹⁵. The ball then rests on the table until it lifts
 off (:mod:`bouncing_ball.models.sticking`).
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from bouncing_ball.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.sticking import lifted, pressed, stay
+from bouncing_ball.models.flight import Flight
+from bouncing_ball.models.sticking import lift_off, lifted, pressed, stay
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -50,13 +50,13 @@ def chattering(
     restitution: np.ndarray,
     x: np.ndarray,
     y: np.ndarray,
-    strength: np.ndarray,
+    amplitude: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Which balls come to rest on the table after an impact, and the time T of their chattering.
 
-    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are -g′ and 1 - g, in the paper
-    Λ cos τ and Λ sin τ; ``strength`` is that of :meth:`.Setting.strength`, in the paper Λ. T is 0
-    for balls that do not come to rest, because their bounces are not summed up.
+    ``velocity`` is δ′ just after the impact, ``x`` and ``y`` are Λ cos τ and Λ sin τ, which are -g′
+    and 1 - g, and ``amplitude`` is Λ. T is 0 for balls that do not come to rest, because their
+    bounces are not summed up.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def chattering(
     ([True, False, False], [4e-06, 0.0, 0.0])
     """
     # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
-    load = _ONE + strength
+    load = _ONE + amplitude
     if (velocity > _CHATTER * load * load).all():
         return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
     gravity = 1 - y
@@ -77,7 +77,7 @@ def chattering(
     loss = gravity * (1 - restitution)
     usable = down & (loss > 0)
     first = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
-    limit = np.maximum(_CHATTER * gravity / np.maximum(strength, 1.0), _INSTANT)
+    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
     short = usable & (first <= limit)
     sticks = short | (down & (velocity == 0))
     if not sticks.any():
@@ -136,30 +136,22 @@ class RestitutionDynamics(Dynamics):
             return self._rested(impact, near > 0)
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
-        level = self.table_at(impact)
-        setting = self.setting
-        x, y = setting.at_rest(impact.phase, level, self.amplitude)
-        sticks, settling = chattering(velocity, r, x, y, setting.strength(self.amplitude))
-        none = np.zeros(x.shape)
-        flight = setting.flight(none, velocity, impact.phase, level, self.amplitude)
+        x, y = self.table_at(impact)
+        sticks, settling = chattering(velocity, r, x, y, self.amplitude)
+        flight = Flight(np.zeros(x.shape), velocity, x, y, self.amplitude)
         departure = self._left(impact, flight, sticks, settling)
-        if departure.flight.may_miss:
-            going = np.flatnonzero(departure.status == Status.BOUNCING)
-            start = departure.flight.take(going).earliest_landing()
-            departure = departure.with_landings(going, start)
-        return lifted(departure, self.amplitude, setting) if differentiate else departure
+        return lifted(departure, self.amplitude) if differentiate else departure
 
     def _rested(self, impact: Impact, rests: np.ndarray) -> Departure:
         """The rest on the table up to the lift-off where ``rests`` says so, otherwise the flight.
 
         A rest lasts until a fixed phase, so that the slope of its duration by φ is -1.
         """
-        level = self.table_at(impact)
         r, _ = self._rebound_of(impact)
         none = np.zeros(impact.phase.shape)
         velocity = -r * impact.velocity
-        flight = self.setting.flight(none, velocity, impact.phase, level, self.amplitude)
-        departure = lifted(self._left(impact, flight, rests, none), self.amplitude, self.setting)
+        flight = Flight(none, velocity, *self.table_at(impact), self.amplitude)
+        departure = lifted(self._left(impact, flight, rests, none), self.amplitude)
         return departure._replace(
             slopes=DurationSlopes(np.where(departure.sticks, -1.0, 0.0), none)
         )
@@ -171,7 +163,7 @@ class RestitutionDynamics(Dynamics):
         """
         balls = np.arange(impact.phase.size)
         settled = np.zeros(balls.shape, dtype=bool)
-        lift = self.setting.lift_off(impact.phase, self.amplitude)
+        lift = lift_off(impact.phase, self.amplitude)
         left = np.where(lift.never, np.nan, np.mod(lift.phase - impact.phase, 2 * np.pi))
         for leg in self.legs(impact, differentiate=True):
             comes_to_rest = leg.departure.sticks | self.take(balls)._rests_within(leg.impact, left)
@@ -188,9 +180,9 @@ class RestitutionDynamics(Dynamics):
         While the relative gravity is between g and G, a flight that begins with v takes 2v/g at
         most and lands with (2G/g - 1) v at most, so that all bounces together take 2v/(g (1 - q))
         with q = r (2G/g - 1). Within a time W the relative gravity changes by Λ W at most. This
-        holds for free flights and a constant r.
+        holds for a constant r.
         """
-        if not self.setting.is_paper or not self.is_constant:
+        if not self.is_constant:
             return np.zeros(left.shape, dtype=bool)
         _, height = self.table_at(impact)
         gravity = 1 - height
@@ -205,7 +197,7 @@ class RestitutionDynamics(Dynamics):
         return (least > 0) & (ratio < 1) & (whole <= window) & (window <= left)
 
     def _left(
-        self, impact: Impact, flight: Any, sticks: np.ndarray, settling: np.ndarray
+        self, impact: Impact, flight: Flight, sticks: np.ndarray, settling: np.ndarray
     ) -> Departure:
         """The flights after the impacts, or after the rest of the balls that stick."""
         departure = Departure(
@@ -215,7 +207,7 @@ class RestitutionDynamics(Dynamics):
             status=np.zeros(settling.shape),
             settling=settling,
         )
-        return stay(departure, sticks, self.amplitude, self.setting)
+        return stay(departure, sticks, self.amplitude)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray

@@ -13,7 +13,6 @@ from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.laws.analytic import compare
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
-from bouncing_ball.models.setting import PAPER, Setting, require_setting
 from bouncing_ball.numerics.arrays import Batch
 
 # The imaginary step relative to the speed; its square is lost in rounding.
@@ -84,8 +83,6 @@ class RestitutionLawModel(Model):
     ----------
     law : RestitutionLaw
         The law r(v).
-    setting : Setting, optional
-        The motion of the table and what moves the ball in flight, by default those of the paper.
 
     Raises
     ------
@@ -107,17 +104,15 @@ class RestitutionLawModel(Model):
     """
 
     law: RestitutionLaw
-    setting: Setting = PAPER
 
     name: ClassVar[str] = "restitution-law"
 
     def __post_init__(self) -> None:
-        require_setting(self.setting)
         require_analytic_restitution(self.law)
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return RestitutionLawDynamics.of(self.law, amplitude, self.place)
+        return RestitutionLawDynamics.of(self.law, amplitude)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r(v), without delay, load sensitivity and duration."""

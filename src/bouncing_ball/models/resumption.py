@@ -4,7 +4,7 @@ Such a release has δ_b < 0 and a rising ball: y = δ + κ δ′ = 0. In the fre
 from 0. Either δ reaches 0 first, and the flight ends with a landing as usual, or y falls back to 0
 while δ < 0. The contact then resumes at δ < 0, while the ball is still rising.
 
-Most balls leave fast. With G, the strongest relative gravity, 1 + Λ in the paper, the conditions ::
+Most balls leave fast. With G = 1 + Λ, the strongest relative gravity, the conditions ::
 
     v² + 2Gδ_b > 0   and   √(v² + 2Gδ_b) ≥ κ G
 
@@ -20,19 +20,19 @@ import numpy as np
 from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.flight import Unloaded, land
+from bouncing_ball.models.flight import Flight, Unloaded, land
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import first_zero
 
 
-def resumption(flight: Any, lag: Any) -> tuple[np.ndarray, np.ndarray]:
+def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:
     """A time before which released balls have certainly not landed, and whether contact resumes.
 
     ``lag`` is κ. If a ball's contact resumes, it does so at this time.
     """
 
-    def certified(slow: Any, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def certified(slow: Flight, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The time at which y falls back to 0 or δ reaches 0, and whether y falls back first."""
         found = first_zero(Unloaded(slow, pick(lag, which)), np.zeros_like(slow.velocity))
         return found.time, ~found.ended
@@ -42,7 +42,7 @@ def resumption(flight: Any, lag: Any) -> tuple[np.ndarray, np.ndarray]:
     return of_slow_balls(flight, np.flatnonzero(~leaves_fast(flight, lag)), certified)
 
 
-def leaves_fast(flight: Any, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
+def leaves_fast(flight: Flight, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
     """Whether δ certainly reaches 0 before the grip δ + κ δ′ + κ_a a can return.
 
     ``lag`` is κ, and ``lag_of_load`` is κ_a, for a grip that depends on the load a, which is -δ″.
@@ -52,19 +52,18 @@ def leaves_fast(flight: Any, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
     At Λ = 1 and κ = 0.1 a ball that rises fast leaves, and one that rises slowly or falls may not:
 
     >>> speeds = np.array([2.0, 0.1, -2.0])
-    >>> from bouncing_ball.models.flight import Flight
     >>> leaves_fast(Flight(np.full(3, -0.01), speeds, 1.0, 0.0, 1.0), 0.1).tolist()
     [True, False, False]
     """
     square = flight.level_speed_squared()
-    turned = lag * flight.strongest + lag_of_load * flight.largest_change
+    turned = lag * (1 + flight.amplitude) + lag_of_load * flight.amplitude
     return (square > 0) & (flight.velocity >= 0) & (np.sqrt(np.maximum(square, 0.0)) >= turned)
 
 
 def of_slow_balls(
-    flight: Any,
+    flight: Flight,
     slow: np.ndarray,
-    search: Callable[[Any, np.ndarray], tuple[np.ndarray, np.ndarray]],
+    search: Callable[[Flight, np.ndarray], tuple[np.ndarray, np.ndarray]],
 ) -> tuple[np.ndarray, np.ndarray]:
     """The result of :func:`resumption` if only the balls with the indices ``slow`` may resume.
 
@@ -88,7 +87,7 @@ class ResumingDynamics(Dynamics):
         """The law of the contacts."""
         return self.law
 
-    def resumption(self, flight: Any) -> tuple[np.ndarray, np.ndarray]:
+    def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""
         return resumption(flight, self.law.lag)
 
@@ -96,8 +95,6 @@ class ResumingDynamics(Dynamics):
         """The landing or an earlier resumption, and the time from the last impact to it."""
         flight = departure.flight
         start, resumed = self.resumption(flight)
-        if flight.may_miss:
-            start = np.maximum(start, departure.aloft)
         landing = land(flight, start)
         time = landing.time
         velocity = -landing.rate

@@ -12,7 +12,6 @@ from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
-from bouncing_ball.models.setting import PAPER, Setting, require_setting
 
 
 @dataclass(frozen=True, repr=False)
@@ -23,8 +22,6 @@ class RestitutionModel(Model):
     ----------
     restitution : float or array
         r in (0, 1].
-    setting : Setting, optional
-        The motion of the table and what moves the ball in flight, by default those of the paper.
 
     Raises
     ------
@@ -40,12 +37,10 @@ class RestitutionModel(Model):
     """
 
     restitution: float | np.ndarray
-    setting: Setting = PAPER
 
     name: ClassVar[str] = "restitution"
 
     def __post_init__(self):
-        require_setting(self.setting)
         given = check_restitution(self.restitution)
         if np.ndim(self.restitution):
             object.__setattr__(self, "restitution", given)
@@ -57,7 +52,7 @@ class RestitutionModel(Model):
     def dynamics(self, amplitude: ArrayLike) -> RestitutionDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
         r = np.asarray(self.restitution, dtype=float)
-        return RestitutionDynamics.of(r, amplitude, self.place)
+        return RestitutionDynamics.of(r, amplitude)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r, without delay, load sensitivity and duration."""

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from bouncing_ball.models.contact import FiniteContact
-from bouncing_ball.models.setting import Setting
 from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 
@@ -34,8 +33,6 @@ class Status(IntEnum):
     :mod:`bouncing_ball.models.linear_contact`."""
     UNDECIDED = 2
     """The last contact lasts for hundreds of oscillations at a Λ at which none is permanent."""
-    ALOFT = 3
-    """The last flight never ends: the mass on a spring does not reach its stop again."""
 
 
 class Cycle(NamedTuple):
@@ -65,8 +62,6 @@ class ImpactSequence:
         Λ of each ball.
     contact : FiniteContact or None
         The law of the contacts, or None if impacts are instantaneous.
-    setting : Setting
-        The motion of the table, and what moves the ball in flight.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
@@ -86,7 +81,6 @@ class ImpactSequence:
 
     amplitude: np.ndarray
     contact: FiniteContact | None
-    setting: Setting
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray
@@ -122,7 +116,6 @@ class ImpactSequence:
             self,
             amplitude=self.amplitude[balls],
             contact=None if self.contact is None else self.contact.take(balls),
-            setting=self.setting.take(balls),
             status=self.status[balls],
             **{name: getattr(self, name)[:, balls] for name in RECORDED},
         )
@@ -135,11 +128,7 @@ class ImpactSequence:
     @property
     def impact_velocity(self) -> np.ndarray:
         """Absolute velocity z′_i of the ball at each impact, before it."""
-        return self.relative_velocity + self._table_velocity(self.phase)
-
-    def _table_velocity(self, phase: np.ndarray) -> np.ndarray:
-        """w′ at phases of the table."""
-        return self.amplitude * self.setting.waveform.velocity(phase)
+        return self.relative_velocity + self.amplitude * np.cos(self.phase)
 
     @property
     def release_phase(self) -> np.ndarray:
@@ -150,7 +139,7 @@ class ImpactSequence:
     @property
     def bounce_velocity(self) -> np.ndarray:
         """Absolute velocity z′_b of the ball at each release."""
-        return self.relative_bounce_velocity + self._table_velocity(self.release_phase)
+        return self.relative_bounce_velocity + self.amplitude * np.cos(self.release_phase)
 
     @property
     def impacts(self) -> np.ndarray:

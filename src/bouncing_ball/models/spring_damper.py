@@ -35,18 +35,11 @@ from bouncing_ball.models.damping import (
     restitution_coefficient,
 )
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.held_contact import (
-    HeldContactDynamics,
-    gap_in_contact,
-    held_by,
-    held_threshold,
-)
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.linear_flow import ContactFlow
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.models.setting import PAPER, Setting
 
 
 @dataclass(frozen=True, repr=False)
@@ -355,33 +348,17 @@ class SpringDamper(OscillatorLaw):
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
         if not self.release.is_linear:
             return super().during(span, time)
-        if not span.setting.is_paper:
-            displacement, velocity, _, _ = gap_in_contact(
-                self, span.setting, span, span.amplitude
-            ).gap(time)
-            return displacement, velocity
         start = span.displacement, span.velocity, span.phase
         flow = self.flow(time, *start, span.amplitude)
         return flow.displacement, flow.velocity
 
-    def check_in(self, setting: Setting) -> None:
-        """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts cannot be computed on
-        this table, or in this flight.
-        """
-        if not self.is_linear_and_underdamped:
-            super().check_in(setting)
-        elif not setting.is_paper:
-            held_by(self, setting).check(setting.waveform)
-
-    def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """Contacts in closed form if all of them are linear and underdamped, otherwise by
         collocation.
         """
         if not self.is_linear_and_underdamped:
-            return super().dynamics(amplitude, setting)
-        if setting.is_paper:
-            return LinearContactDynamics.of(self, amplitude)
-        return HeldContactDynamics.of(self, amplitude, setting)
+            return super().dynamics(amplitude)
+        return LinearContactDynamics.of(self, amplitude)
 
     @property
     def constant_signature(self) -> Instant | None:
@@ -420,14 +397,6 @@ class SpringDamper(OscillatorLaw):
             found = each(self.frequency_ratio, self.damping_ratio)
             return found[()] if np.all(np.isfinite(found)) else None
         return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
-
-    def permanent_contact_in(self, setting: Setting) -> Any:
-        """The largest Λ of permanent contact: Λ_SD or Λ_F in the setting of the paper, and
-        :func:`.held_threshold` in another one, if the contacts are linear and ζ < 1.
-        """
-        if not self.is_linear_and_underdamped:
-            return super().permanent_contact_in(setting)
-        return self.permanent_contact if setting.is_paper else held_threshold(self, setting)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

@@ -191,7 +191,7 @@ class Row:
 
 
 def pick(value: Any, which: Any) -> Any:
-    """Some entries of a flat array, of a tuple of arrays, of a :class:`Row` or a :class:`Batch`.
+    """Some entries of a flat array, of a tuple of arrays, or of a :class:`Row`.
 
     A number applies to all rows and is returned unchanged.
 
@@ -204,4 +204,4 @@ def pick(value: Any, which: Any) -> Any:
         return value[which] if value.ndim else value
     if isinstance(value, tuple):
         return type(value)(*(pick(x, which) for x in value))
-    return value.take(which) if isinstance(value, (Row, Batch)) else value
+    return value.take(which) if isinstance(value, Row) else value

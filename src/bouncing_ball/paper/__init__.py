@@ -32,7 +32,7 @@ Eqs.    what                      where
 7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
 8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
 9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
-..      where a ball lifts off    ``models.setting.lift_off_phase``
+..      where a ball lifts off    ``models.sticking.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``
 ..      with its A and B          ``models.linear_contact.ClosedFormMotion``

@@ -73,7 +73,7 @@ EDITS = [
     Edit(RIGID, "* np.pi * (1 - r) / (1 + r)\n", "* np.pi * (1 - r) / (1 + 0.9 * r)\n", "Eq. 7"),
     Edit(RIGID, "return np.ones_like(r)", "return 2 * np.ones_like(r)", "Eq. 8, Holmes' map"),
     Edit(RIGID, "2 * (1 + r * r) / (1 + r) ** 2", "(1 + r * r) / (1 + r)", "Eq. 8, corrected"),
-    Edit("models/setting.py", "arctangent(1.0, lift", "arctangent(0.9, lift", "Eq. 9"),
+    Edit("models/sticking.py", "arctangent(1.0, lift", "arctangent(0.9, lift", "Eq. 9"),
     Edit(PERMANENT, "RESTITUTION_THRESHOLD = 1.0", "RESTITUTION_THRESHOLD = 1.1", "Eq. 9"),
     Edit(
         "models/spring_damper.py",

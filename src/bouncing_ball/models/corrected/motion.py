@@ -27,7 +27,7 @@ from bouncing_ball.models.corrected import impact as corrected_map
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import Flight, Unloaded, emerge, land, table
-from bouncing_ball.models.sticking import lifted, stay
+from bouncing_ball.models.sticking import lift_off, lifted, stay
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero, first_zero
 
@@ -104,7 +104,7 @@ class CorrectedDynamics(Dynamics):
         """Which durations are nearer to the end of a rest on the table than to that of the contact
         before it.
         """
-        lift = self.setting.lift_off(released.phase, self.amplitude)
+        lift = lift_off(released.phase, self.amplitude)
         rest = np.where(lift.never, np.inf, lift.wait)
         return duration > released.duration + rest / 2
 

@@ -28,13 +28,11 @@ def states(
     """
     inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
     laws, own = selected(inside, law, start)
-    columns = np.vstack([part for row in own for part in (row.real, row.imag)])
-    _, first, contact = np.unique(columns, axis=1, return_index=True, return_inverse=True)
-    if laws.shape or 2 * first.size > inside.size:
+    rows, contact = np.unique(np.array(own), axis=1, return_inverse=True)
+    if laws.shape or 2 * rows.shape[1] > inside.size:
         found = march(laws, own, MOST_PANELS, time[inside])
     else:
-        single = Start(*(row[..., first] for row in own))
-        found = march_through(laws, single, contact, time[inside], MOST_PANELS)
+        found = march_through(laws, Start(*rows), contact, time[inside], MOST_PANELS)
     depth = np.where(time > 0, end[1], start.depth)
     rate = np.where(time > 0, end[2], start.rate)
     depth[inside] = found.penetration

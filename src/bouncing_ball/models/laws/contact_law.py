@@ -7,12 +7,12 @@ A user's law is a subclass of :class:`ContactLaw`. The paper's contact is
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError, require
+from bouncing_ball.errors import require
 from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.damping import (
     check_damping,
@@ -20,14 +20,11 @@ from bouncing_ball.models.damping import (
 )
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.analytic import require_analytic
 from bouncing_ball.models.laws.collocation import states
 from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.signature import computed
-from bouncing_ball.models.laws.steady_contact import permanent_contact
-from bouncing_ball.models.setting import PAPER, Setting
 
 # The closed form of a motion is used for √γ above this value. Its steady part has the size Λ/√γ, so
 # that the motion has errors of some ten roundings over √γ, here 5e-14; the flow has 1e-14 at all γ.
@@ -50,17 +47,7 @@ class ContactLaw(ForceLaw):
         """
         return False
 
-    def check_in(self, setting: Setting) -> None:
-        """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts of balls on this law
-        cannot be computed on this table, or in this flight.
-        """
-        require_analytic(self.started(1.0))
-        if not setting.is_free:
-            raise ParameterError(
-                "{flight} is known for rigid and spring_damper, and not for contact laws"
-            )
-
-    def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of balls with this law on a table of amplitude Λ.
 
         Raises
@@ -68,7 +55,7 @@ class ContactLaw(ForceLaw):
         ModelError
             If Λ is outside its range.
         """
-        return ContactDynamics.of(self, amplitude, setting)
+        return ContactDynamics.of(self, amplitude)
 
     def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
@@ -76,24 +63,12 @@ class ContactLaw(ForceLaw):
             depth=-span.displacement,
             rate=-span.velocity,
             phase=span.phase,
-            amplitude=span.setting.forcing(span.amplitude),
+            amplitude=span.amplitude,
             weight=np.ones_like(time),
         )
         ends = span.duration, -span.release_displacement, -span.release_velocity
         depth, rate = states(self, start, ends, time)
         return -depth, -rate
-
-    def permanent_contact_in(self, setting: Setting) -> Any:
-        """The largest Λ up to which a steady contact never releases the ball, of the laws' shape.
-
-        Raises
-        ------
-        ModelError
-            If no such contact was found.
-        """
-        laws = self.flat(self.shape)
-        found = [permanent_contact(laws.take(k), setting.waveform) for k in range(self.size)]
-        return np.array(found).reshape(self.shape)[()]
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The impacts as instants, at impact speeds v > 0 of any shape.

@@ -19,9 +19,7 @@ from bouncing_ball.models.laws.panel import (
     grip_of,
     lever_of,
     load_of,
-    scaling_of,
     slopes_of,
-    turning_of,
 )
 
 
@@ -55,10 +53,7 @@ def at_end(
     # The share of the load that the force carries.
     carried = np.imag(under(law, load + IMAGINARY_STEP).force(depth, rate)) / IMAGINARY_STEP.imag
     felt = lever * (1 - carried.T)
-    if start.amplitude.ndim == 1:
-        by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
-    else:
-        by_time = column(felt * turning_of(start, angle.T).T)
+    by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
     to_nodes = rule.integral[:-1]
     to_end = rule.integral[-1:]
@@ -75,7 +70,7 @@ def at_end(
         known += by_time * (bent @ free_root)
         matrix -= by_time * (bent @ twice)
     known[:, :, 0] += by_time[:, :, 0]
-    known[:, :, 2] += felt * scaling_of(start, angle.T).T
+    known[:, :, 2] -= felt * np.sin(angle)
     known[:, :, 3] += felt
     if law.feels_start_speed:
         known[:, :, 1] -= lever * law.by_start(depth, rate).T
@@ -112,7 +107,7 @@ def at_release(
     grip_by_root = np.where(panel.surfaced, 1.0, grip_by_root)
     grip_by_rate = np.where(panel.surfaced, 0.0, grip_by_rate)
     grip_by_load = np.where(panel.surfaced, 0.0, grip_by_load)
-    turning = turning_of(start, angle)
+    turning = -start.amplitude * np.cos(angle)
     # Up to the release the force is that of the law; the panel's F at its end is extrapolated
     # from the nodes, with an error of the order of the last Legendre coefficients and not of their
     # squares.
@@ -123,7 +118,7 @@ def at_release(
     step = np.where(grip_by_rate == 0, 0.0, grip_by_rate * lever * force)
     by_root, by_rate, by_time = (by[:, k] for k in range(3))
     by_load = turning[:, np.newaxis] * by_time
-    by_load += np.stack([turning, 0 * angle, scaling_of(start, angle), np.ones_like(angle)], axis=1)
+    by_load += np.stack([turning, 0 * angle, -np.sin(angle), np.ones_like(angle)], axis=1)
 
     def column(row):
         return row[:, np.newaxis]

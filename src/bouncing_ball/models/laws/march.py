@@ -130,7 +130,7 @@ def _longest(m: int, now: BallsInContact, panel: Panel) -> np.ndarray:
 
 def _begin(law: ForceLaw, start: Start, nodes: int) -> BallsInContact:
     """The balls at the start of their contacts."""
-    scale = scales(law, np.abs(start.rate), start.strongest)
+    scale = scales(law, np.abs(start.rate), start.weight + start.amplitude)
     rest = _AT_REST * scale.speed
     rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
     zero = np.zeros_like(rate)
@@ -194,7 +194,7 @@ class _March:
         self._record(self._known())
 
     def _known(self) -> np.ndarray:
-        return self.start.known
+        return np.flatnonzero(np.isfinite(self.start).all(axis=0))
 
     def _record(self, here: np.ndarray) -> None:
         if self.states is not None:
@@ -346,7 +346,7 @@ def march_through(
     contacts = _March(law, start, None, differentiate=False)
     last = np.zeros(start.rate.size)
     np.maximum.at(last, contact, time)
-    single = Start(*(row[..., contact] for row in start))
+    single = Start(*(row[contact] for row in start))
     samples = _March(law, single, time, differentiate=False)
     with np.errstate(all="ignore"):
         contacts.begin()

@@ -18,14 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.flight import Rise
+from bouncing_ball.models.flight import Flight, Rise, table
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.loaded import LoadedLaw, under
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
@@ -86,7 +86,7 @@ class ContactDynamics(ResumingDynamics):
         """The impacts without the speeds, to which Newton's method leaps next to an end of a
         branch, at which damped contacts take thousands of panels.
         """
-        strongest = 1 + self.setting.strength(self.amplitude)
+        strongest = 1 + self.amplitude
         known = np.abs(impact.velocity) <= _FASTEST * strongest
         return impact._replace(velocity=np.where(known, impact.velocity, np.nan))
 
@@ -102,14 +102,14 @@ class ContactDynamics(ResumingDynamics):
         velocity = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
         velocity = np.where(free, impact.velocity, velocity)
         phase = impact.phase + duration
-        level = self.setting.level(phase, self.amplitude)
+        flight = Flight(displacement, velocity, *table(phase, self.amplitude), self.amplitude)
         no_end = np.isnan(duration)
         status = np.where(no_end, Status.UNDECIDED, Status.BOUNCING)
         status[held] = Status.PERMANENT_CONTACT
         return Departure(
             phase=phase,
             duration=np.where(no_end, np.inf, duration),
-            flight=self.setting.flight(displacement, velocity, phase, level, self.amplitude),
+            flight=flight,
             status=status,
             by=end,
         )
@@ -127,7 +127,6 @@ class ContactDynamics(ResumingDynamics):
             duration=departure.duration,
             release_displacement=departure.flight.displacement,
             release_velocity=departure.flight.velocity,
-            setting=self.setting,
         )
         found = self.law.take(which).during(pick(spans, which), time.ravel())
         displacement, velocity = (x.reshape(time.shape) for x in found)
@@ -151,8 +150,7 @@ class ContactDynamics(ResumingDynamics):
         """Whether a ball at the surface meets no force, because the load pulls it."""
         if not isinstance(self.law, LoadedLaw):
             return np.zeros_like(depth, dtype=bool)
-        level = self.setting.level(impact.phase, self.amplitude)
-        load = 1 - self.setting.at_rest(impact.phase, level, self.amplitude)[1]
+        load = 1 - table(impact.phase, self.amplitude)[1]
         grip = self.law.under(load).grip(depth, -impact.velocity)
         return (depth == 0) & (grip < 0)
 
@@ -166,7 +164,7 @@ class ContactDynamics(ResumingDynamics):
             # No contact is computed for free balls, because none of its panels would be accepted.
             rate=np.where(free, np.nan, -impact.velocity),
             phase=impact.phase,
-            amplitude=self.setting.forcing(self.amplitude * one),
+            amplitude=self.amplitude * one,
             weight=one,
         )
         lam = self.amplitude * one
@@ -175,11 +173,7 @@ class ContactDynamics(ResumingDynamics):
         for panels in attempts:
             end = march(self.law, start, panels, differentiate=differentiate, longest=_LASTING)
             lost = np.flatnonzero(np.isnan(end.duration) & ~free)
-            held = [
-                int(k)
-                for k in lost
-                if holds(self.law.take(k), float(lam[k]), self.setting.waveform)
-            ]
+            held = [int(k) for k in lost if holds(self.law.take(k), float(lam[k]))]
             if len(held) == lost.size:
                 break
         return end, held
@@ -196,7 +190,7 @@ class ContactDynamics(ResumingDynamics):
         of_free_impact = impact_of.duration
         return departure._replace(sticks=departure.duration > 2 * of_free_impact)
 
-    def resumption(self, flight: Any) -> tuple[np.ndarray, np.ndarray]:
+    def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""
         if self.law.lag is not None:
             return super().resumption(flight)
@@ -232,7 +226,7 @@ class ContactDynamics(ResumingDynamics):
         return np.abs(determinant * departure.by.rate / impact.velocity)
 
 
-def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
+def sampled_resumption(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
     """The result of :func:`~bouncing_ball.models.resumption.resumption` for a law without a
     lag, whose grip is sampled along the flights of slow balls.
     """
@@ -247,7 +241,7 @@ def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarr
     )
 
 
-def _sampled(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
+def _sampled(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
     """The time at which the grip returns or δ reaches 0, and whether the grip returns first."""
 
     def held(time):

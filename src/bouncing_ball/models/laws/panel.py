@@ -62,8 +62,7 @@ class Start(NamedTuple):
     """Starts of contact, one-dimensional arrays.
 
     The fields are p, p′, the table's phase φ, Λ, and the weight w, which is 1, or 0 for a free
-    impact. On a table of several harmonics ``amplitude`` has the harmonics A_k of the load,
-    ``a = w - Im Σ A_k e^{ik(φ + t)}``, in place of Λ: complex numbers of shape (N, contacts).
+    impact.
     """
 
     depth: np.ndarray
@@ -71,18 +70,6 @@ class Start(NamedTuple):
     phase: np.ndarray
     amplitude: np.ndarray
     weight: np.ndarray
-
-    @property
-    def strongest(self) -> np.ndarray:
-        """A bound of the load, w + Λ."""
-        size = np.abs(self.amplitude)
-        return self.weight + (size if size.ndim == 1 else size.sum(axis=0))
-
-    @property
-    def known(self) -> np.ndarray:
-        """The indices of the contacts of which all fields are finite."""
-        rows = (np.isfinite(np.atleast_2d(x)).all(axis=0) for x in self)
-        return np.flatnonzero(np.all(list(rows), axis=0))
 
 
 class BallsInContact(NamedTuple):
@@ -166,8 +153,6 @@ def lever_of(m: int, root: np.ndarray, out: np.ndarray | None = None) -> np.ndar
 
 def load_of(start: Start, time: np.ndarray) -> np.ndarray:
     """a = w - Λ sin(φ + t), by the tangent of the half angle, which costs less than a sine."""
-    if start.amplitude.ndim > 1:
-        return start.weight - _harmonics(start, start.phase + time)
     tangent = start.phase + time
     tangent *= 0.5
     np.tan(tangent, out=tangent)
@@ -176,29 +161,6 @@ def load_of(start: Start, time: np.ndarray) -> np.ndarray:
     tangent *= 2 * start.amplitude
     tangent /= square
     return np.subtract(start.weight, tangent, out=tangent)
-
-
-def _harmonics(start: Start, angle: np.ndarray) -> np.ndarray:
-    """Im Σ A_k e^{ikx} at angles x of shape (..., contacts)."""
-    found = np.zeros_like(angle)
-    for k, each in enumerate(start.amplitude, 1):
-        found = found + (each.real * np.sin(k * angle) + each.imag * np.cos(k * angle))
-    return found
-
-
-def turning_of(start: Start, angle: np.ndarray) -> np.ndarray:
-    """da/dt at angles φ + t of shape (..., contacts)."""
-    if start.amplitude.ndim == 1:
-        return -start.amplitude * np.cos(angle)
-    found = np.zeros_like(angle)
-    for k, each in enumerate(start.amplitude, 1):
-        found -= k * (each.real * np.cos(k * angle) - each.imag * np.sin(k * angle))
-    return found
-
-
-def scaling_of(start: Start, angle: np.ndarray) -> np.ndarray:
-    """da/dΛ at angles φ + t; with several harmonics by a factor of all of them."""
-    return -np.sin(angle) if start.amplitude.ndim == 1 else -_harmonics(start, angle)
 
 
 def grip_of(law: ForceLaw, m: int, root: Any, rate: Any) -> Any:

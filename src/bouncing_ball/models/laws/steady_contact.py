@@ -34,7 +34,6 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.loaded import LoadedLaw, under
 from bouncing_ball.models.laws.scales import depth, rest
-from bouncing_ball.models.waveform import SINE, Waveform
 
 _PERIOD = 2 * np.pi
 # The largest size of the grid and the tolerance of the relative residual. The error of Λ is below
@@ -55,8 +54,6 @@ _SLACK = 1e-7
 # which the iteration starts is about its root, so that there would be a hundred thousand.
 _STIFF = 1e-9
 _TINY = 1e-300
-# Samples of a table in one period of its highest harmonic.
-_SAMPLES = 256
 # An imaginary step in time.
 _STEP = 1e-20j
 
@@ -66,15 +63,6 @@ class _Steady(NamedTuple):
 
     law: ForceLaw
     unit: float
-    table: Waveform = SINE
-
-    def pull(self, angle: np.ndarray, order: int = 0) -> Any:
-        """-u″ of the table, or a derivative of it."""
-        if self.table.is_sine:
-            return np.cos(angle) if order else np.sin(angle)
-        k = self.table.orders
-        whole = self.table.coefficients * np.exp(1j * k * np.asarray(angle)[..., np.newaxis])
-        return np.imag((1j * k) ** order * k * k * whole).sum(axis=-1)
 
     def grip(self, p: np.ndarray, u: np.ndarray, load: Any) -> np.ndarray:
         """The grip over that at rest."""
@@ -85,7 +73,7 @@ class _Steady(NamedTuple):
         """p, p′ and the load; z has φ and Λ."""
         # Roots exist for p ≥ 0 only.
         p = np.maximum(self.unit * y[0], _TINY) if self.law.root > 1 else self.unit * y[0]
-        return p, self.unit * y[1], 1 - z[1] * self.pull(z[0] + time)
+        return p, self.unit * y[1], 1 - z[1] * np.sin(z[0] + time)
 
     def rates(self, time: ArrayLike, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """The rates of change of y."""
@@ -96,7 +84,7 @@ class _Steady(NamedTuple):
         """The grip at the start and its rate of change."""
         p, u, load = self.state(0.0, first, z)
         p_rate, u_rate = self.unit * self.rates(0.0, first, z)
-        load_rate = -z[1] * self.pull(z[0], 1)
+        load_rate = -z[1] * np.cos(z[0])
         moved = self.grip(p + _STEP * p_rate, u + _STEP * u_rate, load + _STEP * load_rate)
         return moved.real, moved.imag / _STEP.imag
 
@@ -108,12 +96,11 @@ class _Steady(NamedTuple):
         return bool(found.success and np.min(held) > -_SLACK)
 
 
-def _touching(law: ForceLaw, at_surface: bool, table: Waveform = SINE) -> float:
+def _touching(law: ForceLaw, at_surface: bool) -> float:
     """Λ of the steady contact that just reaches its release, or that touches the surface; NaN if
     none was found.
     """
-
-    steady = _Steady(law, rest(law), table)
+    steady = _Steady(law, rest(law))
     if steady.unit < _STIFF:
         return np.nan
     at_surface |= law.release.at_surface
@@ -123,8 +110,8 @@ def _touching(law: ForceLaw, at_surface: bool, table: Waveform = SINE) -> float:
         return np.array([*touch, *(last - first)])
 
     late = steady.unit**0.375
-    phase, most = _least_load(steady)
-    z = np.array([phase + late, (1 - late * late / 2) / most])
+    # The load is least at π/2.
+    z = np.array([np.pi / 2 + late, 1 - late * late / 2])
     run = scipy.integrate.solve_ivp(
         steady.rates, (0, _PERIOD), np.zeros(2), args=(z,), rtol=_FIRST, atol=_FIRST
     )
@@ -133,31 +120,16 @@ def _touching(law: ForceLaw, at_surface: bool, table: Waveform = SINE) -> float:
     )
     if not steady.is_held(found, found.p):
         return np.nan
-    # The same motion, shifted by half a period, is the solution of a sine with -Λ.
-    lam = float(found.p[1])
-    return abs(lam) if table.is_sine or lam > 0 else np.nan
+    # The same motion, shifted by half a period, is the solution with -Λ.
+    return abs(float(found.p[1]))
 
 
-def _least_load(steady: _Steady) -> tuple[float, float]:
-    """The phase at which the load of the table is least, and -u″ there."""
-    if steady.table.is_sine:
-        return np.pi / 2, 1.0
-    phase = np.linspace(-np.pi, np.pi, _SAMPLES * int(steady.table.orders[-1]))
-    top = phase[int(np.argmax(steady.pull(phase)))]
-    return float(top), float(steady.pull(top))
-
-
-def _holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
+def _holds(law: ForceLaw, amplitude: float) -> bool:
     """Whether the steady contact at Λ that is next to a slow motion never releases the ball."""
-
-    steady = _Steady(law, rest(law), table)
-    phase, _ = _least_load(steady)
-    z = np.array([phase, amplitude])
-    time = np.linspace(0.0, _PERIOD, _GRID * int(table.orders[-1]))
-    if table.is_sine:
-        load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
-    else:
-        load = np.maximum(1 - amplitude * steady.pull(phase + time), _SLACK)
+    steady = _Steady(law, rest(law))
+    z = np.array([np.pi / 2, amplitude])
+    time = np.linspace(0.0, _PERIOD, _GRID)
+    load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
     slow = np.array([depth(law, 0 * time, 0.0, load) / steady.unit, 0 * time])
     found = scipy.integrate.solve_bvp(
         lambda t, y: steady.rates(t, y, z),
@@ -170,8 +142,8 @@ def _holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
     return steady.is_held(found, z)
 
 
-def permanent_contact(law: ForceLaw, table: Waveform = SINE) -> float:
-    """The largest Λ of permanent contact of a single law on a table.
+def permanent_contact(law: ForceLaw) -> float:
+    """The largest Λ of permanent contact of a single law.
 
     Raises
     ------
@@ -186,13 +158,13 @@ def permanent_contact(law: ForceLaw, table: Waveform = SINE) -> float:
     >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 15)
     0.25
     """
-    if law.permanent_contact is not None and table.is_sine:
+    if law.permanent_contact is not None:
         return float(law.permanent_contact)
     # If the contact that touches the surface is held throughout, the grip vanishes later.
     for at_surface in (True, False) if isinstance(law, LoadedLaw) else (False,):
         with np.errstate(all="ignore"):
-            found = _touching(law, at_surface, table)
-            if np.isfinite(found) and not _holds(law, _ABOVE * found, table):
+            found = _touching(law, at_surface)
+            if np.isfinite(found) and not _holds(law, _ABOVE * found):
                 return found
     raise ModelError(
         f"no threshold of permanent contact was found for {law.label}, because it is too weakly "
@@ -201,7 +173,7 @@ def permanent_contact(law: ForceLaw, table: Waveform = SINE) -> float:
 
 
 @lru_cache(maxsize=1024)
-def known_threshold(law: ForceLaw, table: Waveform = SINE) -> float:
+def known_threshold(law: ForceLaw) -> float:
     """The result of :func:`permanent_contact`, or NaN where no threshold was found.
 
     Examples
@@ -211,13 +183,13 @@ def known_threshold(law: ForceLaw, table: Waveform = SINE) -> float:
     0.25
     """
     try:
-        return permanent_contact(law, table)
+        return permanent_contact(law)
     except ModelError:
         return np.nan
 
 
 @lru_cache(maxsize=4096)
-def holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
+def holds(law: ForceLaw, amplitude: float) -> bool:
     """Whether a steady contact of a single law at Λ was found that never releases the ball.
 
     Λ is compared with the threshold. If that was not found, the steady contact at Λ itself is
@@ -229,8 +201,8 @@ def holds(law: ForceLaw, amplitude: float, table: Waveform = SINE) -> bool:
     >>> holds(SpringDamper(2.0, 0.5), 0.5), holds(SpringDamper(2.0, 0.5), 1.5)
     (True, False)
     """
-    threshold = known_threshold(law, table)
+    threshold = known_threshold(law)
     if np.isfinite(threshold):
         return amplitude <= threshold
     with np.errstate(all="ignore"):
-        return _holds(law, amplitude, table)
+        return _holds(law, amplitude)

@@ -152,7 +152,7 @@ def _impacts(rng, r) -> Rows:
         "Eq. 4": _used("models.flight.Flight", defects=(flight,)),
         "Eq. 5": _used("models.restitution.RestitutionDynamics", defects=(landing, bounced)),
         "Eq. 9": _used(
-            "models.setting.lift_off_phase",
+            "models.sticking.lift_off_phase",
             "models.permanent_contact.RESTITUTION_THRESHOLD",
             defects=(lift, threshold.RESTITUTION_THRESHOLD - 1),
         ),

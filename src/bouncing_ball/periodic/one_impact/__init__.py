@@ -10,7 +10,6 @@ In reading order:
 ``spring_damper_branch``         the explicit curve of the spring-damper model
 ``spring_damper_bifurcations``   the bifurcations on this curve, and its orbits at a given Λ
 ``searched_orbits``              the search for the orbits of models without a closed form
-``other_settings``               balls and contacts on another table, with drag or on a spring
 ``law_at_orbit``                 orbits on the contact law that has a given r and D at their impacts
 ``paper_unknowns``               the equations in the unknowns of the paper
 ``whole_branch``                 a whole branch, from one end to the other

@@ -19,7 +19,6 @@ from bouncing_ball.models.corrected.impact import impact
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import PAPER
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
@@ -76,21 +75,13 @@ class SpringDamperBranch(OrbitsOfModel):
         """The law, which is that of a spring and a damper where it has this branch."""
         return cast(SpringDamper, self.model.law)
 
-    def _in_setting(self, found: Orbit) -> Orbit:
-        """Orbits of the contact as those of the ball, whose setting may be one with a drag of 0."""
-        setting = self.model.setting
-        if setting is PAPER:
-            return found
-        of_contact = cast(ContactModel, found.model)
-        return replace(found, model=replace(of_contact, setting=setting))
-
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node."""
-        return self._in_setting(bifurcations.orbit_at(self._contact, n, amplitude, side))
+        return bifurcations.orbit_at(self._contact, n, amplitude, side)
 
     def orbits(self, n: int, amplitude: float) -> Orbit:
         """All n-T orbits of one contact at one Λ: see :func:`.orbits_at`."""
-        return self._in_setting(bifurcations.orbits_at(self._contact, n, amplitude))
+        return bifurcations.orbits_at(self._contact, n, amplitude)
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node.
@@ -109,13 +100,13 @@ class SpringDamperBranch(OrbitsOfModel):
         found = orbits_on_branch(bifurcations.saddle_node(contact, n), contact, n)
         rounding = _UNITS * np.spacing(np.abs(found.impact_velocity))
         lam = np.where(found.amplitude <= rounding, 0.0, found.amplitude)
-        return self._in_setting(replace(found, amplitude=lam if lam.ndim else float(lam)))
+        return replace(found, amplitude=lam if lam.ndim else float(lam))
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """The orbits at the period doubling nearest to the saddle-node."""
         contact = self._contact
         doubling = bifurcations.period_doubling(contact, n)
-        return self._in_setting(orbits_on_branch(doubling, contact, n))
+        return orbits_on_branch(doubling, contact, n)
 
 
 @dataclass(frozen=True)

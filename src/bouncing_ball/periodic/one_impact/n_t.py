@@ -2,10 +2,8 @@
 
 They follow from the closed form of the model's branch if there is one
 (:mod:`~bouncing_ball.periodic.one_impact.closed_forms`), and otherwise from a search that starts
-from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.searched_orbits`). On another
-table, beside a drag or a spring, they are zeros of an equation for the phase, or are found from
-such zeros (:mod:`~bouncing_ball.periodic.one_impact.other_settings`). A branch of n-T orbits begins
-at one of these orbits, and :func:`orbits_of` alone decides how it is found.
+from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.searched_orbits`). A branch of
+n-T orbits begins at one of these orbits, and :func:`orbits_of` alone decides how it is found.
 """
 
 from enum import StrEnum
@@ -25,7 +23,6 @@ from bouncing_ball.periodic.one_impact.closed_forms import (
     SpringDamperBranch,
 )
 from bouncing_ball.periodic.one_impact.orbits_of_model import OrbitsOfModel
-from bouncing_ball.periodic.one_impact.other_settings import OrbitsOfContact, OrbitsOfRigidBall
 from bouncing_ball.periodic.one_impact.searched_orbits import SearchedOrbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Side
@@ -43,8 +40,7 @@ class Absence(StrEnum):
 
 @singledispatch
 def orbits_of(model: Model) -> OrbitsOfModel:
-    """The n-T orbits of a model: its class and its setting decide by which formula or search they
-    are found.
+    """The n-T orbits of a model: its class decides by which formula or search they are found.
 
     Examples
     --------
@@ -56,13 +52,11 @@ def orbits_of(model: Model) -> OrbitsOfModel:
 
 @orbits_of.register
 def _(model: RestitutionModel) -> OrbitsOfModel:
-    return RestitutionLine(model) if model.setting.is_paper else OrbitsOfRigidBall(model)
+    return RestitutionLine(model)
 
 
 @orbits_of.register
 def _(model: ContactModel) -> OrbitsOfModel:
-    if not model.setting.is_paper:
-        return OrbitsOfContact(model)
     has_closed_form = model.law.is_linear_and_underdamped
     return SpringDamperBranch(model) if has_closed_form else SearchedOrbits(model)
 

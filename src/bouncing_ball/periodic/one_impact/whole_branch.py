@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
-from bouncing_ball.models.setting import require_paper
 from bouncing_ball.numerics.branch import ContinuationError, EndKind
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import StepControl
@@ -33,7 +32,6 @@ LARGEST_STEP = 0.1
 """Default of the largest step in arclength."""
 # By default a branch ends at this multiple of the Λ of its period doubling.
 _BEYOND_DOUBLING = 1.4
-_WHOLE = "whole branches of n-T orbits", "use follow(orbit(…))"
 # Number of Λ at which an orbit to start from is searched.
 _STARTS = 16
 
@@ -86,7 +84,6 @@ def whole_branch(
     >>> str(found.branch.end)
     'amplitude = 1.2 is reached'
     """
-    require_paper(model.place, *_WHOLE)
     top = amplitude_max or _default_top(model, n)
     (found,) = whole_branches(model, [n], top, largest_step, ends)
     if isinstance(found, Followed):
@@ -126,7 +123,6 @@ def whole_branches(
     >>> [round(each.special[0].amplitude, 4) for each in found]
     [0.2547, 0.5094]
     """
-    require_paper(model.place, *_WHOLE)
     starts = starts_of_branches(model, n, amplitude_max)
     return branches_through(starts, amplitude_max, largest_step, ends)
 

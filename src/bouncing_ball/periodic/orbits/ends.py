@@ -18,6 +18,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.numerics.branch import Branch, End, EndKind
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.lost_release import lost_release
@@ -207,7 +209,7 @@ def starts_fold(equations: OrbitEquations) -> list[Event]:
             return np.full(y.shape[:-1], np.nan)
         speed = velocity.ravel()
         lag, slope = dynamics.section_lag(speed)
-        _, level = dynamics.setting.level(phase.ravel(), dynamics.amplitude)
+        _, level = table(phase.ravel(), dynamics.amplitude)
         # -t_c′(v), because κ = -t_c(-δ′).
         by_speed = (slope - lag) / speed
         return (1 - by_speed * (1 - level)).reshape(velocity.shape).min(axis=-1) - _FOLD
@@ -347,14 +349,10 @@ def _at_threshold(equations: OrbitEquations, y: np.ndarray) -> bool:
 
 
 def _above_threshold(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
-    """Positive where Λ is farther above the threshold of permanent contact than _AT_THRESHOLD.
-
-    The threshold depends on what moves the ball in flight, which may vary along the branch; it is 0
-    for a spring that does not press the mass on its stop.
+    """Positive where Λ is farther above Λ_CR, the threshold of permanent contact of instantaneous
+    impacts, than _AT_THRESHOLD.
     """
-    threshold = equations.at(y).model.place.threshold()
-    with np.errstate(divide="ignore"):
-        return (equations.amplitude(y) / threshold - 1) / _AT_THRESHOLD - 1
+    return (equations.amplitude(y) / RESTITUTION_THRESHOLD - 1) / _AT_THRESHOLD - 1
 
 
 def next_to(tests: Sequence[Event], y: np.ndarray) -> Special | None:

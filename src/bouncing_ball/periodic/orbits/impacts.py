@@ -276,32 +276,8 @@ class OrbitImpacts(Batch):
 
     @property
     def _bounces(self) -> np.ndarray:
-        if self.model.place.is_free:
-            # In flight the velocity falls by the flight time.
-            return np.roll(self.velocities, -1, axis=-1) + self._flights
-        _, rate = self._flight_motion(np.zeros(self.phases.shape))
-        return rate + self._table_velocity(self.phases + self.durations)
-
-    def _table_velocity(self, phase: np.ndarray) -> np.ndarray:
-        """w′ at phases of the impacts, shape (..., k)."""
-        return self._lam * self.model.place.waveform.velocity(phase)
-
-    def _table_height(self, phase: np.ndarray) -> np.ndarray:
-        """w at phases of the impacts, shape (..., k)."""
-        return self._lam * self.model.place.waveform.height(phase)
-
-    def _flight_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times since the releases, shape (..., k) or with further axes in front; NaN
-        where there is no orbit.
-        """
-        shape = np.broadcast_shapes(np.shape(time), (*self.shape, self.impacts))
-        departure = self._legs.departure
-        if departure is None:
-            return np.full(shape, np.nan), np.full(shape, np.nan)
-        with np.errstate(invalid="ignore"):
-            each = np.broadcast_to(time, shape).reshape(-1, self.size * self.impacts)
-            gap, rate, _, _ = departure.flight.gap(each)
-        return gap.reshape(shape), rate.reshape(shape)
+        # In flight the velocity falls by the flight time.
+        return np.roll(self.velocities, -1, axis=-1) + self._flights
 
     @property
     def flight_time(self) -> Any:
@@ -324,11 +300,11 @@ class OrbitImpacts(Batch):
 
     @property
     def _closing(self) -> np.ndarray:
-        return self.velocities - self._table_velocity(self.phases)
+        return self.velocities - self._lam * np.cos(self.phases)
 
     @property
     def _leaving(self) -> np.ndarray:
-        return self._bounces - self._table_velocity(self.phases + self.durations)
+        return self._bounces - self._lam * np.cos(self.phases + self.durations)
 
     @property
     def relative_impact_velocity(self) -> Any:

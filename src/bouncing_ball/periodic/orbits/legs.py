@@ -13,7 +13,7 @@ import numpy as np
 
 from bouncing_ball.models.contacts_and_flights import Departure, Impact
 from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Dynamics, Leg
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.stability import matrices_of, product_of
 
@@ -132,7 +132,7 @@ class Legs:
         if self.dynamics is None:
             return self.duration
         with np.errstate(all="ignore"):
-            factor = Leg(self.dynamics, self.impact, self.departure, *self.after).contraction()
+            factor = self.dynamics.contraction(self.impact, self.departure)
         return np.reshape(factor, self.duration.shape)
 
     @cached_property

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import checked, solve
 from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.problem import OrbitEquations
@@ -64,10 +65,8 @@ class _LostRelease:
         duration = equations.durations(y).ravel()
         departure = dynamics.depart(impact, near=duration)
         displacement, velocity = dynamics.within(impact, departure, duration)
-        setting = dynamics.setting
-        phase = impact.phase + duration
-        level = setting.level(phase, dynamics.amplitude)
-        flight = setting.flight(displacement, velocity, phase, level, dynamics.amplitude)
+        lam = dynamics.amplitude
+        flight = Flight(displacement, velocity, *table(impact.phase + duration, lam), lam)
         gap, rate, _, _ = flight.gap(equations.intervals(y).ravel() - duration)
         _, closing = equations.states(y)
         lag = np.broadcast_to(_lag(dynamics), duration.shape)

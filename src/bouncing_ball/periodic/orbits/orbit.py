@@ -8,7 +8,6 @@ they are called relative, which means relative to the table: δ = z - w.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -105,10 +104,7 @@ class Orbit(OrbitImpacts):
     @property
     def _heights(self) -> np.ndarray:
         """Absolute heights at release, which follow from the flights to the next impacts."""
-        if not self.model.place.is_free:
-            gap, _ = self._flight_motion(np.zeros(self.phases.shape))
-            return gap + self._table_height(self.phases + self.durations)
-        landing = self._table_height(np.roll(self.phases, -1, axis=-1))
+        landing = self._lam * np.sin(np.roll(self.phases, -1, axis=-1))
         landing = landing + self._of_existing(Orbit._landing_gap, self.impacts)
         mean_velocity = (self._bounces + np.roll(self.velocities, -1, axis=-1)) / 2
         return landing - mean_velocity * self._flights
@@ -126,16 +122,11 @@ class Orbit(OrbitImpacts):
         Λ, it is the greatest height, because a ball in contact is below the table and thus below Λ.
         Otherwise the table may lift the ball higher during a long contact.
         """
-        if self.model.place.is_free:
-            rising = np.maximum(self._bounces, 0.0)
-            apex = np.max(self._heights + rising * rising / 2, axis=-1)
-        else:
-            apex = self._flight_top()
+        rising = np.maximum(self._bounces, 0.0)
+        apex = np.max(self._heights + rising * rising / 2, axis=-1)
         top = np.array(np.broadcast_to(apex, self.shape))
         lasting = np.any(self.durations > 0, axis=-1)
-        # The table is nowhere above this level, which is Λ in the paper.
-        highest = self.amplitude * self.model.place.waveform.bound(0)
-        low = np.flatnonzero((top < highest) & lasting)
+        low = np.flatnonzero((top < self.amplitude) & lasting)
         # The samples of all orbits at once would take gigabytes.
         for part in blocks(low.size, _BLOCK):
             lifted = self.flat(self.shape).take(low[part])._contact_top()
@@ -147,18 +138,10 @@ class Orbit(OrbitImpacts):
 
         def height(since: np.ndarray) -> np.ndarray:
             gap, _ = self._in_contact(since)
-            return gap + self._table_height(self.phases + since)
+            return gap + self._lam * np.sin(self.phases + since)
 
-        return _top(height, self.durations)
-
-    def _flight_top(self) -> np.ndarray:
-        """Greatest height in flight."""
-
-        def height(since: np.ndarray) -> np.ndarray:
-            gap, _ = self._flight_motion(since)
-            return gap + self._table_height(self.phases + self.durations + since)
-
-        return _top(height, self._flights)
+        heights, *_ = about_highest(height, 0.0 * self.durations, self.durations, _SAMPLES, _ROUNDS)
+        return np.max(heights, axis=(0, -1))
 
     def _in_contact(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times since the starts of all contacts, shape (..., orbits, k)."""
@@ -195,9 +178,8 @@ class Orbit(OrbitImpacts):
         """Height z and velocity z′ at times 0 ≤ s ≤ τ_b in the contact of one impact."""
         displacement, velocity = self.contact_motion(time, impact)
         phase = self.phases[..., impact] + np.asarray(time)
-        waveform = self.model.place.waveform
-        height = displacement + self.amplitude * waveform.height(phase)
-        speed = velocity + self.amplitude * waveform.velocity(phase)
+        height = displacement + self.amplitude * np.sin(phase)
+        speed = velocity + self.amplitude * np.cos(phase)
         return self._single(height), self._single(speed)
 
     def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
@@ -209,26 +191,10 @@ class Orbit(OrbitImpacts):
             z′ = -(τ - τ_b) + z′_b                                  (15)
         """
         s = np.asarray(time) - self.durations[..., impact]
-        if self.model.place.is_free:
-            bounce = self._bounces[..., impact]
-            velocity = bounce - s
-            height = self._heights[..., impact] + (bounce + velocity) / 2 * s
-        else:
-            height, velocity = self._other_flight_path(s, impact)
+        bounce = self._bounces[..., impact]
+        velocity = bounce - s
+        height = self._heights[..., impact] + (bounce + velocity) / 2 * s
         return self._single(height), self._single(velocity)
-
-    def _other_flight_path(self, since: np.ndarray, impact: int) -> tuple[np.ndarray, np.ndarray]:
-        """Height and velocity at times since one release, if more than gravity acts in flight."""
-        shape = np.broadcast_shapes(since.shape, self.shape)
-        each = np.broadcast_to(since, shape).reshape(-1, self.size)
-        legs = self._legs
-        number = np.arange(self.size) * self.impacts + impact
-        _, departure = legs.dynamics.kept(number, legs.departure)
-        gap, rate = (x.reshape(shape) for x in departure.flight.gap(each)[:2])
-        waveform = self.model.place.waveform
-        phase = self.phases[..., impact] + self.durations[..., impact] + since
-        height = gap + self.amplitude * waveform.height(phase)
-        return height, rate + self.amplitude * waveform.velocity(phase)
 
     def path(self, time: ArrayLike) -> tuple[Any, Any]:
         """Absolute height and velocity at any time since the first impact, with period 2πm.
@@ -417,12 +383,6 @@ class Orbit(OrbitImpacts):
         return self._single(np.maximum(of_impacts, larger))
 
 
-def _top(height: Callable[[np.ndarray], np.ndarray], lasts: np.ndarray) -> np.ndarray:
-    """The greatest height over all impacts, within parts of orbits that have these durations."""
-    heights, *_ = about_highest(height, 0.0 * lasts, lasts, _SAMPLES, _ROUNDS)
-    return np.max(heights, axis=(0, -1))
-
-
 def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Orbit:
     """The orbits at points y of a problem, with phases in [-π, π]."""
     legs = problem.legs(y)
@@ -437,8 +397,7 @@ def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Or
         started = theta - time_to_section(legs.dynamics, legs.impact).reshape(theta.shape)
         phase = reduce_angle(started)
         whole = np.round((started - phase) / (2 * np.pi))
-        waveform = problem.balls.model.place.waveform
-        of_table = lam[..., np.newaxis] * waveform.velocity(phase)
+        of_table = lam[..., np.newaxis] * np.cos(phase)
         velocity = legs.impact.velocity.reshape(v.shape) + of_table
     shift = np.nan_to_num(np.roll(whole, -1, axis=-1) - whole).astype(int)
     balls = problem.at(y)

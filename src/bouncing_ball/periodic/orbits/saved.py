@@ -82,7 +82,7 @@ def history_of(orbit: Any, samples: int) -> Result:
     time = np.linspace(0.0, 2 * np.pi * int(orbit.periods), int(orbit.periods) * count + 1)
     require_memory(time.size, "states", "samples")
     height, velocity = orbit.path(time)
-    table = orbit.amplitude * orbit.model.place.waveform.height(orbit.phases[0] + time)
+    table = orbit.amplitude * np.sin(orbit.phases[0] + time)
     columns = {"ball": height, "ball_velocity": velocity, "table": table}
     columns["contact"] = orbit.touches(time)
     data = xr.Dataset({name: ("time", values) for name, values in columns.items()}, {"time": time})

@@ -84,7 +84,7 @@ PARTS = {
 
 
 def title_of(table):
-    """The title of a table of the record: that of its dataset, or of an accepted sample."""
+    """The title of a table of the record: that of its dataset, or of an accepted one."""
     sample = ROOT / "config" / f"{Path(table).name}.nc"
     with xr.open_dataset(sample if sample.exists() else ROOT / f"{table}.nc") as data:
         return data.attrs["title"]

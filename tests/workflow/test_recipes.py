@@ -82,7 +82,7 @@ def test_a_figure_and_a_stage_on_the_dataset_of_another_need_the_files_of_the_re
         module.write(DRAWING)
     assert changed(fresh) == {PAPER, CONFIG, FIGURES}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    first = "use rule beyond_study as basins_study with:"
+    first = "use rule beyond_study as proofs_study with:"
     fresh.rewrite(BEYOND, first, RULE + first)
     fresh.rewrite(CONFIG, "beyond:\n", "beyond:\n  ext_lowest: { n: 110 }\n")
     assert changed(fresh) == {PAPER, BEYOND, CONFIG, FIGURES, STAGE}

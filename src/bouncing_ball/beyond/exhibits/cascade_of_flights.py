@@ -39,7 +39,7 @@ VARIABLES = {
     "stiff_opening": Variable(
         "ϖ² times the distance of an opening from Λ_SD, limit for ϖ → ∞", symbol="E_k"
     ),
-    "stiff_opening_ratio": Variable("r² E_{k+1}/E_k of the limits for ϖ → ∞"),
+    "stiff_opening_ratio": Variable("r² E_{k+1}/E_k of the limits for ϖ → ∞", budget=1e-12),
 }
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.

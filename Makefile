@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery diff accept report clean ci setup-newest newest config-docs readme lock
+.PHONY: all replication setup lint test quick speed test-cluster test-long test-processors setup-engines test-engines docs test-docs gallery diff accept report clean ci setup-newest newest config-docs readme lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -57,7 +57,8 @@ lint: $(SETUP)
 # One worker for each processor; all workers share one run of the pipeline, which goes on with the
 # results of `make all` if they are of this commit. Each worker has one thread, because further
 # threads would compete for the same processors.
-PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
+THREADS ?= 1
+PYTEST = OMP_NUM_THREADS=$(THREADS) $(BIN)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
 
 # The results of one run of the pipeline are compared with the record and are not computed again.
 test: $(SETUP)
@@ -81,6 +82,17 @@ test-cluster: $(SETUP)
 # schedule in CI, and before a release.
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
+
+# All tests again as on processors without AVX-512, and as on processors without AVX2, the latter
+# with two threads. numpy may only leave out code for instructions that this processor has: those
+# beyond X86_V3, which is AVX2, and all.
+BEYOND = import numpy._core._multiarray_umath as cpu; print(*(x for x in cpu.__cpu_dispatch__ if cpu.__cpu_features__[x] and x != "$(1)"))
+as_on = NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(call BEYOND,$(1))')" OPENBLAS_CORETYPE=$(2)
+test-processors: $(SETUP)
+	@failed=0; \
+	$(call as_on,X86_V3,Haswell) $(MAKE) test SETUP= || failed=1; \
+	$(call as_on,none,Nehalem) $(MAKE) test SETUP= THREADS=2 || failed=1; \
+	exit $$failed
 
 # The physics engines of the extra that have a wheel for this machine; the lock does not have them.
 ENGINES = import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])

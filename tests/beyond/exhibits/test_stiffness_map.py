@@ -134,14 +134,33 @@ def test_for_an_elastic_ball_the_rule_of_thumb_is_nearly_needed(data):
     assert not (np.abs(data.rule_product.sel(restitution=0.99)) > 1).any()
 
 
-def test_orbits_that_newtons_method_does_not_reach_are_bracketed():
-    """Compliant contacts and many periods in a flight."""
-    ratio = np.array([2.0, 3.0, 5.0])
-    nodes = Nodes.at(np.full(3, 20), np.array([0.3, 0.5, 0.8]), np.array([0.2, 0.5, 0.8]))
-    contact = SpringDamper(ratio, damping_ratio(nodes.restitution))
+@pytest.mark.parametrize(
+    ("smallest", "largest", "is_admissible"), [(1.5, 1.51, False), (2.5, 100.0, True)]
+)
+def test_a_stable_orbit_that_is_inadmissible_does_not_count(smallest, largest, is_admissible):
+    """With so compliant a contact and five periods in a flight the ball meets the table earlier."""
+    given = {"n": [5], "restitution": {"min": 0.05, "max": 0.06, "samples": 2}, "positions": 9}
+    ratio = {"min": smallest, "max": largest, "samples": 41}
+    # The error is within this tolerance at every ϖ, so that the smallest is enough.
+    found = stiffness_map(StiffnessMap(**given, frequency_ratio=ratio, tolerance=0.5))
+    row = found.sel(n=5, restitution=0.05).isel(position=slice(1, 5))
+    contact = SpringDamper(smallest, damping_ratio(0.05))
+    orbits = orbit_at(contact, 5, row.amplitude.values)
+    assert orbits.is_stable().all() and (orbits.is_admissible() == is_admissible).all()
+    expected = smallest if is_admissible else np.nan
+    assert np.array_equal(row.error_threshold, np.full(4, expected), equal_nan=True)
+
+
+@pytest.mark.parametrize(("n", "ratio"), [(2, 1.0), (3, 0.8), (5, 1.5), (20, 5.0)])
+def test_orbits_that_newtons_method_does_not_reach_are_bracketed(n, ratio):
+    """Of some there is no orbit."""
+    r, position = np.meshgrid(np.linspace(0.1, 0.9, 7), np.linspace(0.1, 0.9, 3))
+    nodes = Nodes.at(np.full(r.size, n), r.ravel(), position.ravel())
+    ratios = np.full(r.size, ratio)
+    contact = SpringDamper(ratios, damping_ratio(nodes.restitution))
     expected = errors(contact, nodes.n, nodes.amplitude, HEIGHT)[0, 0]
-    found = height_errors(nodes, ratio)
-    assert np.array_equal(np.isnan(found), np.isnan(expected))
+    found = height_errors(nodes, ratios)
+    assert np.isfinite(expected).any() and np.array_equal(np.isnan(found), np.isnan(expected))
     assert np.nanmax(np.abs(found - expected)) < 1e-12
 
 

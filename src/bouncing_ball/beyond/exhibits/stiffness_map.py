@@ -11,16 +11,11 @@ Next to the saddle-node the error changes with √p, so that the positions, p = 
 angles, are dense there, and at the period doubling as well.
 
 The orbits are points of the explicit branch
-(:mod:`bouncing_ball.periodic.one_impact.spring_damper_branch`), whose parameter ε_b is the excess
-angle of the contact. For a stiff contact ϖ ε_b tends to a limit: only the load a = 1 - Λ sin φ of
-the restitution model's orbit delays the release, by ``(1 + r) a/(r v ϖ²)`` with ``v = 2nπ/(1 + r)``
-(:mod:`bouncing_ball.models.laws.signature`), so that ::
-
-    ε_b → √(1 - ζ²) (1 + r)² a/(2nπ r ϖ)
-
-From there a few steps of Newton's method lead to the Λ of the node at every ϖ. Along the branch
-(X, Y) = Λ (cos φ, sin φ) is almost a straight line, on which the change of ε_b to a given Λ solves
-a quadratic equation; the smaller solution belongs to the stable side of the saddle-node.
+(:mod:`bouncing_ball.periodic.one_impact.spring_damper_branch`), whose parameter is the excess angle
+of the contact. From the free contact, whose excess angle is 0, a few steps of Newton's method lead
+to the Λ of the node: along the branch (X, Y) = Λ (cos φ, sin φ) is almost a straight line, on which
+the change of the angle to a given Λ solves a quadratic equation; the smaller solution belongs to
+the stable side of the saddle-node.
 """
 
 from typing import Annotated, NamedTuple
@@ -67,7 +62,7 @@ VARIABLES = {
     ),
 }
 
-# Newton's method doubles the digits in each step; six steps are enough at every node of the map.
+# Newton's method doubles the digits in each step; eight steps are enough at every node of the map.
 _STEPS = 10
 # The relative difference from the Λ of the node up to which an orbit is that of the node; rounding
 # leaves some 1e-14.
@@ -128,15 +123,11 @@ class Nodes(NamedTuple):
     def orbits(self, frequency_ratio: np.ndarray) -> Orbit:
         """The contact's orbits at the Λ of the nodes, NaN where there is none.
 
-        Newton's method does not reach every orbit of compliant contacts and large n; the others are
+        Newton's method does not reach every orbit of contacts with ϖ below 2; the others are
         bracketed by :func:`.spring_damper_bifurcations.orbit_at`.
         """
-        zeta = damping_ratio(self.restitution)
-        contact = SpringDamper(frequency_ratio, zeta)
-        load = 1 - self.lift
-        speed = 2 * self.n * np.pi / (1 + self.restitution)
-        delay = (1 + self.restitution) * load / (self.restitution * speed)
-        excess = np.sqrt((1 - zeta) * (1 + zeta)) * delay / frequency_ratio
+        contact = SpringDamper(frequency_ratio, damping_ratio(self.restitution))
+        excess = np.zeros(self.amplitude.shape)
         for _ in range(_STEPS):
             point = branch_point(excess, contact, self.n)
             square = point.d_x**2 + point.d_y**2

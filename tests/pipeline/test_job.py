@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from bouncing_ball.datasets.files import write_dataset
+from bouncing_ball.datasets.variables import Budget
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline import jobs
 from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input, using
@@ -58,7 +59,12 @@ def test_only_a_sample_has_a_processor_time_which_is_that_of_its_shards_and_its_
     for path in shards:
         write_dataset(xr.Dataset({"a": ("a_0", [1.0])}, attrs={jobs.SECONDS: "20"}), path)
     job = SimpleNamespace(
-        params=Params(arguments={"parameters": {}}, title="A sample", compressed=sample),
+        params=Params(
+            arguments={"parameters": {}},
+            title="A sample",
+            compressed=sample,
+            budgets={"a": Budget(1e-6)},
+        ),
         input={"shards": shards},
         output=SimpleNamespace(data=str(tmp_path / "sample.nc")),
     )
@@ -68,7 +74,7 @@ def test_only_a_sample_has_a_processor_time_which_is_that_of_its_shards_and_its_
 
     make_dataset(job, study)
     made = read_input(job.output.data)
-    assert made.a.values.tolist() == [1.0, 1.0]
+    assert made.a.values.tolist() == [1.0, 1.0] and made.a.attrs["budget"] == 1e-6
     assert made.attrs.get(jobs.SECONDS) == ("42" if sample else None)
     # Only a sample records what computed it, by what the code is now.
     assert (COMPUTATION in made.attrs) == (CONTENT in made.attrs) == sample

@@ -52,6 +52,7 @@ rule study:
         title=lambda w: ARTIFACTS[w.artifact].title,
         drawing=lambda w: ARTIFACTS[w.artifact].drawn_by,
         arguments=lambda w: arguments_of(ARTIFACTS[w.artifact]),
+        budgets=lambda w: budgets_of(ARTIFACTS[w.artifact]),
         # An accepted sample is in the repository.
         compressed=lambda w: ARTIFACTS[w.artifact].accepted is not None,
     log:

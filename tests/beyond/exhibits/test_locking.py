@@ -1,6 +1,7 @@
 """Maps of the motions on which balls end, against orbits and a changed rounding."""
 
 import numpy as np
+from declared_artifacts import compare_artifact
 from matplotlib.figure import Figure
 
 from bouncing_ball.beyond.exhibits.locking import GROUPS, agreement, locking
@@ -12,7 +13,6 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
-from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "further": 400}
 START |= {"resolved_impacts": 400, "confidence": 0.95}
@@ -89,7 +89,7 @@ def test_rounding_may_decide_at_few_nodes_only(recorded):
         assert rows * last <= 0.05 * record.kind.size or not allowed
         new.kind[:, :rows] = "another"
         names = {
-            x.name for x in compare_datasets("ext_locking", record, new) if not x.outcome.agrees
+            x.name for x in compare_artifact("ext_locking", record, new) if not x.outcome.agrees
         }
         assert names == (set() if allowed else {"kind"})
 

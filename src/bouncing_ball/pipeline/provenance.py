@@ -13,6 +13,7 @@ import os
 import shlex
 import subprocess
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
@@ -62,13 +63,10 @@ def git(folder: Path, *arguments: str) -> str | None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith("GIT_")}
     # Without optional locks, parallel jobs do not wait for each other's lock of the index.
     command = ["git", "--no-optional-locks", "-C", str(folder), *arguments]
-    try:
-        done = subprocess.run(
-            command, env=environment, capture_output=True, encoding="utf-8", check=True
-        )
-    except (OSError, ValueError, subprocess.CalledProcessError):
-        return None
-    return done.stdout
+    with suppress(OSError, ValueError):
+        done = subprocess.run(command, env=environment, capture_output=True, encoding="utf-8")
+        return None if done.returncode else done.stdout
+    return None
 
 
 def repository_of(house: Path) -> Path | None:
@@ -89,9 +87,9 @@ def revision(house: Path) -> Revision:
     top = repository_of(house)
     if top is None:
         return UNKNOWN
-    texts = {f":(top,exclude,glob){house.relative_to(top).as_posix()}/[a-z]*{TEXT}"}
-    texts.add(f":(top,exclude,glob)[a-z]*{TEXT}")
-    excluded = (f":(top,exclude,glob)**/{FIGURES}/**", *sorted(texts))
+    own = house.relative_to(top).as_posix()
+    record = (f"**/{FIGURES}/**", f"[a-z]*{TEXT}", f"{own}/[a-z]*{TEXT}")
+    excluded = [f":(top,exclude,glob){pattern}" for pattern in record]
     commit = git(top, "rev-parse", "HEAD")
     changed = git(top, "status", "--porcelain", "--untracked-files=normal", ".", *excluded)
     if commit is None or changed is None:
@@ -101,11 +99,9 @@ def revision(house: Path) -> Revision:
 
 def house_of(*starts: Path) -> Path | None:
     """The first folder, at or above each start in turn, that is a house, or None."""
-    for start in starts:
-        for folder in (start, *start.parents):
-            if (folder / "Snakefile").is_file() and (folder / CONFIGURATION).is_file():
-                return folder
-    return None
+    folders = (folder for start in starts for folder in (start, *start.parents))
+    marks = ("Snakefile", CONFIGURATION)
+    return next((x for x in folders if all((x / mark).is_file() for mark in marks)), None)
 
 
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:

@@ -190,9 +190,8 @@ def sources(modules: Iterable[str], others: Iterable[Path] = ()) -> list[Path]:
 
     Examples
     --------
-    >>> found = sources(["bouncing_ball.datasets.shards"])
-    >>> [path.name for path in found if path.name != "__init__.py"]
-    ['shards.py']
+    >>> [name_of(path) for path in sources(["bouncing_ball.errors"])]
+    ['src/bouncing_ball/__init__.py', 'src/bouncing_ball/errors.py']
     """
     given = set(others)
     found: set[Path] = set()

@@ -42,7 +42,7 @@ def suspects(made: Sequence[Mapping[str, Any]], touched: Collection[str]) -> lis
 
     Examples
     --------
-    >>> made = [{"code": f"{digest} a.py\n{digest} b.py"} for digest in ("1f0e", "2a2a")]
+    >>> made = [{"code": f"{digest} a.py\\n{digest} b.py"} for digest in ("1f0e", "2a2a")]
     >>> suspects(made, {"b.py", "c.py"})
     ['b.py', 'a.py']
     """

@@ -57,9 +57,8 @@ def same(record: ArrayLike, new: ArrayLike) -> np.ndarray:
     >>> same([np.nan, 1.0, np.inf], [np.nan, 2.0, np.inf]).tolist()
     [True, False, True]
     """
-    record = np.asarray(record)
-    new = np.asarray(new)
-    return (record == new) | ((record != record) & (new != new))
+    is_missing = np.not_equal(record, record) & np.not_equal(new, new)
+    return np.equal(record, new) | is_missing
 
 
 def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray:
@@ -72,10 +71,8 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
     >>> pointwise([1.0, 1.0], [np.nan, 2.0], [1.0, np.nan]).tolist()
     [inf, inf]
     """
-    record = np.asarray(record, dtype=float)
-    new = np.asarray(new, dtype=float)
     with np.errstate(invalid="ignore", divide="ignore"):
-        distance = np.abs(new - record) / scale
+        distance = np.abs(np.subtract(new, record)) / scale
     return np.where(same(record, new), 0.0, np.where(np.isnan(distance), np.inf, distance))
 
 
@@ -231,9 +228,8 @@ def _form(data: xr.Dataset, name: str) -> str:
     """
     if name not in data.variables:
         return ""
-    variable = data[name]
-    kind = "text" if variable.dtype.kind in "OSUT" else str(variable.dtype)
-    sizes = [f"{dimension}: {size}" for dimension, size in variable.sizes.items()]
+    kind = "text" if data[name].dtype.kind in "OSUT" else str(data[name].dtype)
+    sizes = [f"{dimension}: {size}" for dimension, size in data[name].sizes.items()]
     return ", ".join([kind, *sizes]) + (" (coordinate)" if name in data.coords else "")
 
 

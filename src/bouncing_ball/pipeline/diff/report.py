@@ -41,7 +41,8 @@ def sentence(comparison: Whole) -> str:
     --------
     >>> sentence(Whole("", (Whole("fig01"), Whole("fig02"))))
     '2 identical. The results agree with the record.'
-    >>> row = Row("parameter n", Outcome.PARAMETERS, "n 1 → 2")
+    >>> from bouncing_ball.pipeline.diff.outcome import Row
+    >>> row = Row("n", Outcome.PARAMETERS, "n 1 → 2")
     >>> sentence(Whole("", (Whole("fig01", (row,)),)))
     '1 with changed parameters. The results differ from the record.'
     """

@@ -29,7 +29,7 @@ all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
 	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
 
-# The paper alone, and its comparison with the record: results/diff/replication.html.
+# The paper alone, and its comparison with the record: results/diff/index.html.
 replication: $(SETUP)
 	$(BIN)/snakemake --cores 2 replication diff $(QUIETLY)
 
@@ -131,7 +131,7 @@ gallery: $(SETUP)
 	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
 
 # Compare the results with the accepted record; the page is results/diff/index.html. With
-# ONLY=fig14, only this artifact is made and compared; its page is results/diff/fig14.html.
+# ONLY=fig14, only this artifact is made and compared.
 diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(strip $(subst $(COMMA), ,$(ONLY)) diff) $(QUIETLY)
 

@@ -5,9 +5,15 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import xarray as xr
 from adapter import function
 
+from bouncing_ball.beyond.exhibits.budgets import BUDGETS as BEYOND
+from bouncing_ball.datasets.variables import budgeted
+from bouncing_ball.paper.exhibits.budgets import BUDGETS as PAPER
 from bouncing_ball.pipeline.artifacts import Artifact
+from bouncing_ball.pipeline.diff.datasets import compare_datasets
+from bouncing_ball.pipeline.diff.outcome import Row
 
 RULES = Path(__file__).resolve().parents[1] / "workflow" / "rules"
 
@@ -45,3 +51,10 @@ STUDIES = {
     each.name: function(each.module, each.study) for each in ARTIFACTS.values() if each.study
 }
 """The study of each artifact that has one."""
+BUDGETS = {**PAPER, **BEYOND}
+
+
+def compare_artifact(name: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
+    """The comparison of two datasets of an artifact with its budgets, which a run declares."""
+    own = BUDGETS.get(name, {})
+    return compare_datasets(budgeted(record.copy(), own), budgeted(new.copy(), own))

@@ -89,7 +89,7 @@ fit ""
 explain ""
     argument FILE: the name is empty
 diff "" ""
-    argument RECORD: the name is empty
+    argument NAMES: the name is empty
 diff . figures --html ""
     argument --html: the name is empty
 design BALL --plot ""

@@ -12,12 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from declared_artifacts import ARTIFACTS, STUDIES
+from declared_artifacts import ARTIFACTS, BUDGETS, STUDIES, compare_artifact
 
+from bouncing_ball.datasets.variables import IGNORED
 from bouncing_ball.pipeline.configuration import arguments, typed
-from bouncing_ball.pipeline.diff.budgets import ARTIFACTS as BUDGETS
-from bouncing_ball.pipeline.diff.budgets import IGNORED
-from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -97,7 +95,7 @@ def results(coarse):
             if varied == given or (vary is finer and artifact in NOT_NESTED):
                 continue
             again = on_the_old_grid(made(**varied), record).assign_attrs(record.attrs)
-            for each in compare_datasets(artifact, record, again):
+            for each in compare_artifact(artifact, record, again):
                 found.setdefault((artifact, each.name), []).append(each)
     return found
 

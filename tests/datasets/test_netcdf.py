@@ -1,10 +1,12 @@
 """Files are written completely or not at all, with the same bytes every time."""
 
+import os
 import shutil
 
 import numpy as np
 import pytest
 import xarray as xr
+from netCDF4 import Dataset
 
 from bouncing_ball.datasets.files import parameter_attributes, read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
@@ -97,8 +99,22 @@ def test_a_damaged_file_is_one_line(tmp_path, refusal):
     with refusal(ModelError, "fig08.nc is damaged"):
         read_dataset(path)
     # A name that cannot be encoded is shown with its escapes.
-    with refusal(ModelError, "\\ud800 is damaged"):
+    with refusal(ModelError, "no dataset \\ud800"):
         read_dataset("\ud800")
+
+
+def test_what_would_be_read_for_ever_is_one_line(tmp_path, refusal):
+    path = tmp_path / "fig08.nc"
+    os.mkfifo(path)
+    with refusal(ModelError, "fig08.nc cannot be read: it is no regular file"):
+        read_dataset(path)
+    path.unlink()
+    # A file of some kilobytes.
+    with Dataset(path, "w") as data:
+        data.createDimension("t", 10**11)
+        data.createVariable("x", "f8", ("t",), chunksizes=(1 << 20,))
+    with refusal(ModelError, "fig08.nc is damaged: its arrays have 1.0e+11 numbers"):
+        read_dataset(path)
 
 
 @pytest.mark.parametrize("error", [RuntimeError("NetCDF: HDF error"), PermissionError(13, "no")])

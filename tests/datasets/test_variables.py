@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from declared_artifacts import BUDGETS
 
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, budget_of
+from bouncing_ball.pipeline.diff.datasets import budget_of
 
 # Measured impacts have units; everything else is dimensionless.
 IN_SI = dict.fromkeys(("measured_speed", "curve_speed", "shaker_speed"), "m s-1") | {
@@ -33,8 +34,8 @@ def test_no_two_names_mean_the_same(declared):
 
 
 def test_the_budgets_name_what_there_is(declared):
-    whole = {name: budget_of("any", name, one.attributes()) for name, one in declared.items()}
-    for budgets in (whole, *ARTIFACTS.values()):
+    whole = {name: budget_of(one.attributes()) for name, one in declared.items()}
+    for budgets in (whole, *BUDGETS.values()):
         for name, budget in budgets.items():
             assert budget.size > 0 and (name in declared or name == "*")
             assert budget.over in ("", *declared) and budget.scale in ("", "1", *declared)

@@ -13,6 +13,7 @@ from matplotlib.text import Text
 import bouncing_ball
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import write_dataset
+from bouncing_ball.drawing.result import MADE_BY
 
 ROOT = Path(__file__).parents[2]
 # Axes of places with parameters of their own, and these parameters.
@@ -116,15 +117,33 @@ def test_mistakes_have_one_line(record, tmp_path, refusal):
         bouncing_ball.open(tmp_path / "table1.nc").plot()
 
 
-@pytest.mark.parametrize("name", ["os:system", "bouncing_ball.drawing.style", "os.path:join"])
-def test_only_functions_of_the_package_are_called(name, refusal):
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("os:system", "bouncing_ball.drawing.style", "os.path:join", "x\x1b[2J"),
+        "bouncing_ball.datasets.files:write_text",
+        # In a module of figures, but not of it, or no figure.
+        "bouncing_ball.paper.exhibits.schematics_figures:canvas",
+        "bouncing_ball.beyond.exhibits.bounces_figures:drivers",
+        "bouncing_ball.paper.exhibits.schematics_figures:Figure",
+    ],
+)
+def test_only_functions_that_draw_are_called(name, refusal):
     data = opened("fig06").assign_attrs({DRAWING: name})
-    with refusal(bouncing_ball.ModelError, "is no function of this package"):
+    with refusal(bouncing_ball.ModelError, "is no function of this package that draws"):
+        data.plot()
+
+
+def test_a_result_is_drawn_as_that_of_a_call_that_exists(refusal):
+    data = opened("fig06").assign_attrs({MADE_BY: "os.system"})
+    with refusal(bouncing_ball.ModelError, "unknown call 'os.system': one of simulate, history"):
         data.plot()
 
 
 def test_a_function_that_is_gone_is_named(refusal):
-    data = opened("fig06").assign_attrs({DRAWING: "bouncing_ball.paper.exhibits.gone:figure"})
+    data = opened("fig06").assign_attrs(
+        {DRAWING: "bouncing_ball.paper.exhibits.gone_figures:figure"}
+    )
     with refusal(bouncing_ball.ModelError, "this version of the package has no bouncing_ball"):
         data.plot()
 

@@ -7,7 +7,7 @@ everything that is read from them is made again: evidence, verdicts, tables, tex
 import numpy as np
 
 from bouncing_ball.datasets.rounding import ROUNDING_SIZE
-from bouncing_ball.pipeline.diff.budgets import ROUNDING
+from bouncing_ball.datasets.variables import ROUNDING
 
 
 def perturbed(data, rng):

@@ -1,6 +1,7 @@
 """``bouncing-ball explain``: the origin of a file, and the commands that make it again."""
 
 import json
+import os
 import subprocess
 from pathlib import Path
 
@@ -71,9 +72,10 @@ def test_a_picture_is_explained_by_its_metadata_and_the_dataset_beside_it(result
 
 
 @pytest.mark.parametrize("file", ["figures/fig08.nc", "figures/fig08.csv", "paper.md"])
-def test_a_table_is_explained_by_its_dataset_and_the_paper_by_the_claims(results, ask, file):
-    claims = xr.Dataset(attrs=made("results/figures/claims.nc"))
-    write_dataset(claims, results / "figures" / "claims.nc")
+def test_a_table_is_explained_by_its_dataset_and_the_paper_by_the_last_one(results, ask, file):
+    other = xr.Dataset(attrs=made("results/figures/other.nc", commit=OTHER))
+    write_dataset(other, results / "figures" / "other.nc")
+    os.utime(results / "figures" / "other.nc", (0, 0))
     answer = ask("explain", str(results / file))
     assert answer["commit"] == COMMIT
     assert answer["make_again"] == [f"{MAKE} results/{file}"]
@@ -91,13 +93,42 @@ def test_another_commit_dirt_and_other_versions_are_named(results, ask, monkeypa
     assert answer["make_again"] == again
     assert (answer["dirty"], answer["versions"]) == ("yes", {"python": "3.99.0"})
     assert answer["running"] == versions()
-    monkeypatch.setattr(module, "checkout", lambda *starts: None)
+    monkeypatch.setattr(module, "house_of", lambda *starts: None)
     assert ask("explain", str(path))["checked_out"] is None
 
 
-def test_what_a_command_makes_is_made_again_by_it(results, ask):
-    write_dataset(xr.Dataset(attrs=made("make test-engines")), results / "engines.nc")
-    assert ask("explain", "results/engines.nc")["make_again"] == ["make test-engines"]
+@pytest.mark.parametrize(
+    ("target", "command"),
+    [
+        ("make test-engines", "make test-engines"),
+        # A file may say anything, and a user may paste it.
+        ("make a; rm -r b", "make 'a;' rm -r b"),
+        ("$(rm a)", f"{MAKE} '$(rm a)'"),
+    ],
+)
+def test_what_a_command_makes_is_made_again_by_it(results, ask, target, command):
+    write_dataset(xr.Dataset(attrs=made(target)), results / "engines.nc")
+    assert ask("explain", "results/engines.nc")["make_again"] == [command]
+
+
+def test_a_house_is_named_or_found(results, ask, monkeypatch):
+    asked = []
+    monkeypatch.setattr(module, "revision", lambda house: asked.append(house) or module.UNKNOWN)
+    for folder in (results.parent, results.parent / "beyond"):
+        (folder / "config").mkdir(parents=True)
+        for name in ("Snakefile", "config/config.yaml"):
+            (folder / name).touch()
+    ask("explain", "results/figures/fig08.nc")
+    ask("explain", "results/figures/fig08.nc", "--house", "beyond")
+    assert asked == [results.parent, results.parent / "beyond"]
+
+
+def test_escape_sequences_are_shown_and_not_sent(results, said):
+    changed = {"\x1b[2J": "\x1b]0;title\x07"}
+    figure = results / "figures" / "fig11.png"
+    save(Figure(), figure, made("\x1b[31m", configuration=json.dumps(changed)))
+    text = said("explain", str(figure))
+    assert "\x1b" not in text and "\x07" not in text and "\\x1b[31m" in text
 
 
 def test_another_configuration_is_named_and_written_again(results, ask, said):
@@ -119,12 +150,12 @@ def test_another_configuration_is_named_and_written_again(results, ask, said):
     [
         ("nothing.png", "cannot be read: no such file"),
         ("results", "cannot be read: no such file"),
+        ("pipe.nc", "cannot be read: no such file"),
         ("foreign.png", "carries no provenance"),
         ("notes.md", "is not an artifact of this workflow: there is no notes.nc next to it"),
-        (
-            "paper.md",
-            "is not an artifact of this workflow: there is no figures/claims.nc next to it",
-        ),
+        ("paper.md", "is not an artifact of this workflow: there is no paper.nc next to it"),
+        ("odd.nc", "its provenance is damaged"),
+        ("other.nc", "carries no provenance"),
         ("cut.nc", "cannot be read: damaged, or not ours"),
         ("cut.png", "cannot be read: damaged, or not ours"),
         ("cut.svg", "cannot be read: damaged, or not ours"),
@@ -132,18 +163,19 @@ def test_another_configuration_is_named_and_written_again(results, ask, said):
 )
 def test_a_file_that_is_not_ours_exits_2_with_one_line(results, refused, file, said):
     Figure().savefig("foreign.png")
+    os.mkfifo("pipe.nc")
+    write_dataset(xr.Dataset(attrs=made("a", versions="[1]")), "odd.nc")
+    write_dataset(xr.Dataset(attrs={"provenance_inputs": "[]"}), "other.nc")
     for name in ("notes.md", "paper.md", "cut.nc", "cut.png", "cut.svg"):
         Path(name).write_bytes(b"text")
     status, line = refused("explain", file)
-    assert status == 2 and line.startswith(f"bouncing-ball: {file} ") and said in line
+    assert status == 2 and line.startswith(f"bouncing-ball: {file}") and said in line
 
 
 def test_a_job_gathers_its_commit_changes_and_sorted_inputs(tmp_path, monkeypatch):
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / "config.yaml").write_text("n: 1\nr: 0.85\n", encoding="utf-8")
-    monkeypatch.setattr(
-        "bouncing_ball.pipeline.provenance.revision", lambda _: Revision(COMMIT, "yes")
-    )
+    monkeypatch.setattr(module, "revision", lambda _: Revision(COMMIT, "yes"))
     inputs = ["results/b.nc", "results/a.nc", "results/b.nc"]
     found = gather("results/c.nc", inputs, tmp_path, {"n": 2, "r": 0.85})
     write_dataset(xr.Dataset(attrs=found), tmp_path / "c.nc")
@@ -154,4 +186,5 @@ def test_a_job_gathers_its_commit_changes_and_sorted_inputs(tmp_path, monkeypatc
         "target": "results/c.nc",
         "inputs": ["results/a.nc", "results/b.nc"],
         "versions": versions(),
+        "parameters": {},
     }

@@ -3,23 +3,22 @@
 That Snakemake follows them is tested in tests/workflow/test_reruns.py.
 """
 
-import ast
 import copy
 import os
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.configuration import arguments
-from bouncing_ball.pipeline.sources import digests, imports, keep_digests, sources
+from bouncing_ball.pipeline.sources import code_of_note, examined, lines_of, sources, write_note
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "src" / "bouncing_ball"
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
@@ -59,10 +58,12 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
         ("drawing/style.py", set()),
         ("drawing/style.mplstyle", set()),
         ("pipeline/configuration_docs.py", set()),
+        # A change of a budget is one of the parameters of its study.
+        ("paper/exhibits/budgets.py", set()),
     ],
 )
 def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
-    changed = ROOT / "src" / "bouncing_ball" / file
+    changed = PACKAGE / file
     assert changed.is_file()
     users = {
         name for name in STUDIES if changed in sources([f"bouncing_ball.{ARTIFACTS[name].module}"])
@@ -71,14 +72,17 @@ def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
 
 
 def test_the_modules_of_a_stage_are_those_that_python_imports():
+    name = "bouncing_ball.paper.exhibits.continuation_of_orbits"
     code = (
-        "import sys, bouncing_ball.paper.exhibits.continuation_of_orbits\n"
+        f"import sys, {name}\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
         " if n.split('.')[0] == 'bouncing_ball'), sep='\\n')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    found = sources(["bouncing_ball.paper.exhibits.continuation_of_orbits"])
+    found = sources([name])
     assert [str(path) for path in found if path.suffix == ".py"] == done.stdout.splitlines()
+    with pytest.raises(ModuleNotFoundError, match=r"no module bouncing_ball\.nowhere"):
+        sources(["bouncing_ball.nowhere"])
 
 
 @pytest.mark.parametrize(
@@ -90,74 +94,112 @@ def test_the_modules_of_a_stage_are_those_that_python_imports():
     ],
 )
 def test_the_data_that_a_module_reads_belong_to_its_code(module, data):
-    assert ROOT / "src" / "bouncing_ball" / data in sources([module])
+    assert PACKAGE / data in sources([module])
 
 
 def test_the_modules_that_a_script_imports_belong_to_its_code():
     script = ROOT / "workflow" / "scripts" / "table.py"
-    found = sources([], [script])
-    assert {script, ROOT / "src" / "bouncing_ball" / "drawing" / "tables.py"} <= {*found}
+    assert {script, PACKAGE / "drawing" / "tables.py"} <= {*sources([], [script])}
+
+
+CODE = '"""Twice."""\n\n\ndef twice(x):\n    # By a sum.\n    return x + x\n'
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("Twice", "Two\ntimes"),
+        ("# By a sum.", "# Exactly."),
+        ("    # By a sum.\n", '    """The double."""\n'),
+        ("\n\n\n", "\n"),
+        ("\n", "\r\n"),
+    ],
+)
+def test_a_docstring_a_comment_and_the_end_of_a_line_are_no_code(old, new):
+    assert old in CODE
+    assert examined(CODE.replace(old, new).encode()).code == examined(CODE.encode()).code
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("x + x", "x - x"), ("x + x", "x + x + 0"), ("return x", 'return "#", x'), ("x + x", "x +")],
+)
+def test_what_is_computed_is_code(old, new):
+    assert examined(CODE.replace(old, new).encode()).code != examined(CODE.encode()).code
+
+
+@pytest.mark.parametrize(
+    ("name", "counts"), [("paper/claims/both_models.py", True), ("models/damping.py", False)]
+)
+def test_the_docstrings_of_the_claims_are_code_and_those_of_models_are_not(
+    monkeypatch, name, counts
+):
+    path = PACKAGE / name
+    before = lines_of([path])
+    text = path.read_text(encoding="utf-8").replace('    """', '    """In other words, ', 1)
+    edited = examined(text.encode())
+    read = module.module
+    monkeypatch.setattr(module, "module", lambda file: edited if file == path else read(file))
+    assert (lines_of([path]) != before) == counts
 
 
 def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "_REPOSITORY", tmp_path)
+    monkeypatch.setattr(module, "REPOSITORY", tmp_path)
 
-    def digest_of(name, text):
+    def line_of(name, text):
         path = tmp_path / name
         path.write_text(text, encoding="utf-8")
         os.utime(path, (0, 0))
         # As in another process, which has read nothing yet.
-        module._line_of_file.cache_clear()
-        return digests([path])
+        module.module.cache_clear()
+        module.imported.cache_clear()
+        return lines_of([path])
 
-    first = digest_of("a.py", "r = 0.85")
-    assert first == digest_of("a.py", "r = 0.85")
-    assert first != digest_of("a.py", "r = 0.70")
-    assert first != digest_of("b.py", "r = 0.85")
+    first = line_of("a.py", "r = 0.85")
+    assert first == line_of("a.py", "r = 0.85") and first.endswith(" a.py")
+    assert first != line_of("a.py", "r = 0.70")
+    assert first != line_of("b.py", "r = 0.85")
 
 
 def test_a_package_that_shadows_a_module_is_the_one_that_is_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "_ROOT", tmp_path)
-    shadowed = tmp_path / "damping.py"
-    shadowing = tmp_path / "damping" / "__init__.py"
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "bouncing_ball_x").mkdir()
+    shadowed = tmp_path / "bouncing_ball_x" / "damping.py"
+    shadowing = tmp_path / "bouncing_ball_x" / "damping" / "__init__.py"
     shadowing.parent.mkdir()
+    (tmp_path / "bouncing_ball_x" / "__init__.py").touch()
     for path in (shadowed, shadowing):
         path.touch()
-        module.module_file.cache_clear()
-        assert module.module_file("bouncing_ball.damping") == path
-    module.module_file.cache_clear()
+        module.file_of_module.cache_clear()
+        assert module.file_of_module("bouncing_ball_x.damping") == path
+    module.file_of_module.cache_clear()
 
 
-def test_the_versions_of_the_libraries_stand_below_the_digests_and_are_no_files():
-    files = "1f0e a.py\n2a2a b.py"
-    text = f"{files}\n{module.lines_of_versions()}"
-    assert f"{np.__version__} numpy" in text.splitlines()
-    assert module.without_versions(text) == files
-    assert module.without_versions(files) == files
-
-
-def test_the_file_of_a_digest_is_written_only_when_the_digest_changes(tmp_path):
-    path = tmp_path / "fig02"
-    keep_digests(path, "one")
-    os.utime(path, (0, 0))
-    keep_digests(path, "one")
-    assert path.stat().st_mtime == 0
-    keep_digests(path, "two")
-    assert path.read_text() == "two" and path.stat().st_mtime > 0
+def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, monkeypatch):
+    note = tmp_path / "fig02"
+    source = tmp_path / "src" / "a.txt"
+    source.parent.mkdir()
+    source.write_text("one", encoding="utf-8")
+    write_note(note, [source])
+    os.utime(note, (0, 0))
+    write_note(note, [source])
+    assert note.stat().st_mtime == 0
+    before = note.read_text()
+    assert code_of_note(before) == lines_of([source]) and "numpy" in before.splitlines()[3]
+    source.write_text("two", encoding="utf-8")
+    write_note(note, [source])
+    assert note.stat().st_mtime > 0 and code_of_note(note.read_text()) != code_of_note(before)
+    os.utime(note, (0, 0))
+    monkeypatch.setattr(module, "versions", lambda: {"numpy": "1.0"})
+    write_note(note, [source])
+    assert note.stat().st_mtime > 0
     # Whatever another program has written there.
-    path.write_bytes(b"\xff\xfe")
-    keep_digests(path, "three")
-    assert path.read_text() == "three"
+    note.write_bytes(b"\xff\xfe")
+    write_note(note, [source])
+    assert "1.0 numpy" in note.read_text()
 
 
-def test_no_import_statement_is_missed():
-    """The statements found by regular expressions are those that Python's parser finds."""
-    for path in sorted((ROOT / "src" / "bouncing_ball").rglob("*.py")):
-        named = set()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                named |= {alias.name for alias in node.names}
-            elif isinstance(node, ast.ImportFrom) and node.module:
-                named |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-        own = {name for name in named if name.split(".")[0] == "bouncing_ball"}
-        assert own <= imports(path), path
+def test_no_module_imports_relatively():
+    """Such an import has no full name, and would be missed."""
+    found = [path for path in PACKAGE.rglob("*.py") if "from ." in path.read_text(encoding="utf-8")]
+    assert found == []

@@ -5,7 +5,8 @@ import subprocess
 
 import pytest
 
-from bouncing_ball.pipeline.provenance import UNKNOWN, checkout, revision
+from bouncing_ball.pipeline import provenance as module
+from bouncing_ball.pipeline.provenance import UNKNOWN, house_of, revision
 
 
 @pytest.fixture
@@ -17,7 +18,8 @@ def repository(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CONFIG_GLOBAL", "/dev/null")
     monkeypatch.setenv("GIT_CONFIG_NOSYSTEM", "1")
     top = tmp_path / "top"
-    files = ("Snakefile", "src/bouncing_ball/a.py", "figures/fig01.png", "paper.md")
+    house = ("Snakefile", "config/config.yaml", "figures/fig01.png", "paper.md")
+    files = (*house, *(f"beyond/{file}" for file in house), "src/bouncing_ball/a.py")
     for file in files:
         (top / file).parent.mkdir(parents=True, exist_ok=True)
         (top / file).write_text("old", encoding="utf-8")
@@ -42,12 +44,32 @@ def head(folder):
         ("figures/fig01.png", "no"),
         ("figures/fig99.png", "no"),
         ("paper.md", "no"),
+        ("README.md", "yes"),
+        ("docs/record.md", "yes"),
     ],
 )
 def test_a_tree_is_dirty_by_sources_and_not_by_results_or_the_record(repository, file, dirty):
     (repository / file).parent.mkdir(exist_ok=True)
     (repository / file).write_text("new", encoding="utf-8")
     assert revision(repository) == (head(repository), dirty)
+
+
+@pytest.mark.parametrize(
+    ("file", "dirty"),
+    [
+        ("beyond/figures/fig01.png", "no"),
+        ("beyond/paper.md", "no"),
+        # Also the record of the other house, whose code is not that of the results.
+        ("figures/fig01.png", "no"),
+        ("paper.md", "no"),
+        ("beyond/config/config.yaml", "yes"),
+        ("src/bouncing_ball/a.py", "yes"),
+    ],
+)
+def test_a_house_in_the_checkout_has_its_revision(repository, monkeypatch, file, dirty):
+    monkeypatch.setattr(module, "REPOSITORY", repository)
+    (repository / file).write_text("new", encoding="utf-8")
+    assert revision(repository / "beyond") == (head(repository), dirty)
 
 
 def test_a_hook_of_another_repository_does_not_mislead(repository, tmp_path, monkeypatch):
@@ -70,7 +92,8 @@ def test_the_commit_is_unknown_without_a_repository_at_this_folder(
     assert revision(repository) == UNKNOWN
 
 
-def test_the_checkout_is_found_from_a_folder_inside_of_it(repository, tmp_path):
-    assert checkout(repository / "src" / "bouncing_ball") == repository
-    assert checkout(tmp_path, repository) == repository
-    assert checkout(tmp_path) is None
+def test_a_house_is_found_from_a_folder_inside_of_it(repository, tmp_path):
+    assert house_of(repository / "src" / "bouncing_ball") == repository
+    assert house_of(repository / "beyond" / "figures") == repository / "beyond"
+    assert house_of(tmp_path, repository) == repository
+    assert house_of(tmp_path) is None

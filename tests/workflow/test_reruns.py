@@ -16,6 +16,11 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         (complete.path / file).write_text("Another text.\n", encoding="utf-8")
     complete.commit("Other words")
     (complete.path / "README.md").write_text("Not committed.\n", encoding="utf-8")
+    # Remarks are no code.
+    for file in ("numerics/corrector.py", "drawing/style.py", "paper/exhibits/time_histories.py"):
+        complete.edit(file, "# A comment.")
+        complete.edit(file, '"""A docstring."""')
+    assert complete.planned() == set()
     complete.configure("paper", "fig12", "amplitude", value=1.1)
     # What checks the configuration only, and what only shows, run no science again.
     complete.edit("pipeline/configuration_docs.py")

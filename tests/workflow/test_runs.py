@@ -77,7 +77,7 @@ def test_every_stage_is_a_target(fresh):
 def test_a_run_gives_the_accepted_datasets(pristine, recorded, coarse):
     whole = made_by_a_run() - {name for name, _ in coarse}
     made = {name: read_dataset(pristine.path / ARTIFACTS[name].dataset) for name in whole}
-    rows = {name: compare_datasets(name, recorded[name], data) for name, data in made.items()}
+    rows = {name: compare_datasets(recorded[name], data) for name, data in made.items()}
     assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
 
 
@@ -123,12 +123,12 @@ def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
     # At the same time, each with its own results and its own comparison, of this artifact alone.
     with ThreadPoolExecutor() as pool:
         done = dict(zip(values, pool.map(run, values), strict=True))
-    last = "diff: the results differ from the record (exit status 1), see results/diff/fig11.html"
+    last = "diff: the results differ from the record (exit status 1), see results/diff/index.html"
     for name, restitution in values.items():
         results = tmp_path / name / "results"
         assert read_dataset(results / "figures" / "fig11.nc").attrs["restitution"] == restitution
-        assert {path.name for path in (results / "diff").iterdir()} == {"fig11.txt", "fig11.html"}
-        page = (results / "diff" / "fig11.txt").read_text(encoding="utf-8")
+        assert {path.name for path in (results / "diff").iterdir()} == {"diff.txt", "index.html"}
+        page = (results / "diff" / "diff.txt").read_text(encoding="utf-8")
         assert f"parameter changed, restitution 0.65 → {restitution}" in page
         lines = done[name].stdout.splitlines()
         made = [line.split()[1] for line in lines if line.startswith("made ")]
@@ -136,7 +136,7 @@ def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
         # The pictures of the record have more pixels, which the line says after that.
         (cause,) = [line for line in lines if line.startswith("fig11: ")]
         assert cause.startswith(f"fig11: parameter changed, restitution 0.65 → {restitution}")
-        assert lines[-1] == "1 with changed parameters. The new artifacts differ from the record."
+        assert lines[-1] == "1 with changed parameters. The results differ from the record."
         assert done[name].returncode == 1 and done[name].stderr.splitlines()[-1] == last
     assert not (fresh.path / "results").exists()
 

@@ -1,16 +1,10 @@
 # Names and functions shared by the rules.
 
-import gc
 import os
 import shlex
 import sys
-from contextlib import suppress
-from importlib.util import cache_from_source, find_spec
+from importlib.util import find_spec
 from pathlib import Path
-
-# The modules that Snakemake has imported remain in use. Excluding them from garbage collection
-# saves half a second at each start.
-gc.freeze()
 
 # Snakemake starts jobs with the path of Python without quotes.
 if shlex.quote(sys.executable) != sys.executable:
@@ -20,6 +14,10 @@ if shlex.quote(sys.executable) != sys.executable:
 
 # The repository, for both Snakefiles.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
+# The folder with the configuration and the accepted record; the Snakefile of another house names its
+# own before it includes these rules.
+HOUSE = globals().get("HOUSE", ROOT)
+os.environ["BOUNCING_BALL_HOUSE"] = HOUSE
 # The environment of all rules for `--sdm conda`; otherwise a job has the Python of Snakemake itself.
 ENVIRONMENT = f"{ROOT}/environment.yml"
 # The package may belong to another checkout whose environment is active.
@@ -36,20 +34,9 @@ if os.path.lexists("results") and not os.path.isdir("results"):
 
 SCRIPTS = Path(ROOT, "workflow", "scripts")
 
-# Python runs bytecode without reading the source if the size and the time of the source are those
-# of the last compilation, and both may be restored after an edit. The time of the last change that
-# the file system itself keeps cannot: bytecode that is older is removed. Another run that was
-# started at the same time may have removed it in between.
-for path in (*HERE.rglob("*.py"), *SCRIPTS.glob("*.py")):
-    bytecode = Path(cache_from_source(path))
-    with suppress(FileNotFoundError):
-        if path.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
-            bytecode.unlink()
-
+# Each process of a run imports these; what only some need is imported where they do.
 from bouncing_ball.pipeline.artifacts import Artifact
-from bouncing_ball.pipeline.configuration import arguments
 from bouncing_ball.pipeline.yaml_files import ConfigurationError
-from bouncing_ball.pipeline.sources import digests, keep_digests, lines_of_versions, sources
 
 sys.path.append(str(SCRIPTS))
 
@@ -61,10 +48,10 @@ IDLE = ("Select jobs", "Execute ", "Finished jobid", "Conda environments: ignore
 logger.addFilter(lambda record: not str(record.msg).startswith(IDLE))
 
 
-# A file in `config`: that of the working directory if there is one, otherwise that of the
-# repository, so that `--directory` makes a run of its own beside others.
+# A file in `config`: that of the working directory if there is one, otherwise that of the house, so
+# that `--directory` makes a run of its own beside others.
 def here(path):
-    return path if os.path.exists(path) else os.path.relpath(Path(ROOT, path))
+    return path if os.path.exists(path) else os.path.relpath(Path(HOUSE, path))
 
 
 # All artifacts by name, as the stages of both sets of studies list them.
@@ -89,26 +76,32 @@ def stage(module, figures=None, **artifacts):
 
 # The values that a study takes from the configuration.
 def arguments_of(artifact):
+    from bouncing_ball.pipeline.configuration import arguments
+
     return arguments(
         function(artifact.module, artifact.study), artifact.part, artifact.name, config
     )
 
 
-# The one input that stands for the code of a job: a file with the digests of its script, of the
-# named modules, of all modules and data that these import and read, and of the accepted datasets
-# among its data, which no job makes; and with the versions of the libraries. It is written only if
-# one of these changes, and the job then runs again. `--touch` leaves it as it is, so that a digest
-# that has changed is written by the next run.
+# The budgets of single artifacts stand with the studies, in the module `budgets` beside them.
+def budgets_of(artifact):
+    return function(f"{artifact.part}.exhibits.budgets", "BUDGETS").get(artifact.name, {})
+
+
+# The one input that stands for the code of a job: its note, see the module `sources`. `--touch` leaves
+# it as it is, so that a digest that has changed is written by the next run.
 def code(job, script, *modules, files=(), data=()):
     path = Path("results", "code", job)
     if path.exists() and (workflow.touch or not workflow.is_main_process):
         return str(path)
+    from bouncing_ball.pipeline.sources import sources, write_note
+
+    # An accepted dataset counts as code, because no job makes it.
     accepted = [file for file in data if file in ACCEPTED and os.path.isfile(file)]
     read = [SCRIPTS / "adapter.py", SCRIPTS / script, *files, *accepted]
     read = [Path(file).resolve() for file in read]
-    found = sources([f"bouncing_ball.{module}" for module in modules], read)
     try:
-        keep_digests(path, f"{digests(found)}\n{lines_of_versions()}")
+        write_note(path, sources([f"bouncing_ball.{module}" for module in modules], read))
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

@@ -1,14 +1,19 @@
-# The accepted record in git: figures/, paper.md and supplement.md. Its history is `git log figures/`.
+# The accepted record in git: figures/ of the house and the texts beside it. Its history is
+# `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
-from bouncing_ball.pipeline.diff.targets import (
-    name_of_reports,
+from bouncing_ball.pipeline.run import (
+    concluded,
+    lines_by_reason,
+    not_made,
     remove_reports,
-    requested_artifacts,
-    requested_files,
+    requested,
 )
-from bouncing_ball.pipeline.jobs import concluded
-from bouncing_ball.pipeline.unfinished import lines_by_reason, not_made
+
+
+# The names of the artifacts that the targets beside `diff` make; none means all.
+def requested_artifacts():
+    return sorted({Path(file).stem for file in requested(workflow)})
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
@@ -16,9 +21,10 @@ rule accept:
     localrule: True
     message:
         "Copying the results over the record"
+    input:
+        rules.all.input,
     params:
-        record=ROOT,
-        files=lambda wildcards: sorted({str(file) for file in rules.all.input}),
+        house=HOUSE,
     log:
         "results/logs/accept.log",
     conda:
@@ -34,11 +40,10 @@ rule diff:
     message:
         "Comparing the results with the record"
     input:
-        lambda wildcards: requested_files(workflow) or rules.all.input,
+        lambda wildcards: requested(workflow) or rules.all.input,
     params:
-        record=ROOT,
-        artifacts=lambda wildcards: requested_artifacts(workflow),
-        name=lambda wildcards: name_of_reports(workflow),
+        house=HOUSE,
+        artifacts=lambda wildcards: requested_artifacts(),
     log:
         "results/logs/diff.log",
     conda:
@@ -51,7 +56,7 @@ rule diff:
 # all waiting jobs again every second until the run ends.
 onstart:
     workflow.scheduler.job_rate_limiter = None
-    remove_reports(workflow)
+    remove_reports()
 
 
 # A difference or a refusal is not a failure of the job: it gives one line, and exit status 1.
@@ -67,7 +72,6 @@ onerror:
     if unmade and "diff" in workflow.dag_settings.targets:
         from bouncing_ball.pipeline.diff.report import write_reports
 
-        names = requested_artifacts(workflow)
-        sys.exit(write_reports(Path(ROOT), names, name_of_reports(workflow), unmade))
+        sys.exit(write_reports(Path(HOUSE), requested_artifacts(), unmade))
     if unmade:
         sys.exit("\n".join(lines_by_reason(unmade)))

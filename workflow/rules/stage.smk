@@ -26,6 +26,7 @@ rule study:
         title=lambda w: ARTIFACTS[w.artifact].title,
         drawing=lambda w: ARTIFACTS[w.artifact].drawn_by,
         arguments=lambda w: arguments_of(ARTIFACTS[w.artifact]),
+        budgets=lambda w: budgets_of(ARTIFACTS[w.artifact]),
     log:
         "results/logs/stages/{artifact}.log",
     conda:

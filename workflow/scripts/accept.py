@@ -8,10 +8,10 @@ from bouncing_ball.pipeline.diff.accept import accept
 from bouncing_ball.pipeline.jobs import conclude, logged
 
 with logged(snakemake) as lines:
-    given = snakemake.params
     only = os.environ.get("ONLY", "").replace(",", " ").split()
+    files = [str(file) for file in snakemake.input]
     try:
-        lines += accept(Path(given.record), Path("results"), given.files, snakemake.config, only)
+        lines += accept(Path(snakemake.params.house), Path("results"), files, only)
         print(*lines, sep="\n", flush=True)
     except ModelError as error:
         conclude(f"accept: {error}")

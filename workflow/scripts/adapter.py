@@ -8,8 +8,8 @@ from typing import Any
 from bouncing_ball.pipeline.yaml_files import ConfigurationError
 
 # A job mostly imports, and what it imports remains: looking for garbage there takes a tenth of its
-# time. The jobs of stages import this module first, and go on collecting in `logged`.
-gc.disable()
+# time.
+gc.set_threshold(100_000)
 
 
 def function(module: str, name: str) -> Callable[..., Any]:

@@ -7,5 +7,5 @@ from bouncing_ball.pipeline.jobs import conclude, logged
 
 with logged(snakemake):
     given = snakemake.params
-    if sentence := write_reports(Path(given.record), given.artifacts, given.name):
+    if sentence := write_reports(Path(given.house), given.artifacts):
         conclude(sentence)

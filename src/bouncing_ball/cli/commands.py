@@ -155,7 +155,7 @@ def _explain() -> Program:
 
     return Program(
         add_options=lambda parser: add_parameters(parser, explain),
-        answer=lambda file: explain(file),
+        answer=lambda file, house: explain(file, house=house),
         lines=explanation_lines,
     )
 
@@ -166,7 +166,7 @@ def _diff() -> Program:
 
     return Program(
         add_options=lambda parser: add_parameters(parser, diff),
-        answer=lambda record, results, artifacts, html: diff(record, results, artifacts, html=html),
+        answer=lambda names, against, html: diff(tuple(names), against=against, html=html),
         lines=None,
     )
 
@@ -352,14 +352,15 @@ COMMANDS = {
         has_symbols=False,
     ),
     "diff": Command(
-        purpose="the differences between two folders of artifacts",
+        purpose="the differences between results and the accepted record",
         text=(
-            "The exit status is 0 if the folders agree, 1 if they differ, and 2 if they cannot be "
+            "The exit status is 0 if they agree, 1 if they differ, and 2 if they cannot be "
             "compared."
         ),
         examples=(
-            "diff . results",
+            "diff",
             "diff . results fig08",
+            "diff --against runs/soft",
         ),
         program=_diff,
         has_symbols=False,

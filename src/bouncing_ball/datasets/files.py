@@ -5,6 +5,7 @@ The same dataset has the same bytes every time.
 
 import errno
 import json
+import math
 import os
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,6 +26,8 @@ CONVENTIONS = "CF-1.11"
 
 # A netCDF file is larger than its arrays by its header and by blocks that are not filled; in bytes.
 _OVERHEAD = 1 << 18
+# Numbers in the largest dataset that is read: a gigabyte. A file of some kilobytes may declare any.
+_LARGEST = 1 << 27
 
 
 def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
@@ -131,19 +134,49 @@ def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
             raise
 
 
+def require_readable(path: str | Path) -> None:
+    """Refuse a pipe or a device, which would be read for ever, and a folder.
+
+    Raises
+    ------
+    ModelError
+        If there is something else than a file, or nothing.
+    """
+    if not os.path.isfile(path):
+        what = "it is no regular file" if os.path.lexists(path) else "no such file"
+        raise ModelError(f"{printable(path, None)} cannot be read: {what}")
+
+
+def _require_small(path: str | Path) -> None:
+    """Refuse a dataset whose arrays would not fit into memory, before one of them is read."""
+    # Imported here, because the library itself needs no netCDF.
+    from netCDF4 import Dataset
+
+    with Dataset(path) as header:
+        sizes = [math.prod(each.shape) for each in header.variables.values()]
+    if sum(sizes) > _LARGEST:
+        raise ModelError(
+            f"{printable(path, None)} is damaged: its arrays have {sum(sizes):.1e} numbers"
+        )
+
+
 def read_dataset(path: str | Path) -> xr.Dataset:
     """Read a dataset into memory and close its file.
 
     Raises
     ------
     ModelError
-        If the file does not exist or is damaged.
+        If the file does not exist, is no file, is damaged, or holds more than memory does.
     """
+    if not os.path.lexists(path):
+        raise ModelError(f"no dataset {printable(path, None)}")
+    require_readable(path)
     try:
+        _require_small(path)
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
-    except FileNotFoundError:
-        raise ModelError(f"no dataset {printable(path, None)}") from None
+    except ModelError:
+        raise
     # The type of the error that the libraries raise depends on the place of the damage.
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
         raise ModelError(f"{printable(path, None)} is damaged") from error

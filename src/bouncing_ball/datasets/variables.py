@@ -44,6 +44,58 @@ class Variable(NamedTuple):
         return attributes
 
 
+ROUNDING = 1e-13
+"""The budget of variables that declare none."""
+
+IGNORED = math.inf
+"""The budget of variables that another dataset also has, or about which rounding decides."""
+
+
+class Budget(NamedTuple):
+    """The budget of a variable in one artifact, which takes the place of that of the variable.
+
+    ``size`` and ``scale`` are the ``budget`` and the ``scale`` of :class:`Variable`. With ``over``
+    two curves over that variable are compared, through the samples along the dimension ``point``,
+    because the samples may slide along the curve. The share ``share`` of the entries, of texts and
+    counts as well, may exceed the budget, because rounding decides about some entries.
+    """
+
+    size: float = ROUNDING
+    scale: str = ""
+    over: str = ""
+    share: float = 0.0
+
+    def attributes(self) -> dict[str, Any]:
+        """The attributes of the variable in the dataset of the artifact.
+
+        Examples
+        --------
+        >>> Budget(1e-6, over="amplitude").attributes()
+        {'budget': 1e-06, 'scale': '', 'over': 'amplitude'}
+        """
+        attributes: dict[str, Any] = {"budget": self.size, "scale": self.scale}
+        if self.over:
+            attributes["over"] = self.over
+        if self.share:
+            attributes["share"] = self.share
+        return attributes
+
+
+def budgeted(dataset: xr.Dataset, budgets: Mapping[str, Budget]) -> xr.Dataset:
+    """The dataset, whose variables get the budgets of its artifact; ``*`` stands for all others.
+
+    Examples
+    --------
+    >>> data = budgeted(xr.Dataset({"x": 0.0, "y": 0.0}), {"x": Budget(1e-6), "*": Budget(1e-9)})
+    >>> data.x.attrs["budget"], data.y.attrs["budget"]
+    (1e-06, 1e-09)
+    """
+    for name in map(str, dataset.variables):
+        if budget := budgets.get(name, budgets.get("*")):
+            dataset[name].attrs |= budget.attributes()
+    return dataset
+
+
 SHARED = {
     # Axes of datasets, and parameters.
     "n": Variable("index of the family of periodic orbits", symbol="n", equation="Eq. 6"),

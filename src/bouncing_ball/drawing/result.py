@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import xarray as xr
 
 from bouncing_ball.datasets import DRAWING
-from bouncing_ball.errors import ModelError, extra
+from bouncing_ball.errors import ModelError, extra, one_of, shortened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 MADE_BY = "made_by"
 """The attribute with the name of the command or the call that made a result."""
-_FUNCTION = re.compile(r"(bouncing_ball(?:\.[a-z]\w*)+):([a-z]\w*)")
+# A file may name any function, and only one that draws is called.
+_FUNCTION = re.compile(r"(bouncing_ball\w*(?:\.[a-z]\w*)*[._]figures):([a-z]\w*)")
 
 
 class Result(xr.Dataset):
@@ -93,7 +94,7 @@ class Result(xr.Dataset):
             from bouncing_ball.drawing.result_figures import FIGURES
 
             maker = self.attrs[MADE_BY]
-            return FIGURES[maker], f"bouncing-ball {maker}"
+            return one_of("call", maker, FIGURES), f"bouncing-ball {maker}"
         if DRAWING in self.attrs:
             return _function(self.attrs[DRAWING]), str(self.attrs["title"])
         if "title" in self.attrs:
@@ -105,12 +106,20 @@ def _function(name: str) -> Callable[..., Any]:
     """The function of this package that a dataset names as ``package.module:function``.
 
     This is the only place of the library that imports by a name, because the functions that draw
-    artifacts are above it. Nothing outside the package is imported.
+    artifacts are above it. Only modules of figures are imported, and of their functions only those
+    that return a figure are called.
     """
     found = _FUNCTION.fullmatch(str(name))
     if not found:
-        raise ModelError(f"drawing = {name!r} is no function of this package")
+        raise ModelError(f"drawing = {shortened(name)} is no function of this package that draws")
     try:
-        return getattr(import_module(found[1]), found[2])
+        function = getattr(import_module(found[1]), found[2])
     except (ModuleNotFoundError, AttributeError):
         raise ModelError(f"this version of the package has no {name}, which draws it") from None
+    returned = getattr(function, "__annotations__", {}).get("return")
+    if (
+        getattr(function, "__module__", "") != found[1]
+        or getattr(returned, "__name__", "") != "Figure"
+    ):
+        raise ModelError(f"drawing = {shortened(name)} is no function of this package that draws")
+    return function

@@ -1,24 +1,21 @@
 """Artifacts: a dataset, and the figure, the table or the page that are made from it.
 
-The workflow declares the artifacts of its stages as :class:`Artifact`; :class:`ArtifactFiles` are
-the files of an artifact that a folder has. A run writes to a folder, ``results/``; the accepted
-record has the same layout at the top of the repository. ``figures/`` holds the artifacts of the
-paper, ``figures/beyond/`` those that go past it, and all files of an artifact have its name:
-``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the pictures drawn from it,
-``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. The article and its
-supplement are texts beside ``figures/``, made from all datasets. The measurements of physics
-engines, ``config/engines.nc``, are an artifact that no run makes.
+The workflow declares the artifacts of its stages as :class:`Artifact`. A run writes to a folder,
+``results/``; the accepted record has the same layout at the top of a *house*, a folder with a
+Snakefile and its configuration. ``figures/`` holds the artifacts, and all files of one have its
+name: ``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the pictures drawn from it,
+``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. Texts, such as
+``paper.md``, stand beside ``figures/`` and are made from all datasets.
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.sources import without_versions
 
-FOLDERS = ("figures", "figures/beyond")
-"""The folders of the artifacts: those of the paper, and all others."""
+FIGURES = "figures"
+"""The folder of the artifacts."""
 
 _ABOUT = "README.md"  # The page that lists a folder's files; no artifact.
 
@@ -26,18 +23,10 @@ DATASET = ".nc"
 PICTURES = (".png", ".svg")
 TABLES = (".csv", ".md")
 PAGE = ".html"
+TEXT = ".md"
 
 CARRIERS = (DATASET, *PICTURES)
 """Suffixes of the files that carry their provenance themselves."""
-
-TEXTS = ("paper.md", "supplement.md")
-"""The article of the replication, and its supplement."""
-
-MEASURED = "config/engines.nc"
-"""Measurements of physics engines, which are compared if both folders have them."""
-
-RECORD = ("figures", *TEXTS)
-"""The accepted results in git, which affect no new result."""
 
 # In the order in which files are compared: other files are judged by the outcome of their dataset.
 _SUFFIXES = (DATASET, ".csv", *PICTURES, ".md", PAGE)
@@ -63,7 +52,7 @@ class Artifact:
     reads : sequence of str
         Names of the artifacts whose datasets the study takes as ``data``.
     accepted : str, optional
-        The file of a dataset that is accepted by hand and has no study. A run reads it.
+        The file of a dataset that is accepted by hand. A run reads it and does not make it.
     page : bool
         Whether the dataset becomes a page in HTML.
 
@@ -107,8 +96,7 @@ class Artifact:
     @property
     def place(self) -> str:
         """The path of its files in a run and in the record, without their suffixes."""
-        paper, beyond = FOLDERS
-        return f"{paper if self.part == 'paper' else beyond}/{self.name}"
+        return f"{folder_of(self.part)}/{self.name}"
 
     @property
     def drawn_by(self) -> str | None:
@@ -116,16 +104,20 @@ class Artifact:
         return f"bouncing_ball.{self.figures}:{self.drawing}" if self.drawing else None
 
     @property
+    def computed(self) -> str | None:
+        """The dataset that the study computes, also where an accepted one is read in its place."""
+        return f"results/{self.place}{DATASET}" if self.study else None
+
+    @property
     def dataset(self) -> str | None:
         """The dataset that others read; None for a figure without data, such as a schematic."""
-        computed = f"results/{self.place}{DATASET}" if self.study else None
-        return self.accepted or computed
+        return self.accepted or self.computed
 
     @property
     def files(self) -> list[str]:
         """The files that a run makes."""
         suffixes: list[str] = []
-        if self.study:
+        if self.study and not self.accepted:
             suffixes += [DATASET]
         if self.drawing:
             suffixes += PICTURES
@@ -136,102 +128,53 @@ class Artifact:
         return [f"results/{self.place}{suffix}" for suffix in suffixes]
 
 
-@dataclass(frozen=True)
-class ArtifactFiles:
-    """The files of one name, as paths relative to the folder; the dataset is the first.
+def folder_of(part: str) -> str:
+    """The folder of the artifacts of a part of the package.
 
     Examples
     --------
-    >>> fig14 = ArtifactFiles("fig14", ("figures/fig14.nc", "figures/fig14.png"))
-    >>> fig14.dataset, fig14.others, fig14.is_text
-    ('figures/fig14.nc', ('figures/fig14.png',), False)
+    >>> folder_of("paper"), folder_of("beyond")
+    ('figures', 'figures/beyond')
     """
-
-    name: str
-    files: tuple[str, ...]
-
-    @property
-    def dataset(self) -> str | None:
-        """The file of the dataset; None for a text and for a schematic."""
-        return next((file for file in self.files if file.endswith(DATASET)), None)
-
-    @property
-    def others(self) -> tuple[str, ...]:
-        """The files that are made from the dataset."""
-        return tuple(file for file in self.files if file != self.dataset)
-
-    @property
-    def is_text(self) -> bool:
-        """Whether this is the article or its supplement, which are made from all datasets."""
-        return self.files[0] in TEXTS
+    return FIGURES if part == "paper" else f"{FIGURES}/{part}"
 
 
-def files_of_figures(folder: Path) -> list[Path]:
-    """The files in the folders of artifacts of a run or of the record.
+def files_in(folder: Path) -> set[str]:
+    """The files of the artifacts and texts in the folder of a run or of a house, by their paths.
 
-    Those whose names begin with a point were not written completely, and are left out.
+    Those whose names begin with a point were not written completely, and are left out. The texts of
+    a house have names in small letters, so that README is none of them.
     """
-    return [path for each in FOLDERS for path in folder.glob(f"{each}/[!.]*") if path.is_file()]
+    found = [*folder.glob(f"{FIGURES}/**/[!.]*.*"), *folder.glob(f"[a-z]*{TEXT}")]
+    paths = [path.relative_to(folder) for path in found if path.name != _ABOUT]
+    return {path.as_posix() for path in paths if path.suffix in _SUFFIXES}
 
 
-def _files_in(folder: Path) -> list[str]:
-    paths = [path for path in files_of_figures(folder) if path.name != _ABOUT]
-    paths += [folder / text for text in TEXTS if (folder / text).exists()]
-    return [path.relative_to(folder).as_posix() for path in paths if path.suffix in _SUFFIXES]
-
-
-def artifacts_in(*folders: Path, not_made: Collection[str] = ()) -> dict[str, ArtifactFiles]:
-    """The artifacts of which at least one folder has a file, by name; the texts come last.
-
-    ``not_made`` are files that a run did not make, which may be in neither.
-
-    Raises
-    ------
-    ModelError
-        If one of the folders has no artifact, although nothing is known that was not made.
-    """
-    files = {file for file in not_made if PurePosixPath(file).suffix in _SUFFIXES}
-    for folder in folders:
-        found_here = _files_in(folder)
-        if not found_here and not not_made:
-            raise ModelError(f"nothing to compare in {folder}: neither figures/ nor {TEXTS[0]}")
-        files.update(found_here)
-    if all((folder / MEASURED).is_file() for folder in folders):
-        files.add(MEASURED)
-    by_name: dict[str, list[str]] = {}
-    for file in sorted(files, key=lambda file: _SUFFIXES.index(PurePosixPath(file).suffix)):
-        by_name.setdefault(PurePosixPath(file).stem, []).append(file)
-    found = [ArtifactFiles(name, tuple(by_name[name])) for name in sorted(by_name)]
-    found.sort(key=lambda artifact: artifact.is_text)
-    return {artifact.name: artifact for artifact in found}
-
-
-def digests_of_code(results: Path, file: str) -> str | None:
-    """The digests of the code with which a run would make a dataset or a PNG file now.
-
-    A run notes it in ``code/``; without this file, as in results from elsewhere, it is unknown.
-    """
-    path = PurePosixPath(file)
-    job = path.stem if path.suffix == DATASET else f"draw_{path.stem}"
-    note = results / "code" / job
-    return without_versions(note.read_text("utf-8", errors="replace")) if note.is_file() else None
-
-
-def artifacts_among(paths: Iterable[str]) -> list[str]:
-    """The names of the artifacts whose datasets are among some paths, in the order of the paths.
+def by_artifact(files: Iterable[str]) -> dict[str, list[str]]:
+    """The files of each artifact by its name, with the dataset first, and the texts last.
 
     Examples
     --------
-    >>> artifacts_among(["results/figures/fig14.nc", "config/engines.nc", "README.md"])
-    ['fig14', 'engines']
+    >>> by_artifact(["paper.md", "figures/fig14.png", "figures/fig14.nc"])
+    {'fig14': ['figures/fig14.nc', 'figures/fig14.png'], 'paper': ['paper.md']}
     """
-    return [PurePosixPath(path).stem for path in paths if path.endswith(DATASET)]
+    known = (path for path in map(PurePosixPath, files) if path.suffix in _SUFFIXES)
+    paths = sorted(known, key=lambda path: (path.name == str(path), path.stem))
+    found: dict[str, list[str]] = {path.stem: [] for path in paths}
+    for path in sorted(paths, key=lambda path: _SUFFIXES.index(path.suffix)):
+        found[path.stem].append(str(path))
+    return found
+
+
+def is_text(path: Path) -> bool:
+    """Whether a file stands beside the folder of the artifacts, and is made from all of them."""
+    return path.suffix == TEXT and (path.parent / FIGURES).is_dir()
 
 
 def carrier_of(path: Path) -> Path:
     """The file that carries the provenance of a file: the file itself, or its dataset.
 
-    For the article and its supplement it is the dataset of the claims, the last one of a run.
+    For a text it is the dataset that was written last.
 
     Raises
     ------
@@ -242,9 +185,9 @@ def carrier_of(path: Path) -> Path:
         raise ModelError(f"{path} cannot be read: no such file")
     if path.suffix in CARRIERS:
         return path
-    beside = "figures/claims.nc" if path.name in TEXTS else f"{path.stem}{DATASET}"
-    dataset = path.parent / beside
+    written = path.parent.glob(f"{FIGURES}/*{DATASET}") if is_text(path) else []
+    dataset = max(written, key=lambda x: x.stat().st_mtime, default=path.with_suffix(DATASET))
     if not dataset.is_file():
-        missing = f"there is no {beside} next to it"
+        missing = f"there is no {dataset.name} next to it"
         raise ModelError(f"{path} is not an artifact of this workflow: {missing}")
     return dataset

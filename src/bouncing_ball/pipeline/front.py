@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
-from bouncing_ball.pipeline.artifacts import FOLDERS, Artifact
+from bouncing_ball.pipeline.artifacts import Artifact, folder_of
 
 KINDS = {
     ".nc": "dataset",
@@ -65,8 +65,7 @@ def page_of(part: str) -> str:
     >>> page_of("paper"), page_of("beyond")
     ('figures/README.md', 'figures/beyond/README.md')
     """
-    paper, beyond = FOLDERS
-    return f"{paper if part == 'paper' else beyond}/README.md"
+    return f"{folder_of(part)}/README.md"
 
 
 def _by_number(artifact: Artifact) -> tuple[bool, str]:

@@ -4,7 +4,7 @@ The scripts of the workflow are a few lines that call this module; ``snakemake``
 Snakemake provides for them.
 """
 
-import gc
+import os
 import signal
 import sys
 import traceback
@@ -23,9 +23,11 @@ from bouncing_ball.datasets.files import (
     write_dataset,
     write_text,
 )
+from bouncing_ball.datasets.variables import budgeted
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.provenance import PREFIX, gather
-from bouncing_ball.pipeline.sources import without_versions
+from bouncing_ball.pipeline.run import CONCLUSION
+from bouncing_ball.pipeline.sources import code_of_note
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -33,27 +35,13 @@ REFERENCE = (
 )
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
-_CONCLUSION = Path("results/logs/conclusion")
-
-
-# The last sentence of a run. It may end with exit status 1 although no job failed, for example
-# because of a difference from the record. For a failed job Snakemake prints ten lines, with a
-# command that the user did not type; such a run ends with one sentence instead.
+HOUSE = "BOUNCING_BALL_HOUSE"
+"""The variable of the environment with the folder of the house whose workflow runs."""
 
 
 def conclude(sentence: str) -> None:
-    """End the run with this sentence, which replaces an earlier one."""
-    write_text(_CONCLUSION, sentence)
-
-
-def concluded() -> str:
-    """The sentence with which this run ends, or an empty text; it is removed by this call."""
-    sentence = _CONCLUSION.read_text(encoding="utf-8") if _CONCLUSION.is_file() else ""
-    _CONCLUSION.unlink(missing_ok=True)
-    return sentence
-
-
-# One job.
+    """End the run with this sentence, which replaces an earlier one, see :mod:`.run`."""
+    write_text(CONCLUSION, sentence)
 
 
 @contextmanager
@@ -63,7 +51,10 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     The traceback is then in the log, whose last line is the same, and the process exits with status
     1.
     """
-    _prepare_process()
+    # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
+    # closing the file would then wait forever. Because files are written completely or not at all,
+    # no file is damaged.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     lines: list[str] = []
     log = Path(snakemake.log[0])
     log.unlink(missing_ok=True)
@@ -81,18 +72,6 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
             with suppress(OSError):
                 write_text(log, f"{traceback.format_exc()}{message}\n")
             sys.exit(f"{message} (details in {log})")
-
-
-def _prepare_process() -> None:
-    # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
-    # closing the file would then wait forever. Because files are written completely or not at all,
-    # no file is damaged.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # Imported modules remain in use, and few objects of a job are in cycles: excluding the former
-    # from garbage collection, and collecting seldom, saves time.
-    gc.freeze()
-    gc.set_threshold(100_000)
-    gc.enable()
 
 
 @contextmanager
@@ -155,13 +134,12 @@ def provenance(snakemake: Any) -> dict[str, str]:
     It is gathered when a file is written and is not a parameter of the job, because Snakemake
     would then run every job again after each commit.
     """
-    # The scripts are in workflow/scripts of the repository; the run may be in another folder.
-    repository = Path(snakemake.scriptdir).resolve().parents[1]
     code = snakemake.input.code
     inputs = [str(path) for path in snakemake.input if path != code]
-    gathered = gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
-    text = Path(code).read_text(encoding="utf-8")
-    return gathered | {f"{PREFIX}code": without_versions(text)}
+    house = Path(os.environ[HOUSE])
+    gathered = gather(str(snakemake.output[0]), inputs, house, snakemake.config)
+    note = Path(code).read_text(encoding="utf-8")
+    return gathered | {f"{PREFIX}code": code_of_note(note)}
 
 
 def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
@@ -180,8 +158,8 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     """Run the study of the job, which takes the parameters in the form that the configuration has,
     and write its dataset.
 
-    The provenance becomes global attributes, and so do the parameters and the settings of the run,
-    unless the study itself sets attributes.
+    The variables get the budgets of the artifact. The provenance becomes global attributes, and so
+    do the parameters and the settings of the run, unless the study itself sets attributes.
 
     Returns
     -------
@@ -196,6 +174,7 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")
+    dataset = budgeted(dataset, snakemake.params.get("budgets", {}))
     parameters = dataset.attrs or recorded(given)
     publish(snakemake, dataset, parameters)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

@@ -12,16 +12,18 @@ import json
 import os
 import shlex
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bouncing_ball.datasets import DRAWING
-from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
-from bouncing_ball.pipeline.sources import versions
+from bouncing_ball.datasets.files import require_readable
+from bouncing_ball.errors import ModelError, printable
+from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, FIGURES, TEXT, carrier_of, is_text
+from bouncing_ball.pipeline.sources import REPOSITORY, versions
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 PREFIX = "provenance_"
@@ -29,9 +31,20 @@ PREFIX = "provenance_"
 
 CONFIGURATION = "config/config.yaml"
 
-# Entries of the provenance that are JSON.
-_NESTED = ("configuration", "inputs", "versions")
+TEXTUAL = ("title", "references", "history", "Conventions", DRAWING)
+"""Attributes of a dataset that are no parameters and no provenance."""
+
+# Entries of the provenance that are JSON, and all others.
+_NESTED: dict[str, Callable[[Any], Any]] = {
+    "configuration": dict,
+    "inputs": lambda names: list(map(str, names)),
+    "versions": dict,
+}
+_PLAIN = ("commit", "dirty", "target", "code")
+_NO_PARAMETERS = {*TEXTUAL, *(f"{PREFIX}{name}" for name in (*_NESTED, *_PLAIN))}
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
+# Git ignores this file, so that it does not mark the next run as dirty.
+_CHANGED = "results/configuration.json"
 
 
 class Revision(NamedTuple):
@@ -44,45 +57,51 @@ class Revision(NamedTuple):
 UNKNOWN = Revision("unknown", "unknown")
 
 
-def _git(folder: Path, *arguments: str) -> str | None:
+def git(folder: Path, *arguments: str) -> str | None:
     """The output of git; None if git fails or is not installed."""
     # In a hook the variables GIT_… name a repository that may not be this one.
     environment = {key: value for key, value in os.environ.items() if not key.startswith("GIT_")}
     # Without optional locks, parallel jobs do not wait for each other's lock of the index.
     command = ["git", "--no-optional-locks", "-C", str(folder), *arguments]
-    try:
-        done = subprocess.run(
-            command, env=environment, capture_output=True, encoding="utf-8", check=True
-        )
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    return done.stdout
+    with suppress(OSError, ValueError):
+        done = subprocess.run(command, env=environment, capture_output=True, encoding="utf-8")
+        return None if done.returncode else done.stdout
+    return None
 
 
-def revision(folder: Path) -> Revision:
-    """The commit checked out in a folder, and whether its tree is dirty.
+def repository_of(house: Path) -> Path | None:
+    """The repository of a house: the house itself, or the checkout in which it stands; or None.
+
+    A release that was unpacked inside of another repository is not a commit of that one.
+    """
+    tops = (top for top in (house, REPOSITORY) if house.is_relative_to(top))
+    return next((top for top in tops if (top / ".git").exists()), None)
+
+
+def revision(house: Path) -> Revision:
+    """The commit of the repository of a house, and whether its tree is dirty.
 
     Untracked files count, unless git ignores them; the accepted record does not count.
-    The result is :data:`UNKNOWN` without git, or if the folder is not the top of a repository.
+    The result is :data:`UNKNOWN` without git and without a repository.
     """
-    # A release that was unpacked inside of another repository is not a commit of that one.
-    if not (folder / ".git").exists():
+    top = repository_of(house)
+    if top is None:
         return UNKNOWN
-    excluded = [f":(exclude){name}" for name in RECORD]
-    commit = _git(folder, "rev-parse", "HEAD")
-    changed = _git(folder, "status", "--porcelain", "--untracked-files=normal", ".", *excluded)
+    own = house.relative_to(top).as_posix()
+    record = (f"**/{FIGURES}/**", f"[a-z]*{TEXT}", f"{own}/[a-z]*{TEXT}")
+    excluded = [f":(top,exclude,glob){pattern}" for pattern in record]
+    commit = git(top, "rev-parse", "HEAD")
+    changed = git(top, "status", "--porcelain", "--untracked-files=normal", ".", *excluded)
     if commit is None or changed is None:
         return UNKNOWN
     return Revision(commit.strip(), "yes" if changed else "no")
 
 
-def checkout(*starts: Path) -> Path | None:
-    """The first folder, at or above each start in turn, that holds this workflow, or None."""
-    for start in starts:
-        for folder in (start, *start.parents):
-            if (folder / "Snakefile").is_file() and (folder / "src" / "bouncing_ball").is_dir():
-                return folder
-    return None
+def house_of(*starts: Path) -> Path | None:
+    """The first folder, at or above each start in turn, that is a house, or None."""
+    folders = (folder for start in starts for folder in (start, *start.parents))
+    marks = ("Snakefile", CONFIGURATION)
+    return next((x for x in folders if all((x / mark).is_file() for mark in marks)), None)
 
 
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
@@ -106,9 +125,9 @@ def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, 
 
 
 def gather(
-    target: str, inputs: Iterable[str], repository: Path, config: Mapping[str, Any]
+    target: str, inputs: Iterable[str], house: Path, config: Mapping[str, Any]
 ) -> dict[str, str]:
-    """The provenance of the files that a job writes, in a checkout and with a configuration.
+    """The provenance of the files that a job writes, in a house and with a configuration.
 
     Returns
     -------
@@ -125,10 +144,10 @@ def gather(
     ConfigurationError
         If config/config.yaml cannot be read.
     """
-    now = revision(repository)
-    written = read_yaml(repository / CONFIGURATION)
-    # A run may be in any folder; files outside it are named relative to the top of the checkout.
-    named = {os.path.relpath(path, repository) if ".." in path else path for path in inputs}
+    now = revision(house)
+    written = read_yaml(house / CONFIGURATION)
+    # A run may be in any folder; files outside it are named relative to the house.
+    named = {os.path.relpath(path, house) if ".." in path else path for path in inputs}
     made = {
         "commit": now.commit,
         "dirty": now.dirty,
@@ -148,6 +167,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     ModelError
         If the file is of another kind, cannot be read, or is damaged.
     """
+    require_readable(path)
     # Imported where they are needed, because each import takes time.
     try:
         match path.suffix:
@@ -171,28 +191,43 @@ def read_attributes(path: Path) -> dict[str, Any]:
         raise ModelError(f"{path} cannot be read: damaged, or not ours") from None
 
 
-def read_provenance(path: Path) -> dict[str, Any]:
-    """The provenance of a dataset or a picture, by the names of :func:`gather` without the prefix.
+def provenance_in(path: Path) -> dict[str, Any]:
+    """The provenance in a dataset or a picture, by the names of :func:`gather` without the prefix,
+    as far as the file has it; ``configuration``, ``inputs`` and ``versions`` always have a value,
+    and a dataset has its ``parameters``.
 
     Raises
     ------
     ModelError
-        If the file cannot be read, see :func:`read_attributes`, or carries no provenance.
+        If the file cannot be read, see :func:`read_attributes`, or its provenance is damaged.
     """
-    attributes = read_attributes(path).items()
-    found = {name.removeprefix(PREFIX): x for name, x in attributes if name.startswith(PREFIX)}
-    if not found:
-        raise ModelError(f"{path} carries no provenance")
+    attributes = read_attributes(path)
+    found: dict[str, Any] = {
+        name.removeprefix(PREFIX): str(value)
+        for name, value in attributes.items()
+        if name.startswith(PREFIX)
+    }
+    if path.suffix == DATASET:
+        found["parameters"] = parameters_of(attributes)
     try:
-        return found | {name: json.loads(found[name]) for name in _NESTED}
-    except (KeyError, TypeError, ValueError):
+        nested = {name: kind(json.loads(found.get(name, "{}"))) for name, kind in _NESTED.items()}
+    except (TypeError, ValueError):
         raise ModelError(f"{path}: its provenance is damaged") from None
+    return found | nested
 
 
-# Git ignores this file, so that it does not mark the next run as dirty.
-_CHANGED = "results/configuration.json"
-TEXTUAL = ("title", "references", "history", "Conventions", DRAWING)
-"""Attributes of a dataset that are no parameters."""
+def read_provenance(path: Path) -> dict[str, Any]:
+    """The whole provenance of a dataset or a picture, see :func:`provenance_in`.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, or carries no whole provenance.
+    """
+    found = provenance_in(path)
+    if not found.keys() >= {"commit", "dirty", "target"}:
+        raise ModelError(f"{path} carries no provenance")
+    return found
 
 
 def parameters_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
@@ -206,22 +241,16 @@ def parameters_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     return {
         str(name): np.asarray(value).tolist()
         for name, value in attributes.items()
-        if not str(name).startswith((PREFIX, *TEXTUAL))
+        if name not in _NO_PARAMETERS
     }
-
-
-def _parameters_beside(path: Path, commit: str) -> dict[str, Any]:
-    """The parameters, from the dataset beside the artifact if it has the same commit."""
-    dataset = path.with_suffix(DATASET)
-    attributes = read_attributes(dataset) if dataset.is_file() else {}
-    return parameters_of(attributes) if attributes.get(f"{PREFIX}commit") == commit else {}
 
 
 def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) -> list[str]:
     """The commands that make a file again, ready to paste into a shell."""
-    # --force, because Snakemake does not make a file again that is up to date.
-    force = "snakemake --cores 2 --force"
-    commands = [target if target.startswith("make ") else f"{force} {shlex.quote(target)}"]
+    # --force, because Snakemake does not make a file again that is up to date. The target is what a
+    # file says, and may be anything.
+    forced = ["snakemake", "--cores", "2", "--force", target]
+    commands = [shlex.join(target.split() if target.startswith("make ") else forced)]
     if changed := made["configuration"]:
         text = shlex.quote(json.dumps(changed))
         commands = [
@@ -230,16 +259,19 @@ def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) ->
         ]
     if checked_out or made["commit"] == "unknown":
         return commands
-    return [f"git checkout {shlex.quote(made['commit'])}", "make setup", *commands]
+    return [shlex.join(["git", "checkout", made["commit"]]), "make setup", *commands]
 
 
-def explain(file: Path, /) -> dict[str, Any]:
+def explain(file: Path, /, *, house: Path | None = None) -> dict[str, Any]:
     """The inputs from which an artifact is made, as plain values.
 
     Parameters
     ----------
     file
         An artifact, or a copy of one.
+    house
+        The folder with the Snakefile that makes it. By default the one in which the file or the
+        current folder is.
 
     Raises
     ------
@@ -247,22 +279,25 @@ def explain(file: Path, /) -> dict[str, Any]:
         If the file is not one of this workflow, or carries no provenance.
     """
     made = read_provenance(carrier_of(file))
-    repository = checkout(Path.cwd(), Path(__file__).resolve())
-    now = revision(repository) if repository else UNKNOWN
+    house = house or house_of(file.absolute(), Path.cwd(), REPOSITORY)
+    now = revision(house.absolute()) if house else UNKNOWN
     unknown = "unknown" in (made["commit"], now.commit)
     checked_out = None if unknown else made["commit"] == now.commit
     target = made["target"]
     if file.suffix not in CARRIERS:
-        beside = PurePosixPath(target).with_name(file.name)
-        target = f"results/{file.name}" if file.name in TEXTS else str(beside)
+        folder = "results" if is_text(file) else PurePosixPath(target).parent
+        target = f"{folder}/{file.name}"
     running = versions().items()
+    # The parameters of a picture are those of the dataset beside it, if this has the same commit.
+    dataset = file.with_suffix(DATASET)
+    beside = provenance_in(dataset) if dataset.is_file() else {}
     return {
         "file": str(file),
         "commit": made["commit"],
         "checked_out": checked_out,
         "dirty": made["dirty"],
         "configuration": made["configuration"],
-        "parameters": _parameters_beside(file, made["commit"]),
+        "parameters": beside["parameters"] if beside.get("commit") == made["commit"] else {},
         "inputs": made["inputs"],
         "versions": made["versions"],
         "running": {name: x for name, x in running if made["versions"].get(name) != x},
@@ -280,4 +315,4 @@ def explanation_lines(answer: Mapping[str, Any]) -> list[str]:
     rows["make again"] = " && ".join(answer["make_again"])
     texts = {k: x if isinstance(x, str) else json.dumps(x) for k, x in rows.items()}
     width = max(map(len, rows)) + 2
-    return [f"{name:<{width}}{text}" for name, text in texts.items()]
+    return [printable(f"{name:<{width}}{text}", None) for name, text in texts.items()]

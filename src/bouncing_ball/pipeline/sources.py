@@ -1,29 +1,44 @@
-"""The code that a job uses, and digests of its contents.
+"""The code that a job uses, by digests.
 
-Snakemake runs a job again when its script changes, but does not see the modules that the script
-imports, and it compares times, which an old file or ``--touch`` makes misleading. Each job
-therefore has one small file as its input, which holds the digests of all modules and data that the
-job uses, and the versions of the libraries that compute and draw. The file is written only when one
-of them changes, and is then newer than what the job has made. A dataset and a picture record the
-same digests, so that a comparison names the files that have changed.
+Snakemake does not see the modules that a script imports, and it compares times, which an old file
+or ``--touch`` makes misleading. Each job therefore has a *note* as one of its inputs: a small file
+with a digest of each file of code that the job uses, and with the versions of the libraries that
+compute and draw. A note is written only if one of them changes, and is then newer than what the job
+has made. Datasets and pictures record the same digests, so that a comparison names the files that
+have changed.
+
+Comments, docstrings and the ends of lines are no code. Only of a module that imports a reader of
+docstrings, such as the claims, whose statements are docstrings, the docstrings count.
 """
 
+import ast
+import io
 import platform
 import re
-from collections.abc import Iterable
+import tokenize
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
+from importlib.util import cache_from_source, find_spec
 from pathlib import Path
+from typing import NamedTuple
 
 from bouncing_ball.datasets.files import write_text
 
-_PACKAGE = "bouncing_ball"
-_ROOT = Path(__file__).resolve().parent.parent
-_REPOSITORY = _ROOT.parent.parent
+REPOSITORY = Path(__file__).resolve().parents[3]
+"""The checkout, with all houses; names of files of code are relative to it."""
 
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib", "python-flint")
 """The libraries that affect the artifacts."""
+
+# The packages of all houses begin with it.
+_OURS = "bouncing_ball"
+# The package imports its public functions only when a user asks for them, and a result imports what
+# draws it only when it is drawn, which no study does.
+_ON_DEMAND = ("bouncing_ball/__init__.py", "bouncing_ball/drawing/result.py")
+_STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
 
 
 @cache
@@ -32,104 +47,140 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
+def digest(content: bytes) -> str:
+    """The first digits of SHA-256 of a content, whatever the ends of its lines are."""
+    return sha256(content.replace(b"\r\n", b"\n")).hexdigest()[:12]
+
+
+def without_remarks(code: str) -> str:
+    """The lines of Python code without comments, docstrings and empty lines.
+
+    Examples
+    --------
+    >>> print(without_remarks("def f():  # why\\n    'What.'\\n\\n    return '#'\\n"))
+    def f():
+        return '#'
+    """
+    lines = code.splitlines(keepends=True)
+    tokens = list(tokenize.generate_tokens(io.StringIO(code).readline))
+    before = tokenize.ENCODING
+    remarks = []
+    for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
+        is_statement = before in _STARTS and after.type == tokenize.NEWLINE
+        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and is_statement):
+            remarks.append((token.start, token.end))
+        else:
+            before = token.type
+    for (first, start), (last, end) in reversed(remarks):
+        rest = lines[first - 1][:start] + lines[last - 1][end:]
+        lines[first - 1 : last] = [rest]
+    return "\n".join(line.rstrip() for line in "".join(lines).splitlines() if line.strip())
+
+
+class Module(NamedTuple):
+    """A file of Python: digests of all of it and of its code alone, the names that it imports, and
+    whether it reads docstrings.
+    """
+
+    content: str
+    code: str
+    imports: list[str]
+    reads_docstrings: bool
+
+
+def examined(content: bytes) -> Module:
+    """The :class:`Module` with a content; what is no Python imports nothing.
+
+    Examples
+    --------
+    >>> examined(b"from bouncing_ball.errors import ModelError").imports
+    ['bouncing_ball.errors', 'bouncing_ball.errors.ModelError']
+    """
+    whole = digest(content)
+    try:
+        text = content.decode().replace("\r\n", "\n")
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError):
+        return Module(whole, whole, [], False)
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            # `from package import name` may name a module or an object.
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    code = without_remarks(text)
+    ours = sorted(name for name in names if name.startswith(_OURS))
+    return Module(whole, digest(code.encode()), ours, bool(re.search("getdoc|__doc__", code)))
+
+
 @cache
-def module_file(module: str) -> Path | None:
-    """The file of a module or subpackage of this package; None if it does not exist.
+def file_of_module(name: str) -> Path | None:
+    """The file of a module or a package of a house; None if there is none.
 
     If a package and a module have the same name, Python imports the package.
     """
-    base = _ROOT.joinpath(*module.split(".")[1:])
-    for candidate in (base / "__init__.py", base.with_suffix(".py")):
-        if candidate.is_file():
-            return candidate
-    return None
-
-
-# Regular expressions, because parsing the files would take half a second at each start of
-# Snakemake.
-_FROM = re.compile(rf"^[ \t]*from ({_PACKAGE}[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
-_IMPORT = re.compile(rf"^[ \t]*import ({_PACKAGE}[\w.]*)", re.MULTILINE)
-
-
-# The package itself imports its public functions only when a user asks for them, and a result
-# imports what draws it only when it is drawn, which no study does.
-_ON_DEMAND = {_ROOT / "__init__.py", _ROOT / "drawing" / "result.py"}
+    first, *rest = name.split(".")
+    spec = find_spec(first)
+    if spec is None or spec.origin is None:
+        return None
+    base = Path(spec.origin).parent.joinpath(*rest)
+    candidates = (base / "__init__.py", base.with_suffix(".py"))
+    return next((path for path in candidates if path.is_file()), None)
 
 
 @cache
-def imports(path: Path) -> frozenset[str]:
-    """Names of modules of this package, and of objects in them, that a file imports."""
-    text = path.read_text(encoding="utf-8")
-    found = set(_IMPORT.findall(text))
-    for module, names in _FROM.findall(text):
-        # `from package import name` may name a module or an object.
-        found.add(module)
-        found |= {f"{module}.{name}" for name in re.findall(r"\w+", names)}
-    return frozenset(found)
-
-
-@cache
-def _files_of_module(name: str) -> tuple[Path, ...]:
-    """The files that Python reads for a name of :func:`imports`: a module and its packages."""
+def files_of_module(name: str) -> list[Path]:
+    """The files that Python reads for a name in an import: a module and the packages above it."""
     parts = name.split(".")
-    files = (module_file(".".join(parts[: k + 1])) for k in range(len(parts)))
-    return tuple(file for file in files if file)
+    files = (file_of_module(".".join(parts[: count + 1])) for count in range(len(parts)))
+    return [file for file in files if file]
 
 
 @cache
-def _imported(path: Path) -> frozenset[Path]:
-    """The files that are read when a file is imported, without what these import."""
-    names = () if path in _ON_DEMAND else imports(path)
-    return frozenset(file for name in names for file in _files_of_module(name))
+def _data_of_folder(folder: Path) -> list[Path]:
+    """The files of a package that are not Python, also in its folders that are no packages."""
+    inner = [each for each in folder.iterdir() if each.is_dir() and each.name != "__pycache__"]
+    folders = [folder, *(each for each in inner if not (each / "__init__.py").exists())]
+    files = [path for each in folders for path in each.iterdir() if path.is_file()]
+    # An empty file, such as the mark of a typed package, holds no data.
+    return [x for x in files if x.suffix != ".py" and x.name[0] != "." and x.stat().st_size]
 
 
-@cache
-def _data_of_folder(folder: Path) -> tuple[Path, ...]:
-    """The files of a package that are not Python, also in its folders that are no packages.
-
-    An empty file, such as the mark of a typed package, holds no data.
-    """
-    found: list[Path] = []
-    for path in folder.iterdir():
-        if path.is_dir():
-            if path.name != "__pycache__" and not (path / "__init__.py").exists():
-                found += _data_of_folder(path)
-        elif (
-            path.suffix not in (".py", ".pyc")
-            and not path.name.startswith(".")
-            and path.stat().st_size
-        ):
-            found.append(path)
-    return tuple(found)
-
-
-@cache
-def data_beside(module: Path) -> tuple[Path, ...]:
+def data_beside(module: Path) -> list[Path]:
     """The data files that a module may read.
 
     Data with the name of a module belong to this module; other data belong to all modules of their
     package.
-
-    Examples
-    --------
-    >>> "style.mplstyle" in [path.name for path in data_beside(_ROOT / "drawing" / "style.py")]
-    True
     """
-    return tuple(
+    return [
         path
         for path in _data_of_folder(module.parent)
         if path.stem == module.stem or not path.with_suffix(".py").exists()
-    )
+    ]
 
 
-def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
+@cache
+def module(path: Path) -> Module:
+    """What a file of Python holds."""
+    return examined(path.read_bytes())
+
+
+@cache
+def imported(path: Path) -> frozenset[Path]:
+    """The files that are read when a file is imported, without what these import."""
+    names = [] if path.as_posix().endswith(_ON_DEMAND) else module(path).imports
+    return frozenset(file for name in names for file in files_of_module(name))
+
+
+def sources(modules: Iterable[str], others: Iterable[Path] = ()) -> list[Path]:
     """The files that are read when modules are imported and scripts run, sorted.
 
     Parameters
     ----------
     modules : iterable of str
-        Modules of this package with their full names.
-    files : iterable of Path
+        Modules with their full names.
+    others : iterable of Path
         Scripts, whose imports are followed, and other files that the job reads.
 
     Raises
@@ -139,75 +190,71 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
 
     Examples
     --------
-    >>> found = sources(["bouncing_ball.models.damping"])
-    >>> [path.name for path in found if path.name != "__init__.py"]
-    ['errors.py', 'damping.py', 'arrays.py', 'elementary.py']
+    >>> [name_of(path) for path in sources(["bouncing_ball.errors"])]
+    ['src/bouncing_ball/__init__.py', 'src/bouncing_ball/errors.py']
     """
-    for module in modules:
-        if module_file(module) is None:
-            raise ModuleNotFoundError(f"no module {module}")
-    given = set(files)
-    scripts = [path for path in given if path.suffix == ".py"]
+    given = set(others)
     found: set[Path] = set()
-    new: set[Path] = set()
-    for module in modules:
-        new.update(_files_of_module(module))
-    for script in scripts:
-        new |= _imported(script)
-    new -= given
+    new = {file for path in given if path.suffix == ".py" for file in imported(path)}
+    for name in modules:
+        if file_of_module(name) is None:
+            raise ModuleNotFoundError(f"no module {name}")
+        new.update(files_of_module(name))
     while new:
         found |= new
-        new = set().union(*map(_imported, new)) - found - given
+        new = set().union(*map(imported, new)) - found
     return sorted(given.union(found, *map(data_beside, found)), key=str)
 
 
-# The first digits of SHA-256; two versions of a file share them with a chance of 2⁻⁴⁸.
-_DIGITS = 12
+def digest_of(path: Path) -> str:
+    """A digest of what counts in a file."""
+    if path.suffix != ".py":
+        return digest(path.read_bytes())
+    about = [module(each) for each in (path, *imported(path))]
+    return about[0].content if any(x.reads_docstrings for x in about) else about[0].code
 
 
-@cache
-def _line_of_file(path: Path) -> str:
-    """A digest of the contents of a file, and its name in the package or in the repository."""
-    if path.is_relative_to(_REPOSITORY):
-        folder = _ROOT if path.is_relative_to(_ROOT) else _REPOSITORY
-    else:
-        # A run in another folder has a sample of its own in `config`.
-        folder = path.parent.parent
-    name = path.relative_to(folder).as_posix()
-    return f"{sha256(path.read_bytes()).hexdigest()[:_DIGITS]} {name}"
+def lines_of(paths: Iterable[Path]) -> str:
+    """A line for each file with its digest and its name, which tell code apart."""
+    return "\n".join(f"{digest_of(path)} {name_of(path)}" for path in paths)
 
 
-def digests(paths: Iterable[Path]) -> str:
-    """A line for each file with the digest of its contents and its name, which tell code apart.
+def write_note(path: Path, paths: Sequence[Path]) -> None:
+    """Write the note of a job that uses these files, if it has another content."""
+    libraries = "\n".join(f"{number} {name}" for name, number in versions().items())
+    text = f"{lines_of(paths)}\n\n{libraries}"
+    if path.is_file() and path.read_bytes() == text.encode():
+        return
+    for source in paths:
+        # Python runs bytecode if the size and the time of the source are as they were when it was
+        # compiled, which an edit may restore; but not the time of the last change of the file.
+        bytecode = Path(cache_from_source(str(source)))
+        with suppress(OSError):
+            if source.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
+                bytecode.unlink()
+    write_text(path, text)
 
-    They do not depend on the folder of the repository.
-    """
-    return "\n".join(map(_line_of_file, paths))
 
-
-def lines_of_versions() -> str:
-    """A line for each of :func:`versions`, in the form of the lines of :func:`digests`.
-
-    The results of a job are made again when a library is replaced.
-    """
-    return "\n".join(f"{number} {name}" for name, number in versions().items())
-
-
-def without_versions(code: str) -> str:
-    """The text of :func:`digests` alone, from one that may have :func:`lines_of_versions` too.
+def code_of_note(note: str) -> str:
+    """The lines of code in the text of a note, without the versions of the libraries.
 
     Examples
     --------
-    >>> without_versions("1f0e a.py\\n2.3.5 numpy")
+    >>> code_of_note("1f0e a.py\\n\\n2.3.5 numpy")
     '1f0e a.py'
     """
-    names = ("python", *LIBRARIES)
-    lines = code.splitlines()
-    return "\n".join(line for line in lines if line.rpartition(" ")[2] not in names)
+    return note.partition("\n\n")[0]
+
+
+def name_of(path: Path) -> str:
+    """The name of a file of code: its path in the repository."""
+    # A run in another folder has a file of its own in `config`.
+    folder = REPOSITORY if path.is_relative_to(REPOSITORY) else path.parent.parent
+    return path.relative_to(folder).as_posix()
 
 
 def changed_files(record: str, new: str) -> list[str]:
-    """The names of the files that differ between two texts of :func:`digests`.
+    """The names of the files that differ between two texts of :func:`lines_of`.
 
     Earlier records have a single digest, which names no file.
 
@@ -218,14 +265,7 @@ def changed_files(record: str, new: str) -> list[str]:
     >>> changed_files("5d5d", "1f0e a.py")
     []
     """
-    old, now = ([line.split(" ", 1) for line in text.splitlines()] for text in (record, new))
-    if any(len(line) < 2 for line in (*old, *now)):
+    old, now = ([line.partition(" ") for line in text.splitlines()] for text in (record, new))
+    if not old or not now or not all(name for _, _, name in (*old, *now)):
         return []
-    changed = {tuple(line) for line in old} ^ {tuple(line) for line in now}
-    return sorted({name for _, name in changed})
-
-
-def keep_digests(path: Path, found: str) -> None:
-    """Write digests to a file if the file has others."""
-    if not path.is_file() or path.read_bytes() != found.encode():
-        write_text(path, found)
+    return sorted({name for _, _, name in {*old} ^ {*now}})

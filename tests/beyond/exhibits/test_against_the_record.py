@@ -4,11 +4,10 @@ import inspect
 from pathlib import Path
 
 import pytest
-from declared_artifacts import ARTIFACTS, STUDIES
+from declared_artifacts import ARTIFACTS, STUDIES, compare_artifact
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.configuration import arguments, typed
-from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -34,7 +33,7 @@ def drifts(recorded, names):
             given["data"] = {name: known[name] for name in ARTIFACTS[artifact].reads}
         record = recorded[artifact]
         again = typed(study)(**given).assign_attrs(record.attrs)
-        rows = compare_datasets(artifact, record, again)
+        rows = compare_artifact(artifact, record, again)
         found += [f"{artifact}: {row}" for row in rows if not row.outcome.agrees]
     return found
 

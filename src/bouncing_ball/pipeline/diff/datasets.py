@@ -1,17 +1,18 @@
-"""The comparison of two datasets, variable by variable.
+"""The comparison of two datasets, variable by variable, each within its budget.
 
-Parameters come first. If the two datasets were made from other parameters, this is what the
-comparison says, and differences of the numbers are secondary: they have no share of a budget.
-Otherwise the structure must be the same, and each variable has a drift at each of its entries,
-which is compared with the budget of the variable (:mod:`bouncing_ball.pipeline.diff.budgets`).
+A study declares the budget of a variable beside the variable itself
+(:mod:`bouncing_ball.datasets.variables`), and it stands in the attributes of the dataset. The drift
+of a number is |new - record| over the range of the record's values, or over another scale; it may
+be as large as the budget. The drift between two NaN, or between two infinities of the same sign, is
+zero; between a finite value and one that is not finite it is infinite. Texts, counts and truth
+values have not drifted if they are equal, and have an infinite drift if they are not.
 
-A drift is dimensionless: a difference divided by a scale. The drift between two NaN, or between
-two infinities of the same sign, is zero; the drift between a finite value and one that is not
-finite is infinite. Texts, counts and truth values have not drifted if they are equal, and have an
-infinite drift if they are not.
+If the two datasets were made from other parameters, this is what the comparison says, and
+differences of the numbers are secondary: they have no share of a budget.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,13 +20,15 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.pipeline.diff.budgets import IGNORED, Budget, budget_of
-from bouncing_ball.pipeline.diff.cause import parameter_changes
-from bouncing_ball.pipeline.diff.outcome import ComparedItem, Outcome
+from bouncing_ball.datasets.variables import IGNORED, ROUNDING, Budget
+from bouncing_ball.pipeline.diff.outcome import Outcome, Row
+from bouncing_ball.pipeline.diff.texts import excerpt
 from bouncing_ball.pipeline.provenance import TEXTUAL, parameters_of
 
 # Number of samples by which a point may slide along a curve.
 _REACH = 2
+# A number below this part of the range of its variable is compared with this range.
+_TINY = 1e-3
 
 
 def span(values: ArrayLike) -> float:
@@ -43,7 +46,7 @@ def span(values: ArrayLike) -> float:
     finite = values[np.isfinite(values)]
     if not finite.size:
         return 1.0
-    return float(np.ptp(finite)) or float(np.max(np.abs(finite))) or 1.0
+    return float(np.ptp(finite) or np.max(np.abs(finite)) or 1.0)
 
 
 def same(record: ArrayLike, new: ArrayLike) -> np.ndarray:
@@ -54,9 +57,8 @@ def same(record: ArrayLike, new: ArrayLike) -> np.ndarray:
     >>> same([np.nan, 1.0, np.inf], [np.nan, 2.0, np.inf]).tolist()
     [True, False, True]
     """
-    record = np.asarray(record)
-    new = np.asarray(new)
-    return (record == new) | ((record != record) & (new != new))
+    is_missing = np.not_equal(record, record) & np.not_equal(new, new)
+    return np.equal(record, new) | is_missing
 
 
 def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray:
@@ -69,35 +71,33 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
     >>> pointwise([1.0, 1.0], [np.nan, 2.0], [1.0, np.nan]).tolist()
     [inf, inf]
     """
-    record = np.asarray(record, dtype=float)
-    new = np.asarray(new, dtype=float)
     with np.errstate(invalid="ignore", divide="ignore"):
-        distance = np.abs(new - record) / scale
+        distance = np.abs(np.subtract(new, record)) / scale
     return np.where(same(record, new), 0.0, np.where(np.isnan(distance), np.inf, distance))
 
 
-def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
-    """Distance of point k from the segments k - 1 - reach … k + reach of a polyline."""
-    count = x.shape[-1]
-    # The distance from the vertex itself, because a vertex between two gaps has no segment.
-    nearest = np.hypot(x - line_x, y - line_y)
-    if count == 1:
-        return nearest
-    for offset in range(-_REACH - 1, _REACH + 1):
-        left = np.clip(np.arange(count) + offset, 0, count - 2)
-        left_x = line_x[..., left]
-        left_y = line_y[..., left]
-        chord_x = line_x[..., left + 1] - left_x
-        chord_y = line_y[..., left + 1] - left_y
-        square = chord_x * chord_x + chord_y * chord_y
-        along = ((x - left_x) * chord_x + (y - left_y) * chord_y) / np.where(
-            square > 0, square, 1.0
-        )
-        along = np.clip(along, 0.0, 1.0)
-        distance = np.hypot(x - left_x - along * chord_x, y - left_y - along * chord_y)
-        # fmin, because a segment with an end that is not finite does not count.
-        nearest = np.fmin(nearest, distance)
-    return nearest
+def to_segments(points: np.ndarray, line: np.ndarray, left: np.ndarray) -> np.ndarray:
+    """Distance of points x + iy from segments of a line.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (..., N)
+    line : ndarray of complex, shape (..., M)
+    left : ndarray of int, shape (N or 1, K)
+        For each point the segments that are looked at, by their left ends.
+
+    Examples
+    --------
+    >>> to_segments(np.array([1 + 1j, 5]), np.array([0, 2 + 0j]), np.array([[0]])).tolist()
+    [1.0, 3.0]
+    """
+    start = line[..., left]
+    chord = line[..., left + 1] - start
+    away = points[..., None] - start
+    square = np.abs(chord) ** 2
+    along = np.clip((away * chord.conj()).real / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    # fmin, because a segment with an end that is not finite does not count.
+    return np.fmin.reduce(np.abs(away - along * chord), axis=-1)
 
 
 def curve_distance(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
@@ -122,89 +122,40 @@ def curve_distance(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLik
     0.25
     """
     x, y, new_x, new_y = (np.asarray(part, dtype=float) for part in (x, y, new_x, new_y))
+    with np.errstate(invalid="ignore"):
+        old = x + 1j * y
+        now = new_x + 1j * new_y
+    count = old.shape[-1]
+    reach = np.arange(-_REACH - 1, _REACH + 1)
+    left = np.clip(np.arange(count)[:, None] + reach, 0, max(count - 2, 0))
     with np.errstate(invalid="ignore", over="ignore"):
-        distance = np.maximum(_to_polyline(new_x, new_y, x, y), _to_polyline(x, y, new_x, new_y))
-    finite = np.isfinite(x) & np.isfinite(y) & np.isfinite(new_x) & np.isfinite(new_y)
-    alike = _alike(x, new_x) & _alike(y, new_y)
-    return np.where(finite, distance, np.where(alike, 0.0, np.inf))
+        # The distance from the vertex itself, because a vertex between two gaps has no segment.
+        distance = np.abs(now - old)
+        if count > 1:
+            ways = (to_segments(now, old, left), to_segments(old, now, left))
+            distance = np.maximum(*(np.fmin(distance, way) for way in ways))
+    finite = [np.isfinite(part) for part in (x, y, new_x, new_y)]
+    alike = ((finite[0] & finite[2]) | same(x, new_x)) & ((finite[1] & finite[3]) | same(y, new_y))
+    return np.where(np.all(finite, axis=0), distance, np.where(alike, 0.0, np.inf))
 
 
-def _alike(record, new):
-    """Whether both values are finite, both NaN, or both infinite with the same sign."""
-    return (np.isfinite(record) & np.isfinite(new)) | same(record, new)
-
-
-def _form(data: xr.Dataset, name: str) -> str | None:
-    """Type and sizes of a variable, None if there is none; texts of all lengths have the same type.
-
-    Examples
-    --------
-    >>> _form(xr.Dataset({"x": (("case", "n"), [[1, 2]])}), "x")
-    'int64, case: 1, n: 2'
-    """
-    if name not in data.variables:
-        return None
-    variable = data[name]
-    kind = "text" if variable.dtype.kind in "OSUT" else str(variable.dtype)
-    sizes = [f"{dimension}: {size}" for dimension, size in variable.sizes.items()]
-    role = " (coordinate)" if name in data.coords else ""
-    return ", ".join([kind, *sizes]) + role
-
-
-def _attribute_rows(
-    name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]
-) -> list[ComparedItem]:
-    """The attributes of a variable or a dataset that differ, such as units or a raised budget."""
-    found = []
-    for attribute in sorted(record.keys() | new.keys()):
-        old_text, new_text = (
-            repr(np.asarray(side[attribute]).tolist()) if attribute in side else None
-            for side in (record, new)
-        )
-        if old_text != new_text:
-            found.append(
-                ComparedItem(f"{attribute} of {name}", Outcome.STRUCTURE, old_text, new_text)
-            )
-    return found
-
-
-def word_rows(record: xr.Dataset, new: xr.Dataset) -> list[ComparedItem]:
-    """A row for each text about a dataset that differs, such as its title and its references.
+def budget_of(attributes: Mapping[Any, Any]) -> Budget:
+    """The budget in the attributes of a variable; rounding if it declares none.
 
     Examples
     --------
-    >>> record, new = (xr.Dataset(attrs={"title": title}) for title in ("Figure 1", "Figure 2"))
-    >>> [(row.name, row.new) for row in word_rows(record, new)]
-    [('title of the dataset', "'Figure 2'")]
+    >>> budget_of({"budget": 1e-8, "scale": "1"}), budget_of({}).size
+    (Budget(size=1e-08, scale='1', over='', share=0.0), 1e-13)
     """
-    old, now = ({name: data.attrs.get(name, "") for name in TEXTUAL} for data in (record, new))
-    return _attribute_rows("the dataset", old, now)
+    return Budget(
+        size=float(attributes.get("budget", ROUNDING)),
+        scale=str(attributes.get("scale", "")),
+        over=str(attributes.get("over", "")),
+        share=float(attributes.get("share", 0.0)),
+    )
 
 
-def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[ComparedItem]:
-    """A row for each variable of another type or size, and for each attribute that differs.
-
-    The attributes of the dataset itself are compared elsewhere.
-
-    Examples
-    --------
-    >>> record, new = (xr.Dataset({"x": ("t", values)}) for values in ([0.0], [0.0, 1.0]))
-    >>> (row,) = structure_rows(record, new)
-    >>> row.name, row.record, row.new
-    ('x', 'float64, t: 1', 'float64, t: 2')
-    """
-    found = []
-    for name in map(str, {**record.variables, **new.variables}):
-        old_form = _form(record, name)
-        new_form = _form(new, name)
-        if old_form != new_form:
-            found.append(ComparedItem(name, Outcome.STRUCTURE, old_form, new_form))
-        if old_form is not None and new_form is not None:
-            found += _attribute_rows(name, record[name].attrs, new[name].attrs)
-    return found
-
-
-def _broadcast_beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
+def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
     """Another variable of a dataset, broadcast to the shape of the first."""
     return data[other].broadcast_like(data[name]).transpose(*data[name].dims).values
 
@@ -215,11 +166,10 @@ def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> n
     """
     (along,) = (dim for dim in record[name].dims if str(dim).endswith("point"))
     axis = record[name].dims.index(along)
-    x = _broadcast_beside(record, name, over)
-    new_x = _broadcast_beside(new, name, over)
+    x = _beside(record, name, over)
     y = record[name].values
-    new_y = new[name].values
-    scaled = (x / span(x), y / span(y), new_x / span(x), new_y / span(y))
+    scaled = (x / span(x), y / span(y))
+    scaled += (_beside(new, name, over) / span(x), new[name].values / span(y))
     distance = curve_distance(*(np.moveaxis(values, axis, -1) for values in scaled))
     return np.moveaxis(distance, -1, axis)
 
@@ -247,116 +197,129 @@ def drift_over_budget(name: str, record: xr.Dataset, new: xr.Dataset, budget: Bu
     [1.0, 1.0, 1.0]
     >>> drift_over_budget("x", record, record + 0.5, Budget(0.25, scale="1")).tolist()
     [2.0, 2.0, 2.0]
+    >>> drift_over_budget("x", record, record + [9, 0, 0], Budget(0.25, share=0.5)).tolist()
+    [0.6666666666666666, 0.0, 0.0]
     """
     old = record[name]
     if budget.size == IGNORED:
         return np.zeros(old.shape)
     if budget.over:
-        return _curve_drift(name, record, new, budget.over) / budget.size
-    if old.dtype.kind != "f":
-        return np.where(same(old.values, new[name].values), 0.0, np.inf)
-    match budget.scale:
-        case "":
-            scale: ArrayLike = span(old)
-        case "1":
-            scale = 1.0
-        case other:
-            scale = _broadcast_beside(record, name, other)
-    return pointwise(old.values, new[name].values, scale) / budget.size
+        drift = _curve_drift(name, record, new, budget.over) / budget.size
+    elif old.dtype.kind != "f":
+        drift = np.where(same(old.values, new[name].values), 0.0, np.inf)
+    else:
+        scale: ArrayLike = span(old) if budget.scale == "" else 1.0
+        if budget.scale not in ("", "1"):
+            scale = _beside(record, name, budget.scale)
+        drift = pointwise(old.values, new[name].values, scale) / budget.size
+    # A share of the entries may exceed the budget.
+    beyond = drift > 1
+    part = beyond.mean()
+    return np.where(beyond, part / budget.share, drift) if 0 < part <= budget.share else drift
 
 
-def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
+def _form(data: xr.Dataset, name: str) -> str:
+    """Type and sizes of a variable, empty without one; texts of all lengths have the same type.
+
+    Examples
+    --------
+    >>> _form(xr.Dataset({"x": (("case", "n"), [[1, 2]])}), "x")
+    'int64, case: 1, n: 2'
+    """
+    if name not in data.variables:
+        return ""
+    kind = "text" if data[name].dtype.kind in "OSUT" else str(data[name].dtype)
+    sizes = [f"{dimension}: {size}" for dimension, size in data[name].sizes.items()]
+    return ", ".join([kind, *sizes]) + (" (coordinate)" if name in data.coords else "")
+
+
+def attribute_rows(
+    both: Sequence[Mapping[Any, Any]], outcome: Outcome, about: str = ""
+) -> list[Row]:
+    """The attributes that differ in the record and in the new file, such as parameters or units.
+
+    Examples
+    --------
+    >>> rows = attribute_rows([{"n": 1, "r__min": 0.85}, {"n": "1"}], Outcome.PARAMETERS)
+    >>> [row.told for row in rows]
+    ["n 1 → '1'", 'r.min 0.85 → nothing']
+    """
+    found = []
+    for name in sorted({**both[0], **both[1]}):
+        values = [np.asarray(side[name]).tolist() if name in side else None for side in both]
+        if repr(values[0]) != repr(values[1]):
+            # A number and its text have quotation marks to tell them apart.
+            shown = str if str(values[0]) != str(values[1]) else repr
+            old, now = (None if value is None else shown(value) for value in values)
+            told = f"{name.replace('__', '.')}{about} {excerpt(old, now)}"
+            found.append(Row(name, outcome, told))
+    return found
+
+
+def _place(variable: xr.DataArray, index: Sequence[int]) -> str:
     """Coordinates of an entry, or its indices where a dimension has none.
 
     Examples
     --------
     >>> _place(xr.DataArray([[1.0, 2.0]], {"t": [0.0, 0.5]}, ("case", "t")), (0, 1))
-    'case = 0, t = 0.5'
+    ' at case = 0, t = 0.5'
     """
-    return ", ".join(f"{name} = {text}" for name, text in _labels(variable, index).items())
+    labels = [variable[name].values[k] for name, k in zip(variable.dims, index, strict=True)]
+    texts = [f"{x:.6g}" if isinstance(x, float) else str(x) for x in labels]
+    named = [f"{name} = {text}" for name, text in zip(variable.dims, texts, strict=True)]
+    return f" at {', '.join(named)}" if named else ""
 
 
-def _labels(variable: xr.DataArray, index: tuple[int, ...]) -> dict[str, str]:
-    """The coordinates of an entry as texts, by their names."""
-    places = zip(variable.dims, index, strict=True)
-    labels = {str(name): variable[name].values[k] for name, k in places}
-    return {name: f"{x:.6g}" if isinstance(x, float) else str(x) for name, x in labels.items()}
-
-
-def relative_change(record: float, new: float, scale: float) -> float:
-    """(new - record) / |record|, or over the scale for a record below a thousandth of the scale.
+def _told(record: Any, new: Any) -> str:
+    """Two entries; of numbers six digits, unless it takes more to tell them apart.
 
     Examples
     --------
-    >>> relative_change(2.0, 1.5, 10.0), relative_change(0.0, 0.5, 10.0)
-    (-0.25, 0.05)
+    >>> _told(0.8403156852330397, 0.8395002457896041), _told(0.1, 0.1 + 2**-50), _told("", "one")
+    ('0.840316 → 0.8395', '0.1 → 0.1000000000000009', 'nothing → one')
     """
-    size = abs(record)
-    return float((new - record) / (size if size > 1e-3 * scale else scale))
+    texts = [f"{x:.6g}" if isinstance(x, float) else str(x) for x in (record, new)]
+    if texts[0] == texts[1]:
+        texts = [str(record), str(new)]
+    return " → ".join(text or "nothing" for text in texts)
 
 
-def _word_changes(old: xr.DataArray, now: xr.DataArray, unmoved: np.ndarray) -> tuple[str, ...]:
-    """Each entry of a variable of words that changed: its place, and both contents.
-
-    Examples
-    --------
-    >>> old, now = (xr.DataArray(words, {"t": [1, 2]}) for words in (["a", "b"], ["a", "c"]))
-    >>> _word_changes(old, now, np.array([True, False]))
-    ('2: b → c',)
-    """
-    is_axis = old.name in old.dims
-    found = []
-    for place in zip(*np.nonzero(~unmoved), strict=True):
-        index = tuple(int(k) for k in place)
-        # The labels of an axis are their own places.
-        where = "" if is_axis else f"{', '.join(_labels(old, index).values())}: "
-        contents = [str(side.values[index]) or "nothing" for side in (old, now)]
-        found.append(where + " → ".join(contents))
-    return tuple(found)
-
-
-def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> ComparedItem:
-    """The largest move of a variable over its budget, and the number of entries that moved."""
+def _variable_rows(name: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
+    """The entry of a variable that moved most over its budget, and of words all that changed."""
     old = record[name]
     now = new[name]
-    unmoved = same(old.values, now.values)
-    if unmoved.all():
-        return ComparedItem(name, Outcome.IDENTICAL, entries=old.size)
-    share = drift_over_budget(name, record, new, budget_of(artifact, name, now.attrs))
+    moved = ~same(old.values, now.values)
+    if not moved.any():
+        return [Row(name, Outcome.IDENTICAL)]
+    # The budget that the record declares; a first one may come with the new dataset.
+    budget = budget_of(old.attrs if "budget" in old.attrs else now.attrs)
+    share = drift_over_budget(name, record, new, budget)
     # Among the entries that moved, because several may have the same share.
-    order = np.where((share > 0) | ~unmoved, share, -1.0)
-    place = tuple(int(k) for k in np.unravel_index(np.argmax(order), order.shape))
-    beyond = int(np.count_nonzero(share > 1))
-    change = 0.0
-    changes: tuple[str, ...] = ()
-    if old.dtype.kind in "fiu":
-        change = relative_change(float(old.values[place]), float(now.values[place]), span(old))
-    elif old.dtype.kind in "OSUT" and old.ndim:
-        changes = _word_changes(old, now, unmoved)
-    return ComparedItem(
-        name,
-        Outcome.DRIFTED if beyond else Outcome.WITHIN,
-        record=str(old.values[place]),
-        new=str(now.values[place]),
-        share=float(share[place]),
-        at=_place(old, place),
-        moved=int(np.count_nonzero(~unmoved)),
-        beyond=beyond,
-        entries=old.size,
-        title=str(old.attrs.get("long_name", name)),
-        change=change,
-        changes=changes,
-    )
+    largest = np.argmax(np.where((share > 0) | moved, share, -1.0))
+    is_words = old.dtype.kind in "OSUT"
+    places = np.argwhere(moved) if is_words else [np.unravel_index(largest, share.shape)]
+    beyond = f"{np.count_nonzero(share > 1)} beyond the budget"
+    count = f"; {np.count_nonzero(moved)} of {old.size} entries moved, {beyond}"
+    found = []
+    for place in (tuple(map(int, each)) for each in places):
+        entries = (old.values[place], now.values[place])
+        size = math.inf
+        title = name if is_words else old.attrs.get("long_name", name)
+        if old.dtype.kind in "fiu":
+            before, after = map(float, entries)
+            # A number below a thousandth of the range is compared with this range.
+            whole = abs(before) if abs(before) > _TINY * span(old) else span(old)
+            if math.isfinite(change := (after - before) / whole):
+                size = abs(change)
+                title = f"{100 * change:+.2g} % in {title}"
+        told = f"{title}{_place(old, place)}: {_told(*entries)}"
+        outcome = Outcome.DRIFTED if share[place] > 1 else Outcome.ROUNDING
+        told += count if old.size > 1 and not is_words else ""
+        found.append(Row(name, outcome, told, size, float(share[place]), is_words))
+    return found
 
 
-def _secondary(row: ComparedItem) -> ComparedItem:
-    """A row of two datasets with other parameters: the difference has no share of a budget."""
-    if row.outcome is Outcome.IDENTICAL:
-        return row
-    return replace(row, outcome=Outcome.PARAMETERS, share=0.0, beyond=0)
-
-
-def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[ComparedItem]:
+def compare_datasets(record: xr.Dataset, new: xr.Dataset) -> list[Row]:
     """A row for each parameter and each part of the structure that differs, and for each variable.
 
     Examples
@@ -364,25 +327,31 @@ def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list
     >>> budget = {"budget": 1e-12, "scale": "1"}
     >>> record = xr.Dataset({"residual": ("point", [0.0, 1.0], budget)}, attrs={"n": 1})
     >>> new = record.copy(data={"residual": [2.0**-41, 1.0]})
-    >>> (row,) = compare_datasets("fig", record, new)
+    >>> (row,) = compare_datasets(record, new)
     >>> row.name, str(row.outcome), round(row.share, 3)
-    ('residual', 'within budget', 0.455)
-    >>> for row in compare_datasets("fig", record, new.assign_attrs(n=2)):
-    ...     print(f"{row.name}: {row.outcome}, {row.record} → {row.new}")
-    parameter n: changed parameters, 1 → 2
-    residual: changed parameters, 0.0 → 4.547473508864641e-13
+    ('residual', 'rounding', 0.455)
+    >>> for row in compare_datasets(record, new.assign_attrs(n=2)):
+    ...     print(f"{row.outcome}: {row.told}")
+    changed parameters: n 1 → 2
+    changed parameters: +4.5e-11 % in residual at point = 0: 0 → 4.54747e-13; \
+1 of 2 entries moved, 0 beyond the budget
     """
-    changes = parameter_changes(parameters_of(record.attrs), parameters_of(new.attrs))
-    parameters = [
-        ComparedItem(f"parameter {change.name}", Outcome.PARAMETERS, change.record, change.new)
-        for change in changes
-    ]
-    structure = structure_rows(record, new)
-    variables = [
-        _variable_row(artifact, name, record, new)
-        for name in map(str, record.variables)
-        if _form(record, name) == _form(new, name)
-    ]
-    if changes:
-        variables = [_secondary(row) for row in variables]
-    return parameters + structure + variables
+    both = (record, new)
+    rows = attribute_rows([parameters_of(data.attrs) for data in both], Outcome.PARAMETERS)
+    is_other = bool(rows)
+    words = [{word: data.attrs.get(word, "") for word in TEXTUAL} for data in both]
+    rows += attribute_rows(words, Outcome.STRUCTURE, " of the dataset")
+    for name in map(str, {**record.variables, **new.variables}):
+        forms = [_form(data, name) for data in both]
+        if all(forms):
+            attributes = [data[name].attrs for data in both]
+            rows += attribute_rows(attributes, Outcome.STRUCTURE, f" of {name}")
+        if forms[0] != forms[1]:
+            told = f"{name}: {' → '.join(form or 'nothing' for form in forms)}"
+            rows.append(Row(name, Outcome.STRUCTURE, told))
+            continue
+        for row in _variable_rows(name, record, new):
+            is_secondary = is_other and row.outcome is not Outcome.IDENTICAL
+            outcome = Outcome.PARAMETERS if is_secondary else row.outcome
+            rows.append(replace(row, outcome=outcome, share=0.0 if is_secondary else row.share))
+    return rows

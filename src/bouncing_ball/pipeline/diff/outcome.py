@@ -1,5 +1,6 @@
 """The outcomes of a comparison from the best to the worst, and the parts of a comparison."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -10,10 +11,11 @@ class Outcome(StrEnum):
     """The result of comparing an artifact, a file or a part of a file with the record.
 
     The outcomes are in order from the best to the worst; a whole has the outcome of its worst part.
+    What is within its budget is rounding.
     """
 
     IDENTICAL = "identical"
-    WITHIN = "within budget"
+    ROUNDING = "rounding"
     DRIFTED = "drifted"
     STRUCTURE = "changed structure"
     PARAMETERS = "changed parameters"
@@ -31,7 +33,7 @@ class Outcome(StrEnum):
     @property
     def agrees(self) -> bool:
         """Whether the difference, if any, is within the budget."""
-        return self.rank <= Outcome.WITHIN.rank
+        return self.rank <= Outcome.ROUNDING.rank
 
     @property
     def status(self) -> int:
@@ -39,7 +41,7 @@ class Outcome(StrEnum):
 
         Examples
         --------
-        >>> [outcome.status for outcome in (Outcome.WITHIN, Outcome.DRIFTED, Outcome.UNREADABLE)]
+        >>> [outcome.status for outcome in (Outcome.ROUNDING, Outcome.STALE, Outcome.UNREADABLE)]
         [0, 1, 2]
         """
         return 2 if self is Outcome.UNREADABLE else int(not self.agrees)
@@ -50,77 +52,45 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
     Examples
     --------
-    >>> str(worst([Outcome.WITHIN, Outcome.MISSING, Outcome.DRIFTED]))
+    >>> str(worst([Outcome.ROUNDING, Outcome.MISSING, Outcome.DRIFTED]))
     'missing'
     """
     return max(outcomes, key=lambda outcome: outcome.rank, default=Outcome.IDENTICAL)
 
 
 @dataclass(frozen=True)
-class ComparedItem:
-    """One item of the comparison of a file: a line of a text, a variable, an attribute, or pixels.
+class Row:
+    """A difference in a file: of a variable, a parameter, an attribute, a line, or of pixels.
 
-    Parameters
-    ----------
-    name : str
-        The number of a line, or the name of a variable.
-    outcome : Outcome
-    record, new : str, optional
-        The content in the record and in the new file, of a variable the entry that has moved most;
-        None if there is none.
-    share : float
-        Drift over the budget; 0 for a text.
-    at : str
-        Coordinates of the entry of a variable.
-    note : str
-    moved, beyond, entries : int
-        For a variable, the number of its entries that moved, of those beyond the budget, and of
-        all entries.
-    title : str
-        The description of a variable.
-    change : float
-        Relative change of the entry of a variable that moved most, with its sign.
-    changes : tuple of str
-        For a variable of words, each entry that changed with both contents.
+    ``name`` is that of the variable, or the number of the line, and ``told`` says the difference in
+    words. Rows of words, such as verdicts, come first, and those of numbers by the ``size`` of
+    their relative change; ``share`` is the drift over the budget.
     """
 
     name: str
     outcome: Outcome
-    record: str | None = None
-    new: str | None = None
+    told: str = ""
+    size: float = math.inf
     share: float = 0.0
-    at: str = ""
-    note: str = ""
-    moved: int = 0
-    beyond: int = 0
-    entries: int = 0
-    title: str = ""
-    change: float = 0.0
-    changes: tuple[str, ...] = ()
+    is_words: bool = False
+
+    @property
+    def place(self) -> tuple[bool, int, float]:
+        """The place among other rows: words, then the worst outcome, then the largest change."""
+        return not self.is_words, -self.outcome.rank, -self.size
 
 
 @dataclass(frozen=True)
 class Whole:
     """A file of rows, an artifact of files, or a folder of artifacts.
 
-    Parameters
-    ----------
-    name : str
-        For a file its path relative to either folder.
-    parts : sequence
-        The parts compared, worst first; those of a file are in their order. A file has none if its
-        bytes are identical.
-    pictures : tuple
-        For a PNG file the bytes in the record and the new bytes.
-    cause : str
-        For an artifact that is not identical, why it differs.
-    code : tuple of str
-        For an artifact, the files of code that made it and that have changed since the record.
+    An artifact that differs has its ``cause`` in words, and the files of ``code`` in which it may
+    be. A PNG file has its ``pictures``, the bytes in the record and the new ones.
     """
 
     name: str
     parts: tuple[Any, ...] = ()
-    pictures: tuple[bytes | None, bytes | None] = (None, None)
+    pictures: tuple[bytes, ...] = ()
     cause: str = ""
     code: tuple[str, ...] = ()
 
@@ -130,12 +100,19 @@ class Whole:
         return worst(part.outcome for part in self.parts)
 
     @property
-    def share(self) -> float:
-        """The largest share of a budget among the parts."""
-        return max((part.share for part in self.parts), default=0.0)
+    def place(self) -> tuple[bool, int, float]:
+        """The place among others, which is that of the first part that differs."""
+        return self.moved[0].place
 
     @property
     def moved(self) -> list[Any]:
-        """The parts that are not identical, worst first."""
-        found = [part for part in self.parts if part.outcome is not Outcome.IDENTICAL]
-        return sorted(found, key=lambda part: (-part.outcome.rank, -part.share))
+        """The parts that do not agree with the record, in the order in which they are told.
+
+        Examples
+        --------
+        >>> rows = Row("a", Outcome.DRIFTED, size=1.0), Row("b", Outcome.DRIFTED, is_words=True)
+        >>> [row.name for row in Whole("", rows).moved]
+        ['b', 'a']
+        """
+        found = [part for part in self.parts if not part.outcome.agrees]
+        return sorted(found, key=lambda part: part.place)

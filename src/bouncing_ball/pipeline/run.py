@@ -1,12 +1,46 @@
-"""What a run of Snakemake did not make, because a job failed or waited for one that failed.
+"""A run of Snakemake: what it was asked for, what it did not make, and how it ends.
 
 A run goes on with the jobs that do not need a failed one. ``workflow`` is the object that Snakemake
-provides for its handlers.
+provides for its handlers. Every process of a run imports this module, so that it imports little.
 """
 
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+PAGE = Path("results/diff/index.html")
+"""The page of the comparison with the record."""
+
+CONCLUSION = Path("results/logs/conclusion")
+"""The file with the sentence with which a run ends. It may end with exit status 1 although no job
+failed, for example because of a difference from the record. For a failed job Snakemake prints ten
+lines, with a command that the user did not type; such a run ends with one sentence instead."""
+
+
+def concluded() -> str:
+    """The sentence with which this run ends, or an empty text; it is removed by this call."""
+    sentence = CONCLUSION.read_text(encoding="utf-8") if CONCLUSION.is_file() else ""
+    CONCLUSION.unlink(missing_ok=True)
+    return sentence
+
+
+def remove_reports() -> None:
+    """Remove the reports of an earlier run, whose results may change now."""
+    for path in PAGE.parent.glob("*.*"):
+        path.unlink()
+
+
+def requested(workflow: Any) -> list[str]:
+    """The files of artifacts that the targets of a run make, or list as inputs; all, if empty.
+
+    Snakemake knows the targets only after it has read all rules, so that an input function calls
+    this. In ``snakemake --cores 2 fig14 diff`` it is Figure 14.
+    """
+    names = sorted({*workflow.dag_settings.targets} - {"all", "diff"})
+    rules = [workflow.get_rule(name) for name in names if workflow.is_rule(name)]
+    files = [Path(str(file)) for rule in rules for file in (rule.output or rule.input)]
+    figures = ("results", "figures")
+    return [str(x) for x in files if x.parts[:2] == figures or x.match("results/*.md")]
 
 
 def failed_behind(job: Any, workflow: Any) -> set[Any]:

@@ -139,7 +139,7 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
 
     Examples
     --------
-    >>> found = sources(["bouncing_ball.models.damping"])
+    >>> found = sources(["bouncing_ball_beyond.models.damping"])
     >>> [path.name for path in found if path.name != "__init__.py"]
     ['errors.py', 'damping.py', 'arrays.py', 'elementary.py']
     """

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
+from bouncing_ball_beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
 from bouncing_ball.paper.claims.parameters import PAPER, digest, of_dataset

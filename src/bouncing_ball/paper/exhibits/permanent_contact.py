@@ -2,11 +2,11 @@
 
 import xarray as xr
 
-from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Parameters, Restitution, Span, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.permanent_contact import (
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.permanent_contact import (
     RESTITUTION_THRESHOLD,
     permanent_contact_minimum,
     permanent_contact_threshold,

@@ -11,6 +11,7 @@ import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.orbits.return_map import returned
 
 
 def _one_impact(ball, amplitude):
@@ -51,6 +52,24 @@ def test_the_saddle_node_of_the_restitution_model_is_that_of_its_closed_form(r, 
     assert -found.rate / found.coefficient == pytest.approx(2 / lam, rel=1e-9)
     assert found.opens_upwards and found.other == pytest.approx(r * r, rel=1e-12)
     assert found.error < 1e-10 * abs(found.coefficient)
+
+
+def test_a_state_of_which_newtons_method_finds_no_landing_does_not_return():
+    r, lam = 0.5, 1.4
+    one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=r), amplitude=lam)
+    problem = one.problem()
+    aside = np.random.default_rng(0).uniform([-3.0, -3.0], [3.0, 4.0], (2000, 2))
+    distance = returned(problem, one.point(problem), aside).distance
+    lands = np.isfinite(distance).all(axis=-1)
+    assert 0 < np.count_nonzero(~lands) < 100
+    phase = one.phase + aside[lands, 0]
+    up = lam * np.cos(phase) - r * (one.relative_impact_velocity + aside[lands, 1])
+    # The flight may last several turns of the table.
+    turned = one.phase + distance[lands, 0] - phase
+    time = turned + 2 * np.pi * np.arange(-1, 4)[:, np.newaxis]
+    gap = lam * np.sin(phase) + (up - time / 2) * time - lam * np.sin(phase + time)
+    # A hundred roundings of heights of order ten.
+    assert np.abs(gap).min(axis=0).max() < 1e-12
 
 
 def _map_in_digits(r, lam):

@@ -47,20 +47,6 @@ def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray,
     return amplitude * (_ONE - versine), amplitude * sine
 
 
-class Lagged(NamedTuple):
-    """y = δ + κ δ′ and its derivatives up to the third order, bounds of those of the orders 2 to 4,
-    and δ.
-    """
-
-    values: tuple[np.ndarray, ...]
-    bounds: tuple[np.ndarray, ...]
-    gap: np.ndarray
-
-    def derivatives(self, ended: np.ndarray) -> Derivatives:
-        """y as a search for its zero takes it, which may stop for the functions marked."""
-        return Derivatives._make((*self.values, *self.bounds, ended))
-
-
 class Above(NamedTuple):
     """The times at which a ball passes the table's highest point, z = Λ; equal if it does not."""
 
@@ -136,19 +122,6 @@ class Flight(Motion):
         """The end of the time in which z > Λ, or the time itself if it is not within this time."""
         begins, ends = self.above
         return np.where((time >= begins) & (time < ends), ends, time)
-
-    def lagged(self, time: np.ndarray, lag: Any) -> Lagged:
-        """y = δ + κ δ′ after a time of flight, with the bounds of its derivatives."""
-        displacement, rate, second, third = self.gap(time)
-        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
-        values = (
-            displacement + lag * rate,
-            rate + lag * second,
-            second + lag * third,
-            third - lag * (1 + second),
-        )
-        forcing = self.amplitude * np.sqrt(1 + lag * lag)
-        return Lagged(values, (1 + forcing, forcing, forcing), displacement)
 
     def level_speed_squared(self) -> np.ndarray:
         """v² + 2(1 + Λ)δ_b: the square of the relative speed at the table's level against the
@@ -237,9 +210,18 @@ class Rise(Motion):
         self.flight = flight
 
     def __call__(self, time: np.ndarray) -> Derivatives:
-        at = self.flight.lagged(time, 0.0)
-        _, rate, second, _ = at.values
-        return at.derivatives(ended=(rate <= 0) & (second <= 0))
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        return Derivatives(
+            value=displacement,
+            rate=rate,
+            second=second,
+            third=third,
+            second_bound=1 + lam,
+            third_bound=lam,
+            fourth_bound=lam,
+            ended=(rate <= 0) & (second <= 0),
+        )
 
 
 class Unloaded(Motion):
@@ -248,13 +230,24 @@ class Unloaded(Motion):
     def __init__(self, flight: Flight, lag: Any):
         self.flight = flight
         self.lag = lag
+        self.forcing = flight.amplitude * np.sqrt(1 + lag * lag)
 
     def __call__(self, time: np.ndarray) -> Derivatives:
-        at = self.flight.lagged(time, self.lag)
-        y, rate, second, third = at.values
+        lag = self.lag
+        displacement, rate, second, third = self.flight.gap(time)
         # At the release y = 0 but for rounding; this zero is not the one that is searched for.
-        y = np.where(time == 0, 0.0, y)
-        return Derivatives(-y, -rate, -second, -third, *at.bounds)._replace(ended=at.gap >= 0)
+        y = np.where(time == 0, 0.0, displacement + lag * rate)
+        return Derivatives(
+            value=-y,
+            rate=-(rate + lag * second),
+            second=-(second + lag * third),
+            # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
+            third=lag * (1 + second) - third,
+            second_bound=1 + self.forcing,
+            third_bound=self.forcing,
+            fourth_bound=self.forcing,
+            ended=displacement >= 0,
+        )
 
 
 class Fall(Motion):

@@ -130,7 +130,7 @@ def _longest(m: int, now: BallsInContact, panel: Panel) -> np.ndarray:
 
 def _begin(law: ForceLaw, start: Start, nodes: int) -> BallsInContact:
     """The balls at the start of their contacts."""
-    scale = scales(law, np.abs(start.rate), start.weight + start.amplitude)
+    scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
     rest = _AT_REST * scale.speed
     rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
     zero = np.zeros_like(rate)

@@ -167,13 +167,12 @@ class ContactDynamics(ResumingDynamics):
             amplitude=self.amplitude * one,
             weight=one,
         )
-        lam = self.amplitude * one
         compliant = not self.law.shape and rest(self.law) > _COMPLIANT
         attempts = (_SOME_PANELS, MOST_PANELS) if compliant else (MOST_PANELS,)
         for panels in attempts:
             end = march(self.law, start, panels, differentiate=differentiate, longest=_LASTING)
             lost = np.flatnonzero(np.isnan(end.duration) & ~free)
-            held = [int(k) for k in lost if holds(self.law.take(k), float(lam[k]))]
+            held = [int(k) for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
             if len(held) == lost.size:
                 break
         return end, held

@@ -18,6 +18,8 @@ from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 # Newton's method for a landing doubles its digits in each round.
 _ROUNDS = 12
 _SETTLED = 4e-16
+# The largest last step relative to the time, of which the square is a rounding error.
+_SMALL = 1e-8
 
 
 class Returned(NamedTuple):
@@ -73,7 +75,8 @@ def returned(
                 due = due + landing.late
                 if not np.any(np.abs(landing.late) > _SETTLED * np.abs(due)):
                     break
-            time = landing.time + landing.late
+            lands = np.abs(landing.late) <= _SMALL * np.abs(due)
+            time = np.where(lands, landing.time + landing.late, np.nan)
             speed = landing.velocity + landing.late * landing.acceleration
             end, passed = arrived(dynamics, departure, time, speed, next_lag)
             change = dynamics.jacobian(impact, departure, end, passed)

@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from types import UnionType
 
-import xarray as xr
-
 import bouncing_ball_beyond as bb
+import xarray as xr
+from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball_contacts.contact.units import SIParameter
+
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import Range
-from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
 
 Declared = Range | SIParameter | tuple[str, ...]
 # What is imported for type checkers only.

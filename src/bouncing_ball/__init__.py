@@ -54,17 +54,17 @@ from typing import TYPE_CHECKING, Any
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
     from bouncing_ball_beyond.accuracy.error_thresholds import error_thresholds as error_thresholds
-    from bouncing_ball_contacts.contact.assess import assess_contact as assess_contact
-    from bouncing_ball_contacts.contact.choose import choose_contact as choose_contact
-    from bouncing_ball_contacts.contact.contact import Contact as Contact
-    from bouncing_ball_contacts.contact.describe import describe_contact as describe_contact
+    from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
     from bouncing_ball_beyond.models.law_balls import contact_law as contact_law
-    from bouncing_ball_contacts.contact.question import EngineSetup as EngineSetup
-    from bouncing_ball_contacts.contact.question import Question as Question
-    from bouncing_ball_contacts.contact.table import Table as Table
-    from bouncing_ball_contacts.contact.write import write_contact as write_contact
-    from bouncing_ball.errors import ModelError as ModelError
-    from bouncing_ball.errors import NoOrbitError as NoOrbitError
+    from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
+    from bouncing_ball_beyond.models.laws.start_speed import (
+        LankaraniNikravesh as LankaraniNikravesh,
+    )
+    from bouncing_ball_beyond.models.makers import corrected as corrected
+    from bouncing_ball_beyond.models.makers import rigid as rigid
+    from bouncing_ball_beyond.models.makers import spring_damper as spring_damper
+    from bouncing_ball_beyond.models.rigid import RestitutionModel as RestitutionModel
+    from bouncing_ball_beyond.models.spring_damper import SpringDamper as SpringDamper
     from bouncing_ball_beyond.motions.motion_of import basins as basins
     from bouncing_ball_beyond.motions.motion_of import lyapunov_exponent as lyapunov_exponent
     from bouncing_ball_beyond.motions.motion_of import motion_of as motion_of
@@ -73,15 +73,6 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.motions.over_time import drop as drop
     from bouncing_ball_beyond.motions.over_time import history as history
     from bouncing_ball_beyond.motions.over_time import simulate as simulate
-    from bouncing_ball_contacts.measured.fit import fit_contact as fit_contact
-    from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
-    from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
-    from bouncing_ball_beyond.models.laws.start_speed import LankaraniNikravesh as LankaraniNikravesh
-    from bouncing_ball_beyond.models.makers import corrected as corrected
-    from bouncing_ball_beyond.models.makers import rigid as rigid
-    from bouncing_ball_beyond.models.makers import spring_damper as spring_damper
-    from bouncing_ball_beyond.models.rigid import RestitutionModel as RestitutionModel
-    from bouncing_ball_beyond.models.spring_damper import SpringDamper as SpringDamper
     from bouncing_ball_beyond.periodic.branches.follow import follow as follow
     from bouncing_ball_beyond.periodic.branches.grazing import grazing_form as grazing_form
     from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
@@ -92,6 +83,18 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.periodic.orbits_of_ball import permanent_contact as permanent_contact
     from bouncing_ball_beyond.periodic.read_orbits import open as open
     from bouncing_ball_beyond.periodic.read_orbits import read_orbits as read_orbits
+    from bouncing_ball_contacts.contact.assess import assess_contact as assess_contact
+    from bouncing_ball_contacts.contact.choose import choose_contact as choose_contact
+    from bouncing_ball_contacts.contact.contact import Contact as Contact
+    from bouncing_ball_contacts.contact.describe import describe_contact as describe_contact
+    from bouncing_ball_contacts.contact.question import EngineSetup as EngineSetup
+    from bouncing_ball_contacts.contact.question import Question as Question
+    from bouncing_ball_contacts.contact.table import Table as Table
+    from bouncing_ball_contacts.contact.write import write_contact as write_contact
+    from bouncing_ball_contacts.measured.fit import fit_contact as fit_contact
+
+    from bouncing_ball.errors import ModelError as ModelError
+    from bouncing_ball.errors import NoOrbitError as NoOrbitError
 
 __version__ = "0.1.0"
 

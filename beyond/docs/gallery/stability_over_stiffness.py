@@ -1,8 +1,7 @@
 """Stability over stiffness: where the 1-T, 2-T and 3-T orbits and their doublings are stable."""
 
-import matplotlib.pyplot as plt
-
 import bouncing_ball_beyond
+import matplotlib.pyplot as plt
 
 ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
 parameters = ("amplitude", "frequency_ratio")

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
     from bouncing_ball_beyond.models.law_balls import contact_law as contact_law
     from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
-    from bouncing_ball_beyond.models.laws.start_speed import LankaraniNikravesh as LankaraniNikravesh
+    from bouncing_ball_beyond.models.laws.start_speed import (
+        LankaraniNikravesh as LankaraniNikravesh,
+    )
     from bouncing_ball_beyond.models.makers import corrected as corrected
     from bouncing_ball_beyond.models.makers import rigid as rigid
     from bouncing_ball_beyond.models.makers import spring_damper as spring_damper

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from bouncing_ball_beyond.accuracy.error_law import (
     REMAINDER,
     coefficients,
@@ -14,13 +13,19 @@ from bouncing_ball_beyond.accuracy.error_law import (
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
+from bouncing_ball_beyond.models.damping import (
+    LINEAR,
+    Release,
+    damping_ratio,
+    restitution_coefficient,
+)
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbit
+
+from bouncing_ball.errors import NoOrbitError
 
 RELEASES = LINEAR
 

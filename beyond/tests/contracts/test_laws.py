@@ -12,13 +12,6 @@ from typing import ClassVar
 import numpy as np
 import pytest
 import xarray as xr
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
-
-from bouncing_ball_contacts.engines.impedance import Impedance
-from bouncing_ball_beyond.models.laws.named import LAWS as NAMED
-from bouncing_ball_beyond.models.laws.named import by_name
-from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.laws.collocation import contacts, path
@@ -34,6 +27,8 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 )
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.loaded import under
+from bouncing_ball_beyond.models.laws.named import LAWS as NAMED
+from bouncing_ball_beyond.models.laws.named import by_name
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
@@ -41,6 +36,11 @@ from bouncing_ball_beyond.models.laws.steady_contact import permanent_contact
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.engines.impedance import Impedance
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from bouncing_ball.errors import ModelError
 
 
 @dataclass(frozen=True, repr=False)

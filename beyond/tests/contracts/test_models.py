@@ -13,9 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from bouncing_ball_contacts.engines.impedance import Impedance
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -25,8 +22,6 @@ from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.paper.claims.witness import nearest
 from bouncing_ball_beyond.periodic.branches.following import orbits_along
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
@@ -35,6 +30,11 @@ from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations as events_of
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
+from bouncing_ball_contacts.engines.impedance import Impedance
+
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.paper.claims.witness import nearest
 
 EPS = np.finfo(float).eps
 COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)

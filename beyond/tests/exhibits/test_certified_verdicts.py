@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.exhibits.certified_verdicts import interval_against_print
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from bouncing_ball_beyond.exhibits.certified_verdicts import interval_against_print
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict, against_print
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.exhibits.release_rules import free_impacts
 from scipy.integrate import simpson
 
-from bouncing_ball_beyond.exhibits.release_rules import free_impacts
 from bouncing_ball.pipeline.configuration import typed
 
 DATA = typed(free_impacts)({"restitution": 0.4, "restitution_min": 0.2, "samples": 2001})

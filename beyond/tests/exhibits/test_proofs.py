@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-
 from bouncing_ball_beyond.exhibits.certified_verdicts import (
     certified_interval,
     certified_verdicts,
@@ -17,6 +16,7 @@ from bouncing_ball_beyond.exhibits.proofs import (
     certified_thresholds,
     proofs,
 )
+
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claims import CLAIMS

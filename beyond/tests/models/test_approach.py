@@ -4,13 +4,18 @@ from time import process_time
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-
-from bouncing_ball import ModelError, contact_law, corrected, orbit, rigid, spring_damper
-from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
+from bouncing_ball_beyond.models.damping import (
+    LINEAR,
+    Release,
+    damping_ratio,
+    restitution_coefficient,
+)
 from bouncing_ball_beyond.models.laws.signature import computed
 from bouncing_ball_beyond.models.laws.steady_contact import permanent_contact
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from scipy.integrate import solve_ivp
+
+from bouncing_ball import ModelError, contact_law, corrected, orbit, rigid, spring_damper
 
 APPROACH = Release.APPROACH
 

@@ -1,9 +1,8 @@
 """Histories of balls that come to lie on a contact that is computed by collocation."""
 
+import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
-
-import bouncing_ball_beyond as bb
 
 
 def on_contact(stiffness, damping):

@@ -4,18 +4,17 @@ import inspect
 from functools import cache
 from itertools import pairwise
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-
-import bouncing_ball_beyond
-from bouncing_ball_beyond.motions.basins import basins
-from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
-from bouncing_ball_beyond.motions.motions import Kind, Reason
-from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.motions.basins import basins
+from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
+from bouncing_ball_beyond.motions.motions import Kind, Reason
+from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 PHASES = np.linspace(-3, 3, 7)

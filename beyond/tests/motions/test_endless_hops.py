@@ -2,11 +2,10 @@
 
 import math
 
-import pytest
-
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond.motions import over_time
+import pytest
 from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.motions import over_time
 
 BALLS = {
     "rigid": bb.rigid(restitution=1.0),

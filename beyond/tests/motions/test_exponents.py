@@ -2,17 +2,20 @@
 
 import math
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-
-import bouncing_ball_beyond
 
 
 @pytest.mark.parametrize("amplitude", [1.4, 1.6])
 def test_the_exponents_of_an_orbit_are_those_of_its_multipliers(amplitude):
     ball = bouncing_ball_beyond.spring_damper(restitution=0.5, frequency_ratio=40.0)
-    orbit = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
-    found = bouncing_ball_beyond.lyapunov_exponent(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
+    orbit = bouncing_ball_beyond.orbit_of_motion(
+        ball, amplitude=amplitude, phase=1.0, velocity=-3.0
+    )
+    found = bouncing_ball_beyond.lyapunov_exponent(
+        ball, amplitude=amplitude, phase=1.0, velocity=-3.0
+    )
     expected = np.log(np.abs(orbit.multipliers())) / orbit.periods
     # The ball is within 1e-7 of the orbit, see long_run.lyapunov.NEAR.
     assert float(found.lyapunov_exponent) == pytest.approx(expected[0], abs=1e-6)
@@ -39,6 +42,8 @@ def test_the_sum_of_the_exponents_of_a_chaotic_ball_counts_its_impacts():
 
 
 def test_a_ball_that_forgets_has_two_exponents_of_minus_infinity():
-    found = bouncing_ball_beyond.lyapunov_exponent(bouncing_ball_beyond.rigid(restitution=0.6), amplitude=3.0)
+    found = bouncing_ball_beyond.lyapunov_exponent(
+        bouncing_ball_beyond.rigid(restitution=0.6), amplitude=3.0
+    )
     assert found.kind.item() == "locked"
     assert float(found.second_exponent) == float(found.exponent_sum) == -np.inf

@@ -2,12 +2,12 @@
 
 import json
 
+import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
-
-import bouncing_ball_beyond as bb
-from bouncing_ball.cli.main import main
 from bouncing_ball_beyond.periodic.one_impact import n_t
+
+from bouncing_ball.cli.main import main
 
 R = bb.rigid(restitution=0.5)
 STIFF = bb.spring_damper(restitution=0.5, frequency_ratio=100.0)

@@ -1,11 +1,11 @@
 """Balls by the name of their model, and orbits with several impacts on which balls end."""
 
-from bouncing_ball_beyond.motions.orbit_of_motion import of_impact
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.motions.orbit_of_motion import of_impact
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
 from bouncing_ball_beyond.periodic.orbits.simulation import simulated

@@ -3,10 +3,10 @@
 import itertools
 from typing import NamedTuple
 
+import bouncing_ball_beyond
 import numpy as np
 from second_code import closing_of, corrected_defect, defect_of, rates_of_release
 
-import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 
 BALLS = ("rigid", "displacement", "force", "hunt-crossley", "corrected")
@@ -72,7 +72,9 @@ def orbit_of(name, rng):
         start = {"phase": rng.uniform(-3, 3), "velocity": -rng.uniform(4.0, 9.0)}
         amplitude = rng.uniform(1.0, 3.0)
         try:
-            orbit = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=amplitude, impacts=300, **start)
+            orbit = bouncing_ball_beyond.orbit_of_motion(
+                ball, amplitude=amplitude, impacts=300, **start
+            )
         except NoOrbitError:
             continue
         if orbit.impacts <= 6:

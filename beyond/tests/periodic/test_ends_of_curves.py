@@ -2,16 +2,16 @@
 
 from functools import cache
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-from mpmath import findroot, mp, mpf, workdps
-from second_code import defect_of, rates_of_release
-
-import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formulas
+from mpmath import findroot, mp, mpf, workdps
+from second_code import defect_of, rates_of_release
+
+from bouncing_ball.errors import NoOrbitError
 
 # Step of the central differences in 40 digits.
 STEP = mpf("1e-13")
@@ -205,7 +205,9 @@ def test_all_generalized_doublings_of_a_curve_are_found_from_either_side(number)
 @pytest.mark.parametrize("name", ["rigid", "spring-damper", "long contact"])
 def test_doubled_orbits_are_followed_to_the_side_of_the_normal_form(name, refusal):
     if name == "rigid":
-        doublings = [bouncing_ball_beyond.limits(bouncing_ball_beyond.rigid(restitution=0.5)).period_doubling]
+        doublings = [
+            bouncing_ball_beyond.limits(bouncing_ball_beyond.rigid(restitution=0.5)).period_doubling
+        ]
     else:
         ratio = {"spring-damper": 10.0, "long contact": 2.0}[name]
         ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=ratio)
@@ -279,7 +281,9 @@ def test_branch_and_follow_name_permanent_contact_in_the_same_words(restitution,
 
 def test_branch_and_follow_name_a_landing_without_speed_in_the_same_words():
     """After a release by force, the ball returns to the level of the table only just."""
-    ball = bouncing_ball_beyond.spring_damper(restitution=0.2722, frequency_ratio=0.724, release="force")
+    ball = bouncing_ball_beyond.spring_damper(
+        restitution=0.2722, frequency_ratio=0.724, release="force"
+    )
     whole = bouncing_ball_beyond.branch(ball, amplitude_max=3.0)
     first, *rest = whole.states()
     assert first.flight_time > 1.0
@@ -322,7 +326,9 @@ def test_branch_and_follow_name_a_lost_release_of_a_law_in_the_same_words():
 
 def test_a_curve_of_grazings_ends_with_its_reason():
     """It ended with the words of the corrector, or at a corner of a map that has none."""
-    ball = bouncing_ball_beyond.spring_damper(restitution=0.2519, frequency_ratio=24.19, release="force")
+    ball = bouncing_ball_beyond.spring_damper(
+        restitution=0.2519, frequency_ratio=24.19, release="force"
+    )
     grazing = next(
         orbit
         for one in bouncing_ball_beyond.orbits(ball, n=1, amplitude=2.4413)

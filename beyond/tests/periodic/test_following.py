@@ -2,19 +2,13 @@
 
 from dataclasses import replace
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-from orbits_found import FOUND, balls, first, found_orbit, legs_of
-
-import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
-from bouncing_ball_beyond.motions.destination import final_motions
-from bouncing_ball_beyond.motions.orbit_of_motion import of_impact, of_motion
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.flight import Flight, table
-from bouncing_ball.numerics.corrector import newton, plane
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.events import domain_limits
+from bouncing_ball_beyond.motions.destination import final_motions
+from bouncing_ball_beyond.motions.orbit_of_motion import of_impact, of_motion
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.branches.switching import switch
 from bouncing_ball_beyond.periodic.one_impact import n_t
@@ -24,6 +18,12 @@ from bouncing_ball_beyond.periodic.orbits.halves import turns_apart, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 from bouncing_ball_beyond.periodic.orbits.special import Special
+from orbits_found import FOUND, balls, first, found_orbit, legs_of
+
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import domain_limits
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 
@@ -142,7 +142,9 @@ def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
 ):
     """The ball rests in a long contact once per orbit; a simulation ends on the same impacts."""
     ball = bouncing_ball_beyond.spring_damper(restitution=0.5, frequency_ratio=100.0)
-    orbit = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
+    orbit = bouncing_ball_beyond.orbit_of_motion(
+        ball, amplitude=amplitude, phase=1.0, velocity=-3.0
+    )
     assert (orbit.impacts, orbit.periods) == (impacts, periods)
     assert legs_of(orbit).departure.sticks.sum() == 1
     found = branch_from(orbit, "frequency_ratio", 110.0, most=20)
@@ -164,7 +166,9 @@ def test_a_branch_ends_where_the_map_of_the_corrected_model_jumps():
     model = bouncing_ball_beyond.spring_damper(restitution=0.6977, frequency_ratio=1.488)
     ball = bouncing_ball_beyond.corrected(model)
     start = {"amplitude": 1.21979, "phase": -2.9230134388176703, "velocity": -6.3303630330352965}
-    found = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit_of_motion(ball, **start), points=100)
+    found = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit_of_motion(ball, **start), points=100
+    )
     assert found.sizes["point"] < 100 and "just stays on" in str(found.end_reason[1].values)
     assert found.residual.max() < 1e-12
 
@@ -173,7 +177,9 @@ def test_a_branch_is_followed_although_newtons_method_meets_speeds_without_an_im
     """An impact on this law at a thousand times the speeds of the orbits would not end."""
     law = bouncing_ball_beyond.contact_law("hunt-crossley", stiffness=100.0, damping=0.2)
     ball = bouncing_ball_beyond.corrected(law)
-    parent = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(ball, n=1, amplitude=0.9), to=2.0)
+    parent = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit(ball, n=1, amplitude=0.9), to=2.0
+    )
     doubled = bouncing_ball_beyond.follow(parent.first("period doubling"))
     assert str(doubled.end_reason[1].values).startswith("the start of a contact begins to have two")
     assert doubled.residual.max() < 1e-12
@@ -415,7 +421,9 @@ def test_the_limits_of_a_family_know_what_they_are(refusal):
     with refusal(NoOrbitError, "is beyond the saddle-node: its orbits exist only for amplitude"):
         bouncing_ball_beyond.follow(fold, to=0.5)
     assert bouncing_ball_beyond.follow(doubling, to=1.6).attrs["impacts"] == 2
-    elastic = bouncing_ball_beyond.limits(bouncing_ball_beyond.contact_law("tsuji", stiffness=900.0, damping=0.0))
+    elastic = bouncing_ball_beyond.limits(
+        bouncing_ball_beyond.contact_law("tsuji", stiffness=900.0, damping=0.0)
+    )
     assert elastic.saddle_node.kind == "saddle-node"
 
 
@@ -481,7 +489,9 @@ def test_a_closed_branch_ends_at_its_start():
 
 def test_next_to_the_end_of_a_range_a_steep_height_is_no_jump():
     """On this 3-T orbit the height of the landing changes by 250 for r, and r = 1 is the end."""
-    orbit = bouncing_ball_beyond.orbit(bouncing_ball_beyond.rigid(restitution=0.8), n=3, amplitude=1.24)
+    orbit = bouncing_ball_beyond.orbit(
+        bouncing_ball_beyond.rigid(restitution=0.8), n=3, amplitude=1.24
+    )
     found = bouncing_ball_beyond.follow(orbit, along="restitution", to=1.0)
     assert str(found.end_reason[1].values) == "restitution = 1 is reached"
     assert float(found.restitution[-1]) == 1.0

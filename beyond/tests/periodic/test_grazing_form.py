@@ -2,11 +2,11 @@
 
 import math
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 
 R = 0.5
@@ -99,7 +99,9 @@ def test_the_branch_with_one_impact_more_begins_at_the_grazing():
     assert (change > 0) is form.opens_upwards
     # Here the orbits with one impact and with two exist on the same side.
     below, above = (
-        bouncing_ball_beyond.orbit(ball, amplitude=orbit.amplitude + x, side="unstable").is_admissible()
+        bouncing_ball_beyond.orbit(
+            ball, amplitude=orbit.amplitude + x, side="unstable"
+        ).is_admissible()
         for x in (-1e-3, 1e-3)
     )
     assert below and not above and not form.opens_upwards and not form.persists

@@ -2,20 +2,20 @@
 
 from dataclasses import replace
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-from orbits_found import balls, first, legs_of
-from scipy.optimize import brentq
-
-import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.models.flight import table
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.special import Special
 from bouncing_ball_beyond.periodic.orbits.steps import STEPS
+from orbits_found import balls, first, legs_of
+from scipy.optimize import brentq
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
 SLOW = 3e-3
@@ -126,14 +126,18 @@ def test_a_grazing_impact_without_a_grazing_flight_has_no_curve(refusal):
     both = ("amplitude", "restitution")
     # Another flight of this orbit is below the table.
     ball = bouncing_ball_beyond.rigid(restitution=0.5)
-    branch = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit_of_motion(ball, amplitude=1.6), to=8)
+    branch = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit_of_motion(ball, amplitude=1.6), to=8
+    )
     with refusal(NoOrbitError, "another flight is below the table by 2,"):
         bouncing_ball_beyond.follow(branch.first("grazing of an impact"), along=both)
     one = replace(bouncing_ball_beyond.orbit(ball, amplitude=1.4), kind="grazing of an impact")
     with refusal(NoOrbitError, "the only impact of the orbit grazes"):
         bouncing_ball_beyond.follow(one, along=both)
     # After a release by force below its level, the ball comes back to this level.
-    ball = bouncing_ball_beyond.spring_damper(restitution=0.34, frequency_ratio=10.0, release="force")
+    ball = bouncing_ball_beyond.spring_damper(
+        restitution=0.34, frequency_ratio=10.0, release="force"
+    )
     two = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=1.4, phase=0.0, velocity=-5.0)
     branch = bouncing_ball_beyond.follow(two, to=0.8)
     with refusal(NoOrbitError, "only just comes up to the level of the table"):

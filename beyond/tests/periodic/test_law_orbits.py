@@ -2,22 +2,18 @@
 
 import math
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-
-import bouncing_ball_beyond
 from bouncing_ball_beyond.accuracy.error_law import first_order
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, paper_error
-from bouncing_ball_contacts.engines.impedance import Impedance
-from bouncing_ball_beyond.models.law_balls import contact_law
-from bouncing_ball_beyond.models.laws.named import LAWS, law_named
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.instant import Instant
+from bouncing_ball_beyond.models.law_balls import contact_law
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
+from bouncing_ball_beyond.models.laws.named import LAWS, law_named
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball_beyond.models.rigid import RestitutionModel
@@ -25,9 +21,18 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
-from bouncing_ball_beyond.periodic.one_impact.searched_orbits import SearchedOrbits, restitution_speed
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbits_at as by_formula
+from bouncing_ball_beyond.periodic.one_impact.searched_orbits import (
+    SearchedOrbits,
+    restitution_speed,
+)
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import (
+    orbits_at as by_formula,
+)
 from bouncing_ball_beyond.periodic.orbits.stability import Side
+from bouncing_ball_contacts.engines.impedance import Impedance
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import ModelError, NoOrbitError
 
 KINDS = [SpringDamper, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
@@ -180,7 +185,9 @@ def test_a_row_of_corrected_models_is_that_of_its_laws(kind):
 def test_the_linear_law_is_the_ball_of_the_spring_and_damper(release):
     given = {"frequency_ratio": 2.0, "damping_ratio": 0.05, "release": release}
     ball = contact_law("linear", **given)
-    assert ball == bouncing_ball_beyond.spring_damper(**given) and ball.parameters["law"] == "linear"
+    assert (
+        ball == bouncing_ball_beyond.spring_damper(**given) and ball.parameters["law"] == "linear"
+    )
     assert contact_law(SpringDamper(2.0, 0.05, release)) == ball
     found = bouncing_ball_beyond.orbits(ball, amplitude=0.9)
     searched = bouncing_ball_beyond.orbits(ContactModel(ball.law), amplitude=0.9)
@@ -223,7 +230,9 @@ def test_an_overdamped_contact_is_followed_along_its_damping():
     ball = contact_law("linear", damping_ratio=1.5, **law)
     orbit = bouncing_ball_beyond.orbit(ball, amplitude=3.0)
     *_, last = bouncing_ball_beyond.follow(orbit, along="damping_ratio", to=2.0).states()
-    there = bouncing_ball_beyond.orbit(contact_law("linear", damping_ratio=2.0, **law), amplitude=3.0)
+    there = bouncing_ball_beyond.orbit(
+        contact_law("linear", damping_ratio=2.0, **law), amplitude=3.0
+    )
     assert float(last.distance(there)) < 1e-10
     with pytest.raises(ModelError, match=r"to = 0.5 is not a finite number ≥ 1"):
         bouncing_ball_beyond.follow(orbit, along="damping_ratio", to=0.5)

@@ -3,15 +3,15 @@
 import math
 from functools import partial
 
+import bouncing_ball_beyond
 import mpmath as mp
 import numpy as np
 import pytest
-
-import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbits.return_map import returned
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.elementary import reduce_angle
 
 
 def _one_impact(ball, amplitude):
@@ -153,7 +153,9 @@ def test_the_coefficient_of_a_doubling_is_that_of_forty_digits():
     [
         *DOUBLINGS,
         (
-            _one_impact(bouncing_ball_beyond.spring_damper(restitution=0.6, frequency_ratio=8.0), 1.2),
+            _one_impact(
+                bouncing_ball_beyond.spring_damper(restitution=0.6, frequency_ratio=8.0), 1.2
+            ),
             1.8,
             True,
         ),
@@ -227,7 +229,9 @@ def test_the_doublings_on_both_sides_of_a_generalized_one_differ():
     curve = bouncing_ball_beyond.follow(doubling, along=both, ranges={"restitution": (0.72, 0.79)})
     assert curve.special_kind.values.tolist() == ["generalized period doubling"]
     border = float(curve.special_restitution[0])
-    forms = [(s.parameters["restitution"], bouncing_ball_beyond.normal_form(s)) for s in curve.states()]
+    forms = [
+        (s.parameters["restitution"], bouncing_ball_beyond.normal_form(s)) for s in curve.states()
+    ]
     assert {form.is_supercritical for r, form in forms if r > border} == {True}
     assert {form.is_supercritical for r, form in forms if r < border} == {False}
     # A saddle-node of the doubled orbits leaves from the generalized doubling on the subcritical

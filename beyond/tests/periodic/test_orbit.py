@@ -2,19 +2,22 @@
 
 from types import SimpleNamespace
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-from scipy.optimize import brentq
-
-import bouncing_ball
-import bouncing_ball_beyond
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.corrector import solve
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point, orbits_of_points
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
+    branch_point,
+    orbits_of_points,
+)
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from scipy.optimize import brentq
+
+import bouncing_ball
+from bouncing_ball.numerics.corrector import solve
 
 
 def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
@@ -70,7 +73,9 @@ def test_a_contact_that_only_touches_its_release_has_no_derivatives():
 
 def test_an_orbit_with_a_small_defect_may_have_few_digits():
     """Rounding Λ up moves the states of an orbit of 28 impacts by 5e-4: 4 digits are certain."""
-    ball = bouncing_ball_beyond.spring_damper(restitution=0.3, frequency_ratio=50.0, release="force")
+    ball = bouncing_ball_beyond.spring_damper(
+        restitution=0.3, frequency_ratio=50.0, release="force"
+    )
     start = {"phase": 1.0, "velocity": -3.0}
     one = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=3.3, **start)
     other = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=np.nextafter(3.3, 4.0), **start)
@@ -110,7 +115,9 @@ def test_the_history_of_an_orbit_is_that_of_a_simulated_ball(ball, amplitude):
     orbit = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=amplitude)
     found = orbit.history(samples=50)
     start = {"phase": orbit.phase[0], "velocity": orbit.impact_velocity[0]}
-    simulated = bouncing_ball_beyond.history(ball, amplitude=amplitude, periods=2.0, samples=50, **start)
+    simulated = bouncing_ball_beyond.history(
+        ball, amplitude=amplitude, periods=2.0, samples=50, **start
+    )
     assert orbit.impacts == 2
     for name in ("ball", "table"):
         np.testing.assert_allclose(found[name], simulated[name], rtol=0, atol=1e-12)

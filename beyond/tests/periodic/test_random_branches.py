@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from random_branches import BALLS, orbit_of, sample
-
 from bouncing_ball_beyond.periodic.branches.following import branch_from
+from random_branches import BALLS, orbit_of, sample
 
 LONG = [pytest.mark.long, pytest.mark.slow]
 

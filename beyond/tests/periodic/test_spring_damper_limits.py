@@ -2,9 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -14,8 +11,14 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import 
     orbits_at,
     saddle_node,
 )
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point, orbits_of_points
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
+    branch_point,
+    orbits_of_points,
+)
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side, is_stable
+from scipy.optimize import minimize_scalar
+
+from bouncing_ball.errors import ModelError, NoOrbitError
 
 EPS = np.finfo(float).eps
 

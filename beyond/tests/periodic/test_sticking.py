@@ -12,17 +12,16 @@ u³ - 5u² + (7 - 2r) u - 3 (1 - r) in (0, 1). After j bounces w depends smoothl
 
 from functools import cache, partial
 
+import bouncing_ball_beyond
 import numpy as np
 import pytest
-from mpmath import findroot, mp, mpf, workdps
-from orbits_found import balls, first
-
-import bouncing_ball_beyond
 from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
 from bouncing_ball_beyond.periodic.branches import curves
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball_beyond.periodic.orbits.special import Special
+from mpmath import findroot, mp, mpf, workdps
+from orbits_found import balls, first
 
 # The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
 SETTLED = 1e-17
@@ -227,7 +226,9 @@ def test_a_branch_with_bounces_that_shrink_by_a_hundred_ends_at_permanent_contac
     """At r = 0.01 the fourth impact has a millionth of the speed of the first one. The branch crept
     towards Λ = 1, in 500 steps.
     """
-    orbit = bouncing_ball_beyond.orbit_of_motion(bouncing_ball_beyond.rigid(restitution=0.01), amplitude=1.0005)
+    orbit = bouncing_ball_beyond.orbit_of_motion(
+        bouncing_ball_beyond.rigid(restitution=0.01), amplitude=1.0005
+    )
     found = bouncing_ball_beyond.follow(orbit, to=0.5)
     assert found.attrs["impacts"] == 4
     why = "permanent contact: at a smaller Λ a ball at rest stays on the table"

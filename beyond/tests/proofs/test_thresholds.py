@@ -4,11 +4,8 @@ from fractions import Fraction
 
 import mpmath
 import pytest
-from flint import arb
-from mpmath import mp, mpf
-from sixty_digits import Exact
-
-from bouncing_ball import error_thresholds, rigid
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.proofs import newton
 from bouncing_ball_beyond.proofs import thresholds as proofs
 from bouncing_ball_beyond.proofs.balls import ProofError, decimal_with_bound, precision
@@ -21,8 +18,11 @@ from bouncing_ball_beyond.proofs.thresholds import (
     height_threshold,
     permanent_contact_threshold,
 )
-from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from flint import arb
+from mpmath import mp, mpf
+from sixty_digits import Exact
+
+from bouncing_ball import error_thresholds, rigid
 
 R = Fraction(65, 100)
 TOLERANCE = Fraction(1, 100)

@@ -17,17 +17,13 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
+import bouncing_ball_beyond
 import compiled_auto
 import numpy as np
-
-import bouncing_ball_beyond
-from bouncing_ball_contacts.engines.engine import Physical
-from bouncing_ball_contacts.engines.mujoco import MuJoCo
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball_beyond.periodic.branches.curves import CurveProblem, condition_of, curve_through
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
@@ -35,6 +31,10 @@ from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.ends import Window
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import Special
+from bouncing_ball_contacts.engines.engine import Physical
+from bouncing_ball_contacts.engines.mujoco import MuJoCo
+
+from bouncing_ball.numerics.corrector import newton, plane
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "speed.md"
 R = 0.5
@@ -186,7 +186,9 @@ def orbit_state(orbit: Orbit) -> list[float]:
 def branch_row(impacts: int, amplitude: float, to: float) -> Row:
     """A branch of the restitution model along Λ, with its bifurcations."""
     ball = bouncing_ball_beyond.rigid(restitution=R)
-    start = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
+    start = bouncing_ball_beyond.orbit_of_motion(
+        ball, amplitude=amplitude, phase=1.0, velocity=-3.0
+    )
     ours, found = timed(lambda: branch_from(start, to=to))
     error = np.abs(found.problem.residual(found.branch.points)).max()
     task = (

@@ -1,8 +1,8 @@
 """MuJoCo was asked for r = 0.75 and gave 0.820: what its parameters meant."""
 
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.engine import Physical
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
 
 MASS, STIFFNESS = 0.5, 284244.0  # kg, N/m
 OMEGA = (STIFFNESS / MASS) ** 0.5

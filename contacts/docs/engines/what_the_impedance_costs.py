@@ -1,12 +1,11 @@
 """Heights on a table of 20 Hz and 0.8 g: MuJoCo's impedances against a spring and a damper."""
 
 import numpy as np
-
-from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_contacts.engines.impedance import Impedance
 
 MASS, TABLE, R, AMPLITUDE = 0.5, 2 * np.pi * 20, 0.75, 0.8  # kg, rad/s, r, acceleration in g
 zeta = float(damping_ratio(R, Release.FORCE))

@@ -1,8 +1,8 @@
 """The largest error of r that 50 steps in a contact leave, and the steps for a smaller one."""
 
+from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.impacts import error_in_steps, steps_for
-from bouncing_ball_beyond.models.damping import damping_ratio
 
 print("engine   r     50 steps  0.01  0.001")
 for name in ("mujoco", "lammps", "pybullet"):

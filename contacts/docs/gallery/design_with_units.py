@@ -2,9 +2,8 @@
 
 import textwrap
 
-import matplotlib.pyplot as plt
-
 import bouncing_ball_contacts
+import matplotlib.pyplot as plt
 
 found = bouncing_ball_contacts.assess_contact(
     bouncing_ball_contacts.Table(frequency="50 Hz", acceleration="0.8 g"),

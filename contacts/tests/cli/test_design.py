@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 from asked_contacts import assessed
-from PIL import Image
-
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_contacts.contact.page_data import chart_and_motion
 from bouncing_ball_contacts.contact.page_figures import draw
 from bouncing_ball_contacts.contact.rows import document
+from PIL import Image
+
 from bouncing_ball.drawing.labels import QUANTITIES
 
 # Where the verdict is not what is tested, the runs that it rests on are short.
@@ -106,7 +106,9 @@ def test_choosing(said):
 )
 @QUICK
 def test_mistakes_are_one_line(refused, monkeypatch, data, arguments, status, says):
-    monkeypatch.setattr("bouncing_ball_contacts.contact.page_data.chart_and_motion", lambda found: data)
+    monkeypatch.setattr(
+        "bouncing_ball_contacts.contact.page_data.chart_and_motion", lambda found: data
+    )
     command = (*STIFF, *arguments)
     code, line = refused(*command)
     assert code == status and says in line
@@ -202,7 +204,9 @@ def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
 
 @QUICK
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
-    monkeypatch.setattr("bouncing_ball_contacts.contact.page_data.chart_and_motion", lambda found: data)
+    monkeypatch.setattr(
+        "bouncing_ball_contacts.contact.page_data.chart_and_motion", lambda found: data
+    )
     assert said(*STIFF, "--plot", str(tmp_path / "page.png")) == said(*STIFF)
     with Image.open(tmp_path / "page.png") as picture:
         # A4 upright, with ink in it.

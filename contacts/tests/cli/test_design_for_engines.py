@@ -5,9 +5,8 @@ import math
 
 import pytest
 from asked_contacts import answered
-
-from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.contact.rows import document
+from bouncing_ball_contacts.engines.choice import ENGINES
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

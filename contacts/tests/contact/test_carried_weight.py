@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-
-from bouncing_ball_contacts.contact.families import can_carry
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_contacts.contact.families import can_carry
 
 
 def tsuji(k):

@@ -6,23 +6,23 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered, assessed
-
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors
-from bouncing_ball_contacts.cli.design import design_document
-from bouncing_ball_contacts.contact.drop_test import rebound
-from bouncing_ball_contacts.contact.judgement import OrbitJudgement
-from bouncing_ball_beyond.models.laws.named import LAWS
-from bouncing_ball_contacts.contact.notes import notes
-from bouncing_ball_contacts.contact.verdict import said_of_orbit
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
+from bouncing_ball_beyond.models.laws.named import LAWS
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_contacts.cli.design import design_document
+from bouncing_ball_contacts.contact.drop_test import rebound
+from bouncing_ball_contacts.contact.judgement import OrbitJudgement
+from bouncing_ball_contacts.contact.notes import notes
+from bouncing_ball_contacts.contact.verdict import said_of_orbit
+
+from bouncing_ball.errors import ModelError, NoOrbitError
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

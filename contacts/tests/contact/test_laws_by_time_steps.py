@@ -11,7 +11,6 @@ from collections import Counter
 import numpy as np
 import pytest
 from asked_contacts import assessed
-
 from bouncing_ball_beyond.motions.basins import fastest
 
 G = 9.80665

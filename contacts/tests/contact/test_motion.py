@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 from asked_contacts import assessed
-
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.verdict_on_motion import aside, said_of_motion
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 
@@ -47,7 +46,9 @@ def test_the_headline_says_what_the_ball_does(
     amplitude, kind, says, few_starts, few_impacts, monkeypatch
 ):
     # Where balls come to an orbit, they need more impacts to be known on it.
-    monkeypatch.setattr("bouncing_ball_contacts.contact.starts._IMPACTS", 300 if kind == "orbit" else 100)
+    monkeypatch.setattr(
+        "bouncing_ball_contacts.contact.starts._IMPACTS", 300 if kind == "orbit" else 100
+    )
     found = assessed(**UNIT, acceleration=amplitude, stiffness=5000.0, tolerance="20 %")
     assert found.motion.kind == kind and says in found.headline
     assert found.headline != found.verdict

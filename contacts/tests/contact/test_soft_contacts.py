@@ -5,11 +5,10 @@ from itertools import product
 
 import pytest
 from asked_contacts import assessed
-
+from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.verdict_on_motion import said_of_motion
-from bouncing_ball_beyond.motions.motions import Kind
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -5,15 +5,14 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
-
+from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.motions.basins import MotionName
+from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.starts import SharesOfStarts, ends_of_starts, interval
 from bouncing_ball_contacts.contact.table import TableMotion
-from bouncing_ball_beyond.motions.basins import MotionName
-from bouncing_ball_beyond.motions.motions import Kind
-from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 ORBIT = MotionName(Kind.ORBIT, 1, 1)
 CHAOTIC = MotionName(Kind.CHAOTIC, 0, 0)

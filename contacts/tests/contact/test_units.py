@@ -4,9 +4,6 @@ import math
 
 import pint
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import drop_at_rest
 from bouncing_ball_contacts.contact.quantities import quantities
@@ -14,6 +11,9 @@ from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.contact.units import number_in_si
+from hypothesis import given
+from hypothesis import strategies as st
+
 from bouncing_ball.errors import ModelError
 
 KINDS = {}

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from bouncing_ball_beyond.accuracy.simple_models import errors
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.documents.engine_steps import FAMILIES, RESTITUTIONS, conformance
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.scheme import Scheme
+
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.yaml_files import read_yaml
 

@@ -5,8 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import xarray as xr
-
 from bouncing_ball_beyond.exhibits import measured_impacts_figures as figures
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.documents.measured_impacts import (
     VARIABLES,
     MeasuredImpacts,
@@ -14,15 +19,10 @@ from bouncing_ball_contacts.documents.measured_impacts import (
     measured_impacts,
     on_shakers,
 )
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.curves import CURVES, LawCurve
 from bouncing_ball_contacts.measured.experiment import experiment
 from bouncing_ball_contacts.measured.verdicts import judge
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
+
 from bouncing_ball.pipeline.configuration import typed
 
 MEASURED = {"experiments": ["croquet", "plastic_ball", "superball"], "samples": 5}

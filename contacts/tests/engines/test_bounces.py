@@ -13,8 +13,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from bounce_runs import BOUNCE, SETTINGS, G, rebounds
-from installed_engines import LAST_SEEN, engine_of, only_if_installed, package
-
 from bouncing_ball_contacts.documents.bounces import (
     ALL_VARIABLES,
     DRAWING,
@@ -22,6 +20,8 @@ from bouncing_ball_contacts.documents.bounces import (
     SETTINGS_TITLE,
     TITLE,
 )
+from installed_engines import LAST_SEEN, engine_of, only_if_installed, package
+
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather

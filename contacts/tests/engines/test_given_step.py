@@ -6,18 +6,18 @@ from functools import cache
 import numpy as np
 import pytest
 from asked_contacts import answered
-from engine_runs import RUN, Trial
-from installed_engines import only_if_installed
-
-from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
+from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.engines import given_step
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.given_step import at_step, spread_in_steps, stiffest_contact
 from bouncing_ball_contacts.engines.impacts import FEWEST, has_stable_steps, impacts_in_steps
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
-from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from engine_runs import RUN, Trial
+from installed_engines import only_if_installed
+
+from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -18,13 +18,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from asked_contacts import answered
-from engine_runs import RUN, Trial, drake, mujoco
-from installed_engines import LAST_SEEN, missing, only_if_installed
-from pandas import DataFrame
-
-from bouncing_ball import corrected, limits, rigid, spring_damper
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball_beyond.models.laws.collocation import contacts
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_contacts.documents.engine_steps import (
     VARIABLES,
     EngineOrbit,
@@ -37,14 +38,13 @@ from bouncing_ball_contacts.engines.engine import ERROR, Physical
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
+from engine_runs import RUN, Trial, drake, mujoco
+from installed_engines import LAST_SEEN, missing, only_if_installed
+from pandas import DataFrame
+
+from bouncing_ball import corrected, limits, rigid, spring_damper
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball_beyond.models.laws.collocation import contacts
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 from bouncing_ball.pipeline.yaml_files import read_yaml
 

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pandas
 import pytest
-from scipy.integrate import solve_ivp
-
 from bouncing_ball_contacts.documents.bounces_figures import in_javascript, rapier_974
-from bouncing_ball.cli.main import main
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.engine import Physical
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.cli.main import main
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8")

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from asked_contacts import answered
+from bouncing_ball_contacts.cli.design_text import design_lines
+from bouncing_ball_contacts.engines.engine import filled, text_to_paste
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
-from bouncing_ball_contacts.cli.design_text import design_lines
-from bouncing_ball_contacts.engines.engine import filled, text_to_paste
 from bouncing_ball.errors import ModelError
 
 M = 0.5

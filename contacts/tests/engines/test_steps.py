@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-
+from bouncing_ball_beyond.models.damping import LINEAR, Release
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.engines.drop_in_steps import drop_in_steps
 from bouncing_ball_contacts.engines.impacts import restitution_in_steps
 from bouncing_ball_contacts.engines.scheme import Scheme
@@ -14,8 +15,6 @@ from bouncing_ball_contacts.engines.steps import (
     patience,
     until_outside,
 )
-from bouncing_ball_beyond.models.damping import LINEAR, Release
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 CASES = [(scheme, rule) for scheme in Scheme for rule in LINEAR]
 

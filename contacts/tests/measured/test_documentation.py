@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from bouncing_ball_contacts.measured.experiment import (
     COLUMNS,
     QUANTITIES,

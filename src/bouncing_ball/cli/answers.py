@@ -14,7 +14,6 @@ from bouncing_ball.cli.output import fail, say
 from bouncing_ball.cli.patience import told_if_slow
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
-
 COMMANDS: Mapping[str, Command] = commands()
 """The subcommands of this house and of all houses that are installed, by name."""
 

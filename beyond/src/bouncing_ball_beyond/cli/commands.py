@@ -7,50 +7,50 @@ _SIMPLER = "a spring and a damper in place of a law"
 
 
 def _orbit() -> Program:
-    from bouncing_ball_beyond.cli import periodic
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import periodic
 
     return Program(periodic.orbit_options, periodic.orbit, lines)
 
 
 def _limits() -> Program:
-    from bouncing_ball_beyond.cli import periodic
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import periodic
 
     return Program(periodic.limits_options, periodic.limits, lines)
 
 
 def _error_law() -> Program:
-    from bouncing_ball_beyond.cli import periodic
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import periodic
 
     return Program(periodic.error_law_options, periodic.error_law, lines)
 
 
 def _follow() -> Program:
-    from bouncing_ball_beyond.cli import followed
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import followed
 
     return Program(followed.follow_options, followed.follow, lines)
 
 
 def _curve() -> Program:
-    from bouncing_ball_beyond.cli import followed
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import followed
 
     return Program(followed.curve_options, followed.curve, lines)
 
 
 def _simulate() -> Program:
-    from bouncing_ball_beyond.cli import simulate
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import simulate
 
     return Program(simulate.add_options, simulate.simulate, lines)
 
 
 def _motion() -> Program:
-    from bouncing_ball_beyond.cli import motion
     from bouncing_ball.cli.output import lines
+    from bouncing_ball_beyond.cli import motion
 
     return Program(motion.motion_options, motion.motion, lines)
 

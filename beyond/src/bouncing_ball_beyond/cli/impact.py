@@ -11,8 +11,6 @@ from bouncing_ball.cli.options import (
     meanings,
     option,
 )
-from bouncing_ball_beyond.models.law_balls import contact_law
-from bouncing_ball_beyond.models.laws.named import law_named
 from bouncing_ball.datasets.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
@@ -23,6 +21,8 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.law_balls import contact_law
+from bouncing_ball_beyond.models.laws.named import law_named
 from bouncing_ball_beyond.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
 
 MODELS = ("restitution", "spring-damper", "corrected")

@@ -5,8 +5,6 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from bouncing_ball_beyond.accuracy import error_law as error_laws
-from bouncing_ball_beyond.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball.cli.options import (
     Parser,
     add_choice,
@@ -21,6 +19,8 @@ from bouncing_ball.datasets.arguments import (
     ReleaseName,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
+from bouncing_ball_beyond.accuracy import error_law as error_laws
+from bouncing_ball_beyond.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.signature import Signature

@@ -14,18 +14,18 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
+from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
+from bouncing_ball.paper.exhibits.time_histories import ContactHistory
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
-from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
-from bouncing_ball.paper.exhibits.time_histories import ContactHistory
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 VARIABLES = {

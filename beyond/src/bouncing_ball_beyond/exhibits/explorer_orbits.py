@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
-from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball_beyond.motions.destination import final_motions
+from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
+from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
 

@@ -9,8 +9,22 @@ import numpy as np
 import xarray as xr
 from flint import arb
 
+from bouncing_ball.datasets.parameters import (
+    Amplitude,
+    Family,
+    FrequencyRatio,
+    LossyRestitution,
+    Many,
+    Parameters,
+    Tolerance,
+    number,
+)
+from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors, search
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 from bouncing_ball_beyond.proofs.balls import ProofError, decimal_with_bound, exactly, precision
 from bouncing_ball_beyond.proofs.certificates import (
     Proved,
@@ -26,20 +40,6 @@ from bouncing_ball_beyond.proofs.thresholds import (
     height_threshold,
     permanent_contact_threshold,
 )
-from bouncing_ball.datasets.parameters import (
-    Amplitude,
-    Family,
-    FrequencyRatio,
-    LossyRestitution,
-    Many,
-    Parameters,
-    Tolerance,
-    number,
-)
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "certificate": Variable("what is certified"),

@@ -25,13 +25,18 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
-from bouncing_ball_beyond.models.oscillator import responses
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import (
+    LINEAR,
+    Release,
+    damping_ratio,
+    restitution_coefficient,
+)
+from bouncing_ball_beyond.models.oscillator import responses
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 

@@ -29,8 +29,6 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball_beyond.accuracy.errors import paper_error
-from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus, thresholds
 from bouncing_ball.datasets.parameters import (
     Family,
     Interval,
@@ -42,6 +40,8 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball_beyond.accuracy.errors import paper_error
+from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus, thresholds
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch

@@ -17,7 +17,12 @@ from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
-from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball_beyond.models.laws.hertzian import (
+    HuntCrossley,
+    KuwabaraKono,
+    LinearHuntCrossley,
+    Tsuji,
+)
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball_beyond.models.model import Model

@@ -25,6 +25,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.numerics.elementary import (
+    arctangent,
+    exponential,
+    sine_and_cosine,
+    sine_and_versine,
+)
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball_beyond.models.flight import Flight, table
@@ -33,13 +40,6 @@ from bouncing_ball_beyond.models.linear_flow import flow as linear_flow
 from bouncing_ball_beyond.models.oscillator import steady_response, table_response
 from bouncing_ball_beyond.models.resumption import ResumingDynamics
 from bouncing_ball_beyond.models.sequence import Status
-from bouncing_ball.numerics.elementary import (
-    arctangent,
-    exponential,
-    sine_and_cosine,
-    sine_and_versine,
-)
-from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
 
 # The number of steps after which the expensive bound of ``skip`` is used.
 _PATIENCE = 12

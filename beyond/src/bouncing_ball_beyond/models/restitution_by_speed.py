@@ -9,11 +9,11 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball_beyond.models.instant import Instant, rigid_instant
 from bouncing_ball_beyond.models.laws.analytic import compare
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
-from bouncing_ball.numerics.arrays import Batch
 
 # The imaginary step relative to the speed; its square is lost in rounding.
 _IMAGINARY = 1e-20

@@ -38,6 +38,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball_beyond.models.contacts_and_flights import Impact
+from bouncing_ball_beyond.models.dynamics import Dynamics, HasDynamics, Leg
+from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.motions.followed import (
     MARGINAL,
     REASONS,
@@ -50,9 +53,6 @@ from bouncing_ball_beyond.motions.followed import (
 from bouncing_ball_beyond.motions.lyapunov import DIGITS, FORGOTTEN, NEAR
 from bouncing_ball_beyond.motions.motions import Kind, Motions, Reason
 from bouncing_ball_beyond.motions.recurrence import periods_in, returns_to_marks
-from bouncing_ball_beyond.models.contacts_and_flights import Impact
-from bouncing_ball_beyond.models.dynamics import Dynamics, HasDynamics, Leg
-from bouncing_ball_beyond.models.sequence import Status
 
 IMPACTS = 2000
 """Number of impacts after which the search for a repetition ends, in all calls that judge a motion.

@@ -14,11 +14,11 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
-from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
-from bouncing_ball_beyond.motions.over_time import first_impacts
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
+from bouncing_ball_beyond.motions.over_time import first_impacts
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point

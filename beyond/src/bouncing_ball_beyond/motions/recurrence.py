@@ -17,11 +17,11 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball_beyond.motions.lyapunov import FORGOTTEN, NEAR
-from bouncing_ball_beyond.models.contacts_and_flights import Impact
-from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.models.contacts_and_flights import Impact
+from bouncing_ball_beyond.models.deviations import Jacobian
+from bouncing_ball_beyond.motions.lyapunov import FORGOTTEN, NEAR
 
 # Distance from the orbit within which a ball on its second turn is regarded as being on the orbit,
 # as NEAR is on the first turn: an angle, and a velocity over 1 + Λ. The error of the multipliers is

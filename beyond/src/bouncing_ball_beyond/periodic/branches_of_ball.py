@@ -18,12 +18,17 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball_beyond.models.ball import Ball, a_ball
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
-from bouncing_ball_beyond.periodic.branches.observables import VARIABLES, joined, n_t_columns, no_branch
+from bouncing_ball_beyond.periodic.branches.observables import (
+    VARIABLES,
+    joined,
+    n_t_columns,
+    no_branch,
+)
 from bouncing_ball_beyond.periodic.one_impact.whole_branch import LARGEST_STEP, whole_branch
 from bouncing_ball_beyond.periodic.orbits.saved import KEPT
 from bouncing_ball_beyond.periodic.places import by_place

@@ -14,6 +14,8 @@ from typing import Any
 
 from flint import arb
 
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import spring_damper_bifurcations as double
 from bouncing_ball_beyond.proofs.admissibility import contact_holds, flight_is_free
 from bouncing_ball_beyond.proofs.balls import (
     NoStartError,
@@ -26,8 +28,6 @@ from bouncing_ball_beyond.proofs.branch import EnclosedContact, Point, point
 from bouncing_ball_beyond.proofs.newton import certified_zero
 from bouncing_ball_beyond.proofs.problem import RationalProblem, working_bits
 from bouncing_ball_beyond.proofs.series import Series
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import spring_damper_bifurcations as double
 
 # Precision of the proofs that a function keeps its sign, which need no digits.
 _COARSE = 80

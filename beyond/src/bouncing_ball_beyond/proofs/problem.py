@@ -6,9 +6,9 @@ from fractions import Fraction
 
 from flint import arb
 
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.proofs.balls import ProofError, rational
 from bouncing_ball_beyond.proofs.branch import EnclosedContact
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 # Bits beyond the requested digits and those that stiff contacts cost by cancellation,
 # about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the

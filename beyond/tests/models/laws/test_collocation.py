@@ -4,19 +4,24 @@ laws.
 
 import numpy as np
 import pytest
-from scipy.special import beta
-
-from bouncing_ball_contacts.engines.impedance import Impedance
-from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.laws.collocation import contacts, path
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji, tsuji_damping
+from bouncing_ball_beyond.models.laws.hertzian import (
+    HuntCrossley,
+    KuwabaraKono,
+    Tsuji,
+    tsuji_damping,
+)
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.march import march
 from bouncing_ball_beyond.models.laws.panel import BallsInContact, Start
 from bouncing_ball_beyond.models.laws.sweeps import Sweeps
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.engines.impedance import Impedance
+from scipy.special import beta
+
+from bouncing_ball.errors import ModelError
 
 
 @pytest.mark.parametrize("law", [HuntCrossley(50.0, 0.0), Tsuji(50.0, 0.0), KuwabaraKono(50.0, 0)])

@@ -2,10 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
-from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.flight import Flight, land, table
 from bouncing_ball_beyond.models.history import motion_at
@@ -16,6 +12,9 @@ from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.orbits.stability import Side
+from bouncing_ball_contacts.engines.impedance import Impedance
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 CASES = [
     # n, r, ϖ, Λ

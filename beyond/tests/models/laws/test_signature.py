@@ -4,14 +4,19 @@ import math
 
 import numpy as np
 import pytest
-
-from bouncing_ball_contacts.engines.impedance import Impedance
-from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball_beyond.models.laws.hertzian import (
+    HuntCrossley,
+    KuwabaraKono,
+    LinearHuntCrossley,
+    Tsuji,
+)
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.engines.impedance import Impedance
+
+from bouncing_ball.errors import ModelError
 
 RELEASES = LINEAR
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)

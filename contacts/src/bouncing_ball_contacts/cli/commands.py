@@ -16,8 +16,8 @@ def _design() -> Program:
 
 
 def _fit() -> Program:
-    from bouncing_ball_contacts.cli import fit
     from bouncing_ball.cli.options import add_parameters
+    from bouncing_ball_contacts.cli import fit
 
     return Program(
         add_options=lambda parser: add_parameters(parser, fit.fit),

@@ -9,16 +9,17 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from bouncing_ball.cli.options import Parser, add_file, add_optional, option
+from bouncing_ball.datasets.files import PICTURES, require_writable
+from bouncing_ball.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
 from bouncing_ball_contacts.cli.design_text import contact_numbers
-from bouncing_ball.cli.options import Parser, add_file, add_optional, option
 from bouncing_ball_contacts.contact import rows
 from bouncing_ball_contacts.contact.assess import Assessment, LargestTimeStep, assess
 from bouncing_ball_contacts.contact.choose import choose
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import Description, describe_contact
 from bouncing_ball_contacts.contact.drops import drop_at_rest
-from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.resolve import resolve
@@ -33,8 +34,7 @@ from bouncing_ball_contacts.contact.write import (
     settings_for,
     softer_contact,
 )
-from bouncing_ball.datasets.files import PICTURES, require_writable
-from bouncing_ball.errors import NoOrbitError, ParameterError, extra
+from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 
 # Parameters of which each implies that there is a table.
 _OF_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
@@ -192,9 +192,9 @@ def _draw(given: DesignAnswer, path: Path) -> None:
     from bouncing_ball_contacts.contact.page_data import chart_and_motion
 
     with extra("plot"):
-        from bouncing_ball_contacts.contact.page_figures import draw
         from bouncing_ball.drawing.files import write
         from bouncing_ball.drawing.style import style
+        from bouncing_ball_contacts.contact.page_figures import draw
     with style():
         listed = contact_numbers(given) + rows.texts(found.judged)
         figure = draw(rows.document(found), chart_and_motion(found), listed)

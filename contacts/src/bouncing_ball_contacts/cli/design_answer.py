@@ -6,13 +6,13 @@ from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import Description
 from bouncing_ball_contacts.contact.drops import Dropped, drop_at_rest
-from bouncing_ball_contacts.engines.drop_in_steps import ReboundHeights
-from bouncing_ball_contacts.engines.engine import EngineSettings
-from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.write import Looser, Softer
+from bouncing_ball_contacts.engines.drop_in_steps import ReboundHeights
+from bouncing_ball_contacts.engines.engine import EngineSettings
+from bouncing_ball_contacts.engines.given_step import AtStep
 
 KINDS = (
     quantities(Contact)

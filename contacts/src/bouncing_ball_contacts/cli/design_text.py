@@ -5,16 +5,17 @@ from typing import Any
 
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
+
+from bouncing_ball.cli.options import option
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
 from bouncing_ball_contacts.cli.engine_text import engine_lines, law_lines, line
-from bouncing_ball.cli.options import option
 from bouncing_ball_contacts.contact import rows
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
-from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.contact.families import ComparedOrbit, ErrorsByQuantity
 from bouncing_ball_contacts.contact.needed import Needed
 from bouncing_ball_contacts.contact.texts import percent, shown, signed
+from bouncing_ball_contacts.engines.given_step import AtStep
 
 _SIMPLE = "error law", "corrected"
 # The row that has a range if parameters contain a time step.

@@ -1,17 +1,17 @@
 """How the settings for an engine are written as text, and what it does at a given time step."""
 
-from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball.cli.options import option
+from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.contact import rows
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
+from bouncing_ball_contacts.contact.texts import shown
+from bouncing_ball_contacts.contact.write import Looser
 from bouncing_ball_contacts.engines.drop_in_steps import ReboundHeights
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
-from bouncing_ball_contacts.contact.texts import shown
-from bouncing_ball_contacts.contact.write import Looser
 
 
 def line(name: str, *columns: str) -> str:

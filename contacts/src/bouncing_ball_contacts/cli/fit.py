@@ -4,11 +4,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
+from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball_contacts.contact.quantities import Speed, quantities
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.units import doubts, in_si
-from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball_contacts.measured.experiment import (
     QUANTITIES,
     Experiment,
@@ -19,7 +20,6 @@ from bouncing_ball_contacts.measured.experiment import (
 from bouncing_ball_contacts.measured.fit import ContactFit
 from bouncing_ball_contacts.measured.law_fit import LawFit
 from bouncing_ball_contacts.measured.verdicts import JudgedLaw, error_size, judge
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 # In SI units the unit of time is a second, and ϖ is a natural frequency.
 _SHOWN = {"frequency_ratio": "natural frequency"}

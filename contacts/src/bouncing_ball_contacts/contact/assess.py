@@ -10,6 +10,9 @@ from functools import cached_property
 from typing import Annotated, ClassVar
 
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS
+from bouncing_ball_beyond.models.damping import LINEAR
+
+from bouncing_ball.errors import ModelError, NoOrbitError, require, suggesting
 from bouncing_ball_contacts.contact.choose import Choice
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import require_short
@@ -27,9 +30,12 @@ from bouncing_ball_contacts.contact.rows import Listed
 from bouncing_ball_contacts.contact.starts import FEW, SharesOfStarts, ends_of_starts
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.verdict import judged_choice, said_of_orbit
-from bouncing_ball_contacts.contact.verdict_on_motion import Sentences, aside, headline, said_of_motion
-from bouncing_ball.errors import ModelError, NoOrbitError, require, suggesting
-from bouncing_ball_beyond.models.damping import LINEAR
+from bouncing_ball_contacts.contact.verdict_on_motion import (
+    Sentences,
+    aside,
+    headline,
+    said_of_motion,
+)
 
 STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""

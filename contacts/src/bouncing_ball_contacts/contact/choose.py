@@ -9,6 +9,12 @@ from dataclasses import dataclass, replace
 
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball_beyond.accuracy.thresholds import RATIOS, ThresholdStatus
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+
+from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.families import families
 from bouncing_ball_contacts.contact.hertz import reduced_modulus
@@ -23,11 +29,6 @@ from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.contact.texts import percent
 from bouncing_ball_contacts.contact.verdict import judged_choice
-from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
 
 # The error falls as 1/ϖ or faster. A stiffness that is larger by a millionth therefore has it
 # within the tolerance by half a millionth of this at least: more than the rounding errors of

@@ -5,9 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from bouncing_ball_contacts.engines.choice import engine_named
-from bouncing_ball_contacts.engines.engine import Engine
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.models.laws.named import law_named
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
+from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball_contacts.contact.quantities import (
     ContactTime,
     Damping,
@@ -25,11 +29,8 @@ from bouncing_ball_contacts.contact.quantities import (
     given,
     text_of_given,
 )
-from bouncing_ball.errors import ParameterError, shortened, suggesting
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
-from bouncing_ball_beyond.models.laws.hertzian import Tsuji
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.engine import Engine
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
 """Parameters that determine the stiffness of a contact; a modulus needs the radius, too."""

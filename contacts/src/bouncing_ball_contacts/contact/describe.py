@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
+from bouncing_ball.errors import ModelError, suggesting
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import deep
 from bouncing_ball_contacts.contact.notes import force_formula, remarks
@@ -14,7 +15,6 @@ from bouncing_ball_contacts.contact.rows import Listed
 from bouncing_ball_contacts.contact.table import TableMotion
 from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.contact.units import in_si
-from bouncing_ball.errors import ModelError, suggesting
 
 LONGEST = 1000.0
 """The longest contact in s that is taken for one: no simulation has a longer one."""

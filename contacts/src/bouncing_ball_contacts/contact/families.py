@@ -10,15 +10,8 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-
 from bouncing_ball_beyond.accuracy import error_law, errors
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, deviation
-from bouncing_ball_contacts.contact.needed import finite
-from bouncing_ball_contacts.contact.rebounds import greatest_loads
-from bouncing_ball_contacts.contact.resolved import ResolvedContact
-from bouncing_ball_contacts.contact.rows import Listed
-from bouncing_ball_contacts.contact.table import TableMotion
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.model import Model
@@ -26,6 +19,13 @@ from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_contacts.contact.needed import finite
+from bouncing_ball_contacts.contact.rebounds import greatest_loads
+from bouncing_ball_contacts.contact.resolved import ResolvedContact
+from bouncing_ball_contacts.contact.rows import Listed
+from bouncing_ball_contacts.contact.table import TableMotion
 
 ErrorsByQuantity = dict[str, float | None]
 """Deviations from the contact by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None

@@ -9,11 +9,12 @@ bodies, the ball and the table (Hertz), ::
 
 import math
 
+from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
+
+from bouncing_ball.errors import ParameterError
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import given
 from bouncing_ball_contacts.contact.table import TableMotion
-from bouncing_ball.errors import ParameterError
-from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
 
 MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_poissons_ratio")
 """Moduli E and Poisson's ratios ν of the ball and of the table, from which E* follows."""

@@ -3,16 +3,16 @@
 import math
 
 import numpy as np
-
-from bouncing_ball_contacts.engines.engine import Engine
-from bouncing_ball_contacts.contact.families import ComparedOrbit
-from bouncing_ball_contacts.contact.motion import FinalMotion
-from bouncing_ball_beyond.models.laws.named import contact_in_words
-from bouncing_ball_contacts.contact.resolved import ResolvedContact
-from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.named import contact_in_words
 from bouncing_ball_beyond.periodic.one_impact import n_t
+
+from bouncing_ball_contacts.contact.families import ComparedOrbit
+from bouncing_ball_contacts.contact.motion import FinalMotion
+from bouncing_ball_contacts.contact.resolved import ResolvedContact
+from bouncing_ball_contacts.contact.texts import shown
+from bouncing_ball_contacts.engines.engine import Engine
 
 # Shakers reach some hundred times gravity.
 _MOST = 500.0

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Annotated, Any, get_args
 
-from bouncing_ball_contacts.contact.units import SIParameter, in_si
 from bouncing_ball.errors import ParameterError, Range, shortened
+from bouncing_ball_contacts.contact.units import SIParameter, in_si
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from bouncing_ball_beyond.accuracy.errors import QUANTITIES, Quantity
-from bouncing_ball_contacts.engines.choice import engine_named
-from bouncing_ball_contacts.engines.engine import ERROR
-from bouncing_ball_contacts.contact.quantities import RestitutionError, TimeStep, Tolerance, convert
+
 from bouncing_ball.errors import (
     FAMILY,
     ModelError,
@@ -15,6 +13,9 @@ from bouncing_ball.errors import (
     shortened,
     suggesting,
 )
+from bouncing_ball_contacts.contact.quantities import RestitutionError, TimeStep, Tolerance, convert
+from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.engine import ERROR
 
 # The families of which one is judged by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)

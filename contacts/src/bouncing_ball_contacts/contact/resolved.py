@@ -6,22 +6,22 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
-
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, models_of_law
-from bouncing_ball_contacts.contact import effort
-from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.engines.physical import Physical
-from bouncing_ball_beyond.models.laws.named import model_name
-from bouncing_ball_contacts.contact.rebounds import slowed
-from bouncing_ball_contacts.contact.table import TableMotion
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.named import model_name
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.steady_contact import known_threshold
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
+from numpy.typing import ArrayLike
+
+from bouncing_ball_contacts.contact import effort
+from bouncing_ball_contacts.contact.contact import Contact
+from bouncing_ball_contacts.contact.rebounds import slowed
+from bouncing_ball_contacts.contact.table import TableMotion
+from bouncing_ball_contacts.engines.physical import Physical
 
 # Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
 # to a free impact, and its signature interpolated, to 1e-12.

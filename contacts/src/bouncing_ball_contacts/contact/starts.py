@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
+from bouncing_ball_beyond.motions.basins import MotionName, basins
+from bouncing_ball_beyond.motions.motions import Kind
 
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.texts import shown
-from bouncing_ball_beyond.motions.basins import MotionName, basins
-from bouncing_ball_beyond.motions.motions import Kind
 
 # The impacts for which each ball is followed: after 250 some that approach an orbit are not known.
 _IMPACTS = 300

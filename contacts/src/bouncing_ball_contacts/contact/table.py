@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from bouncing_ball.errors import NoOrbitError, require, suggesting
 from bouncing_ball_contacts.contact.quantities import (
     STANDARD_GRAVITY,
     Acceleration,
@@ -18,7 +19,6 @@ from bouncing_ball_contacts.contact.quantities import (
     given,
     single,
 )
-from bouncing_ball.errors import NoOrbitError, require, suggesting
 
 # Beyond this limit the square of Λ leaves no digits. The other calls have the same limit.
 _LARGEST = 1e8

@@ -6,14 +6,15 @@ contact (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`).
 
 from bouncing_ball_beyond.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
+from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.judgement import Disagreement, OrbitJudgement
 from bouncing_ball_contacts.contact.needed import NO_ORBIT, Needed
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.texts import in_place_of, percent, shown, signed
 from bouncing_ball_contacts.contact.verdict_on_motion import Sentences
-from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 _UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
 _NO_CROSSING = {

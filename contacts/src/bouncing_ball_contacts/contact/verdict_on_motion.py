@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball_beyond.motions.motions import Kind
+
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.judgement import Basis, MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.starts import FEW
 from bouncing_ball_contacts.contact.texts import in_place_of, percent, shown, signed
-from bouncing_ball_beyond.motions.motions import Kind
-from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
 
 # What a ball does that starts near an orbit, by the kind of the motion on which it ends.
 _DOES: Mapping[str, str] = {

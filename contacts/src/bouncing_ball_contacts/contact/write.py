@@ -8,15 +8,14 @@ Beside them are those with a retuned damping, and those of a softer contact with
 import math
 from dataclasses import dataclass, replace
 
+from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball_contacts.contact.assess import Assessment, assess
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import LONGEST, Description, description_of
 from bouncing_ball_contacts.contact.drops import Dropped, drop_at_rest
-from bouncing_ball_contacts.engines.choice import engine_named
-from bouncing_ball_contacts.engines.drop_in_steps import MOST_STEPS, ReboundHeights, drop_in_steps
-from bouncing_ball_contacts.engines.engine import Engine, EngineSettings
-from bouncing_ball_contacts.engines.given_step import AtStep, stiffest_contact
-from bouncing_ball_contacts.engines.hunt_crossley_steps import fewest_steps_of_law
 from bouncing_ball_contacts.contact.loss import of_loss
 from bouncing_ball_contacts.contact.quantities import check_kinds
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
@@ -24,9 +23,11 @@ from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.contact.texts import shown
-from bouncing_ball.errors import ModelError, ParameterError, suggesting
-from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.drop_in_steps import MOST_STEPS, ReboundHeights, drop_in_steps
+from bouncing_ball_contacts.engines.engine import Engine, EngineSettings
+from bouncing_ball_contacts.engines.given_step import AtStep, stiffest_contact
+from bouncing_ball_contacts.engines.hunt_crossley_steps import fewest_steps_of_law
 
 _STEP = "time_step"
 _OF_A_LAW = (

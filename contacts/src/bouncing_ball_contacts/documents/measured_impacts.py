@@ -31,14 +31,18 @@ from typing import Annotated, Self
 
 import numpy as np
 import xarray as xr
-from pydantic import AfterValidator
-
 from bouncing_ball_beyond.accuracy.error_law import VALID_BELOW, first_order, small_parameter
 from bouncing_ball_beyond.accuracy.errors import Quantity
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
-from bouncing_ball_contacts.contact.table import Table, TableMotion
+from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
+from bouncing_ball_beyond.models.laws.signature import Signature
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch
+from pydantic import AfterValidator
+
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.measured.curves import CURVES
 from bouncing_ball_contacts.measured.experiment import Experiment, experiment, experiment_names
 from bouncing_ball_contacts.measured.fit import ContactFit
@@ -53,10 +57,6 @@ from bouncing_ball_contacts.measured.verdicts import (
     smooth,
     trend_of_scatter,
 )
-from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.laws.signature import Signature
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch
 
 # Ten times the largest change when a fit starts elsewhere, see tests/beyond/exhibits.
 _FITTED = 1e-10

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.accuracy.errors import Quantity
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.style import COLOURS, LAWS, Look

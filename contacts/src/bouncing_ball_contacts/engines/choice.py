@@ -1,5 +1,6 @@
 """The physics engines that a user can name."""
 
+from bouncing_ball.errors import one_of
 from bouncing_ball_contacts.engines.drake import Drake
 from bouncing_ball_contacts.engines.engine import Engine
 from bouncing_ball_contacts.engines.genesis import Genesis
@@ -7,7 +8,6 @@ from bouncing_ball_contacts.engines.granular import Lammps, Liggghts, MercuryDPM
 from bouncing_ball_contacts.engines.mujoco import MuJoCo
 from bouncing_ball_contacts.engines.newton import NewtonMuJoCo, NewtonSemiImplicit
 from bouncing_ball_contacts.engines.proportional import Generic, PyBullet
-from bouncing_ball.errors import one_of
 
 ENGINES: dict[str, Engine] = {
     engine.name: engine

@@ -7,7 +7,10 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 
+from bouncing_ball.errors import require
 from bouncing_ball_contacts.engines.engine import (
     ERROR,
     Engine,
@@ -20,9 +23,6 @@ from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.engines.hunt_crossley_steps import at_step_of_law, missing_speed
 from bouncing_ball_contacts.engines.scheme import Scheme
 from bouncing_ball_contacts.engines.steps import HuntCrossleyStep
-from bouncing_ball.errors import require
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 
 
 class Drake(Engine):

@@ -24,7 +24,9 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
+from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 
+from bouncing_ball.errors import ModelError
 from bouncing_ball_contacts.engines.impacts import (
     FEWEST,
     bisected,
@@ -34,8 +36,6 @@ from bouncing_ball_contacts.engines.impacts import (
 )
 from bouncing_ball_contacts.engines.physical import Physical, free_duration
 from bouncing_ball_contacts.engines.scheme import Scheme
-from bouncing_ball.errors import ModelError
-from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 
 # Velocities below this part of that of the impact are those of a ball that does not leave.
 _STAYS = 1e-6

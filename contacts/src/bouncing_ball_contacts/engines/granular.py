@@ -11,11 +11,12 @@
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+from bouncing_ball_beyond.models.damping import Release
+
 from bouncing_ball_contacts.engines.engine import Engine
 from bouncing_ball_contacts.engines.hertz_granular import LAWS, HertzLammps, HertzLiggghts
 from bouncing_ball_contacts.engines.proportional import Proportional
 from bouncing_ball_contacts.engines.scheme import Scheme
-from bouncing_ball_beyond.models.damping import Release
 
 
 class Lammps(Proportional):

@@ -20,12 +20,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from bouncing_ball_beyond.models.damping import Release
 
+from bouncing_ball.errors import ModelError, shortened
 from bouncing_ball_contacts.engines.engine import Engine, Physical, at_speeds
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
-from bouncing_ball.errors import ModelError, shortened
-from bouncing_ball_beyond.models.damping import Release
 
 # What is written between numbers and around them elsewhere.
 _BETWEEN = re.compile(r"[\s,;()\[\]]+")

@@ -28,8 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.contact.units import SIParameter, in_si, number_in_si
 from bouncing_ball.errors import ModelError, ParameterError, Range
+from bouncing_ball_contacts.contact.units import SIParameter, in_si, number_in_si
 from bouncing_ball_contacts.measured.fit import ContactFit, fit_contact
 from bouncing_ball_contacts.measured.flights import (
     Heard,

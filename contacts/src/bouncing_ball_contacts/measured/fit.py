@@ -13,9 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, quantities
-from bouncing_ball_contacts.contact.units import in_si
 from bouncing_ball.errors import (
     NoOrbitError,
     ParameterError,
@@ -23,9 +20,12 @@ from bouncing_ball.errors import (
     shortened,
     suggesting,
 )
+from bouncing_ball.numerics.arrays import as_numbers
+from bouncing_ball_contacts.contact.contact import Contact
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, quantities
+from bouncing_ball_contacts.contact.units import in_si
 from bouncing_ball_contacts.measured.curves import CURVES, curve_named
 from bouncing_ball_contacts.measured.law_fit import LawFit, MeasuredPoints, fit_law, quantile_of
-from bouncing_ball.numerics.arrays import as_numbers
 
 _POSITIVE = "a finite number > 0"
 

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-
 from bouncing_ball_beyond.accuracy.errors import Quantity, modulus
 from bouncing_ball_beyond.accuracy.simple_models import search
 from bouncing_ball_beyond.models.damping import Release, damping_ratio

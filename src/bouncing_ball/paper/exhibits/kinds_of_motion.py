@@ -15,14 +15,14 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.sequence import ImpactSequence
+from bouncing_ball_beyond.motions.destination import final_motions
+from bouncing_ball_beyond.motions.motions import Kind, Motions
 
 from bouncing_ball.datasets.parameters import Amplitude, Many, Parameters, Restitution, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
-from bouncing_ball_beyond.motions.destination import final_motions
-from bouncing_ball_beyond.motions.motions import Kind, Motions
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.sequence import ImpactSequence
 from bouncing_ball.numerics.elementary import reduce_angle
 
 VARIABLES = {

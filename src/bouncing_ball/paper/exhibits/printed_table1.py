@@ -6,7 +6,6 @@ The exponent of the first frequency ratio is unreadable and taken as 4.
 
 import numpy as np
 import xarray as xr
-
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 AXES: dict[str, list] = {

@@ -25,9 +25,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.numerics.elementary import sine_and_cosine
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
-from bouncing_ball.numerics.elementary import sine_and_cosine
 
 # Steps of Newton's method for ψ = φ + t_c(v), for laws whose delay depends on the speed.
 _ITERATIONS = 30

@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.numerics.arrays import Batch, as_numbers
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
-from bouncing_ball.numerics.arrays import Batch, as_numbers
 
 
 class Unit(NamedTuple):

@@ -1,10 +1,16 @@
 """The contact laws by their names."""
 
 from bouncing_ball_contacts.engines.impedance import Impedance
+
 from bouncing_ball.errors import one_of
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball_beyond.models.laws.hertzian import (
+    HuntCrossley,
+    KuwabaraKono,
+    LinearHuntCrossley,
+    Tsuji,
+)
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 

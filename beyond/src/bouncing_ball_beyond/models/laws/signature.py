@@ -62,10 +62,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.collocation import contacts
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw, Scaled
-from bouncing_ball.numerics.arrays import Batch
 
 # Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.

@@ -27,9 +27,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, suggesting
-from bouncing_ball_beyond.models.model import Model
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.corrector import checked, solve
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.numerics.corrector import checked, solve
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.orbits.balls import Balls

@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_beyond.models.instant import Instant
-from bouncing_ball_beyond.models.model import Model
 from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball.numerics.corrector import checked, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball_beyond.models.instant import Instant
+from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import branches_through_points
 from bouncing_ball_beyond.periodic.one_impact import corrected_branch as line
 from bouncing_ball_beyond.periodic.one_impact.orbits_of_model import OrbitsOfModel, in_order

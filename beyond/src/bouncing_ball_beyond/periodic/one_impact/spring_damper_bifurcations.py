@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import blocks
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     BranchPoint,
     branch_point,

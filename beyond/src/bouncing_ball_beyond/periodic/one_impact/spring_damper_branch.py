@@ -45,10 +45,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
+from bouncing_ball.numerics.arrays import blocks, pick
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.oscillator import gravity_response, table_response
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.arrays import blocks, pick
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 # Number of points computed at the same time, so that the intermediate arrays stay in the cache.

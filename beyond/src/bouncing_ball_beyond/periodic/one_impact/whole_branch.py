@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball_beyond.models.model import Model
 from bouncing_ball.numerics.branch import ContinuationError, EndKind
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import Followed, branches_through_points
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns

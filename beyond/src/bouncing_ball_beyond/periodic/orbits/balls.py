@@ -7,9 +7,9 @@ from typing import Any, Self
 import numpy as np
 
 from bouncing_ball.errors import AMPLITUDE, ModelError, ParameterError, Range, did_you_mean
+from bouncing_ball.numerics.arrays import pick
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball.numerics.arrays import pick
 
 LAMBDA = "amplitude"
 """The name of Λ, the parameter that all balls have."""

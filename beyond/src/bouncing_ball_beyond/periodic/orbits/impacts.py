@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ParameterError, require
+from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.legs import (
     Legs,

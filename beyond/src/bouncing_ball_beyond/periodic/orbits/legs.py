@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.periodic.orbits.stability import matrices_of, product_of
 
 

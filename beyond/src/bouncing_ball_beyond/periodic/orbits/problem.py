@@ -48,11 +48,11 @@ from typing import Any, Self
 
 import numpy as np
 
+from bouncing_ball.numerics.events import Event
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.sequence import Status
-from bouncing_ball.numerics.events import Event
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball_beyond.periodic.orbits.beside import LegsBeside
 from bouncing_ball_beyond.periodic.orbits.legs import Legs, lag_of, landed, without_force

@@ -18,8 +18,8 @@ from bouncing_ball.datasets.arguments import SAMPLES, checked_number, require_me
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ModelError
-from bouncing_ball_beyond.models.as_text import model_of, text_of
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.models.as_text import model_of, text_of
 
 ORBIT = "orbit"
 """The dimension of several orbits that are no branch."""

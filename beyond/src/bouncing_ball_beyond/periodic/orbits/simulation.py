@@ -6,9 +6,9 @@ from itertools import islice
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
 from bouncing_ball_beyond.periodic.orbits.legs import (
     lag_of,

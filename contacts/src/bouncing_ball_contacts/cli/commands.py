@@ -1,6 +1,8 @@
-"""The subcommands that the house of contacts adds to ``bouncing-ball``: an entry point of its package."""
+"""The subcommands that contacts adds to ``bouncing-ball``: an entry point of its package."""
 
 from bouncing_ball.cli.commands import Command, Program
+from bouncing_ball_contacts.cli.advice import advice_of_design, advice_of_fit
+from bouncing_ball_contacts.cli.options import NAMES
 
 _OF_DESIGN = (
     "the orbits of eight families and the ends of many starts are computed, and each impact on a "
@@ -54,6 +56,8 @@ COMMANDS = {
         program=_design,
         has_symbols=False,
         cheaper=_OF_DESIGN,
+        names=NAMES,
+        advice=advice_of_design,
     ),
     "fit": Command(
         purpose="the contact laws that fit measured impacts, ranked and judged",
@@ -70,6 +74,7 @@ COMMANDS = {
         ),
         program=_fit,
         has_symbols=False,
+        advice=advice_of_fit,
     ),
 }
 """The subcommands by name."""

@@ -1,7 +1,7 @@
 """How the settings for an engine are written as text, and what it does at a given time step."""
 
-from bouncing_ball.cli.options import option
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer
+from bouncing_ball_contacts.cli.options import option
 from bouncing_ball_contacts.contact import rows
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description

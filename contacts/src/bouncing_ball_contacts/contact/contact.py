@@ -8,7 +8,6 @@ from typing import Any, Literal
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
-from bouncing_ball_beyond.models.laws.named import law_named
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 from bouncing_ball.errors import ParameterError, shortened, suggesting
@@ -31,6 +30,7 @@ from bouncing_ball_contacts.contact.quantities import (
 )
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.engine import Engine
+from bouncing_ball_contacts.engines.laws import law_named
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
 """Parameters that determine the stiffness of a contact; a modulus needs the radius, too."""

@@ -25,12 +25,12 @@ from bouncing_ball_beyond.models.laws.hertzian import (
     Tsuji,
 )
 from bouncing_ball_beyond.models.laws.law_of_impact import reference
-from bouncing_ball_beyond.models.laws.named import law_named
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, one_of
+from bouncing_ball_contacts.engines.laws import law_named
 
 # The logarithms of the groups that are searched for a restitution coefficient, which falls with
 # the group. Few of them are computed, because each costs as much as a fit.

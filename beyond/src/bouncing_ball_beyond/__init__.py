@@ -1,9 +1,9 @@
 """Past the paper: how stiff is stiff enough, for any orbit and any contact law.
 
 The house on the plot that stands on ``bouncing_ball``, the replication. It has what the paper does
-not ask for: contacts of other laws, the corrected restitution model, periodic orbits with any number
-of impacts, which are followed along any parameter, the motions on which balls end, and enclosures
-that prove the paper's printed numbers.
+not ask for: contacts of other laws, the corrected restitution model, periodic orbits with any
+number of impacts, which are followed along any parameter, the motions on which balls end, and
+enclosures that prove the paper's printed numbers.
 
 A ball is made once and handed to functions::
 
@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from bouncing_ball_beyond.accuracy.error_thresholds import error_thresholds as error_thresholds
     from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
-    from bouncing_ball_beyond.models.law_balls import contact_law as contact_law
     from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
     from bouncing_ball_beyond.models.laws.start_speed import (
         LankaraniNikravesh as LankaraniNikravesh,
@@ -44,6 +43,7 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.periodic.branches.follow import follow as follow
     from bouncing_ball_beyond.periodic.branches.grazing import grazing_form as grazing_form
     from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
+    from bouncing_ball_beyond.periodic.law_balls import contact_law as contact_law
     from bouncing_ball_beyond.periodic.orbits.normal_form import normal_form as normal_form
     from bouncing_ball_beyond.periodic.orbits_of_ball import limits as limits
     from bouncing_ball_beyond.periodic.orbits_of_ball import orbit as orbit
@@ -63,7 +63,7 @@ _MODULES = {
     "SpringDamper": "models.spring_damper",
     "basins": "motions.motion_of",
     "branch": "periodic.branches_of_ball",
-    "contact_law": "models.law_balls",
+    "contact_law": "periodic.law_balls",
     "corrected": "models.makers",
     "drop": "motions.over_time",
     "error_thresholds": "accuracy.error_thresholds",

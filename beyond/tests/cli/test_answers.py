@@ -10,7 +10,7 @@ from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, tsuji_damping
-from bouncing_ball_beyond.models.laws.named import LAWS
+from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES

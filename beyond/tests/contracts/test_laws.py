@@ -27,8 +27,8 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 )
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.loaded import under
-from bouncing_ball_beyond.models.laws.named import LAWS as NAMED
-from bouncing_ball_beyond.models.laws.named import by_name
+from bouncing_ball_beyond.models.named_laws import LAWS as NAMED
+from bouncing_ball_beyond.models.named_laws import by_name
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh

@@ -10,10 +10,10 @@ from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, paper_error
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.instant import Instant
-from bouncing_ball_beyond.models.law_balls import contact_law
+from bouncing_ball_beyond.periodic.law_balls import contact_law
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.laws.named import LAWS, law_named
+from bouncing_ball_beyond.models.named_laws import LAWS, law_named
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball_beyond.models.rigid import RestitutionModel

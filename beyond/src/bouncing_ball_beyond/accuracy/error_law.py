@@ -1,15 +1,14 @@
 r"""The error of the restitution model, to first order in the contact duration.
 
 It is the paper's error (Eqs. 37-38), relative to the value of the restitution model
-(:func:`~bouncing_ball_beyond.accuracy.errors.paper_error`). The deviation from the contact is to first
-order the same with the other sign.
+(:func:`~bouncing_ball_beyond.accuracy.errors.paper_error`). The deviation from the contact is to
+first order the same with the other sign.
 
-The corrected model (:mod:`bouncing_ball_beyond.periodic.one_impact.corrected_branch`) differs from the
-exact model in the second order, and from the restitution model in the first order, through
-the delay t_c and the load sensitivity σ. The first-order error of the
-restitution model is therefore the derivative of the closed forms along (t_c, σ, D) at 0.
-With ``X₀ = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = X₀/Λ``, ``Y₀ = Λ sin ψ₀`` and
-``q₀ = 1 - Y₀`` of the restitution model's orbit ::
+The corrected model (:mod:`bouncing_ball_beyond.periodic.one_impact.corrected_branch`) differs from
+the exact model in the second order, and from the restitution model in the first order, through the
+delay t_c and the load sensitivity σ. The first-order error of the restitution model is therefore
+the derivative of the closed forms along (t_c, σ, D) at 0. With ``X₀ = nπ (1 - r)/(1 + r)``, ``cos
+ψ₀ = X₀/Λ``, ``Y₀ = Λ sin ψ₀`` and ``q₀ = 1 - Y₀`` of the restitution model's orbit ::
 
     ψ = ψ₀ + σ q₀/((1 + r) Y₀)                (the line, at fixed Λ)
     φ = ψ - t_c

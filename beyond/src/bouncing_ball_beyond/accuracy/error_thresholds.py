@@ -46,8 +46,8 @@ def error_thresholds(
 
     The contact has the r of the ball as the restitution coefficient of a free impact. The error of
     a quantity is its value on the contact minus its value in the simple model, over the latter
-    (Eqs. 37-38). :func:`bouncing_ball_contacts.assess_contact` divides by the value on the contact instead,
-    so that its thresholds are others: an error e here is -e/(1 + e) there.
+    (Eqs. 37-38). An engineer's contact is assessed by deviations, over the value on the contact
+    instead, so that its thresholds are others: an error e here is -e/(1 + e) there.
 
     Parameters
     ----------

@@ -9,10 +9,9 @@ and its value q in a simple model, which is the restitution model in the paper::
 They are :func:`paper_error` and :func:`deviation`. ``d = -e/(1 + e)``, which is
 :func:`as_deviation`: to first order they differ in their sign alone.
 The paper compares the greatest height (Eq. 37) and the threshold of permanent contact (Eq. 38), and
-uses the modulus of the error; here both are signed. The replication, the error law, thresholds and
-the studies beyond the paper have the paper's error. An engineer's contact
-(:mod:`bouncing_ball_contacts.contact`) is the truth for a model, so that its errors and its tolerance are
-deviations.
+uses the modulus of the error; here both are signed. The error law, thresholds and studies have the
+paper's error. An engineer's contact is the truth for a model, so that its errors and its tolerance
+are deviations.
 """
 
 from collections.abc import Iterable, Sequence

@@ -7,7 +7,8 @@ The paper calls the errors of the greatest height h and of the threshold of perm
 and ϖ_h,1% and ϖ_PC,1% the values of ϖ at which they are 1 %. Here the threshold of any quantity is
 the largest ϖ in a scanned range at which the modulus of its error crosses the tolerance. Where a
 model lacks the quantity, the error is infinite. The functions here find the thresholds and zeros of
-any errors; :func:`~bouncing_ball_beyond.accuracy.simple_models.search` finds those of simple models.
+any errors; :func:`~bouncing_ball_beyond.accuracy.simple_models.search` finds those of simple
+models.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,6 +1,7 @@
 """The subcommands that beyond adds to ``bouncing-ball``: an entry point of its package."""
 
 from bouncing_ball.cli.commands import Command, Program
+from bouncing_ball_beyond.cli.options import NAMES
 
 # What makes a single orbit cheaper.
 _SIMPLER = "a spring and a damper in place of a law"
@@ -18,6 +19,12 @@ def _limits() -> Program:
     from bouncing_ball_beyond.cli import periodic
 
     return Program(periodic.limits_options, periodic.limits, lines)
+
+
+def _certify() -> Program:
+    from bouncing_ball_beyond.cli import certify
+
+    return Program(certify.add_options, certify.certify, certify.certify_lines)
 
 
 def _error_law() -> Program:
@@ -63,40 +70,50 @@ def _diagram() -> Program:
 
 COMMANDS = {
     "law-orbit": Command(
-        purpose="the n-T orbit at an excitation amplitude",
+        purpose="the n-T orbit on a contact of any law or in the corrected model",
         text=(
             "An n-T orbit is a periodic motion. It is stable if balls that start near it approach "
             "it, and admissible if no other impact or release occurs within a period."
         ),
         examples=(
-            "law-orbit --amplitude 1 --restitution 0.85",
-            "law-orbit --amplitude 1 --restitution 0.85 --frequency-ratio 10",
-            ("law-orbit --amplitude 0.9 --restitution 0.85 --frequency-ratio 2 --side all"),
             "law-orbit --amplitude 1 --law tsuji --restitution 0.85 --duration 0.1",
+            "law-orbit --amplitude 1 --restitution 0.85 --frequency-ratio 10 --model corrected",
         ),
         program=_orbit,
+        names=NAMES,
         cheaper=_SIMPLER,
     ),
     "law-limits": Command(
-        purpose="saddle-node and period doubling of the n-T orbits",
+        purpose="saddle-node and period doubling, for any law or in the corrected model",
         text=(
             "An n-T orbit exists above the saddle-node and is stable up to the period doubling, "
             "beyond which the motion repeats only after 2n periods of the table."
         ),
         examples=(
-            "law-limits --restitution 0.85",
-            "law-limits --n 2 --damping-ratio 0.05 --frequency-ratio 10",
-            "law-limits --restitution 0.85 --frequency-ratio 10 --certify",
+            "law-limits --n 2 --damping-ratio 0.05 --frequency-ratio 10 --model corrected",
+            "law-limits --law tsuji --restitution 0.85 --duration 0.1",
         ),
         program=_limits,
+        names=NAMES,
         cheaper=_SIMPLER,
+    ),
+    "certify": Command(
+        purpose="saddle-node and period doubling on a spring and a damper, with a proof",
+        text=(
+            "Both limits of a family are proved by ball arithmetic: each printed number differs "
+            "from the exact one by no more than its radius. The contact ends where its "
+            "displacement vanishes. Numbers of up to 15 digits are taken as exact decimal numbers."
+        ),
+        examples=("certify --restitution 0.85 --frequency-ratio 10",),
+        program=_certify,
+        cheaper="fewer digits",
     ),
     "error-law": Command(
         purpose="the error K/ϖ of the restitution model to first order",
         text=(
             "The difference of the contact from the restitution model, relative to the restitution "
             "model (Eqs. 37-38), is K/ϖ to first order. The deviation of the model relative to the "
-            "contact, as in design, is to this order the same with the other sign. To this order "
+            "contact is to this order the same with the other sign. To this order "
             "both fall to ε at the frequency ratio ϖ = |K|/ε. This is an estimate and no bound."
         ),
         examples=("error-law --amplitude 1 --restitution 0.65",),
@@ -119,6 +136,7 @@ COMMANDS = {
             "follow --amplitude 1.6 --restitution 0.5 --phase 1 --velocity -3 --to 1.8",
         ),
         program=_follow,
+        names=NAMES,
         cheaper="a nearer value of to or fewer doublings",
     ),
     "curve": Command(
@@ -134,19 +152,20 @@ COMMANDS = {
             ),
         ),
         program=_curve,
+        names=NAMES,
         cheaper="narrower ranges or fewer points",
     ),
     "law-simulate": Command(
-        purpose="a sequence of impacts from any initial impact",
+        purpose="a sequence of impacts, for any law or in the corrected model",
         text=(
             "Each line of the answer is an impact. The list ends early if the ball stays on the "
             "table."
         ),
         examples=(
-            "law-simulate --amplitude 1 --restitution 0.85 --impacts 5",
-            "law-simulate --amplitude 0 --restitution 0.5 --velocity -4 --impacts 5",
+            "law-simulate --amplitude 1 --law tsuji --restitution 0.85 --duration 0.1 --impacts 5",
         ),
         program=_simulate,
+        names=NAMES,
         cheaper="fewer impacts",
     ),
     "motion": Command(
@@ -165,6 +184,7 @@ COMMANDS = {
             "motion --amplitude 3 --restitution 0.5 --phase 1 --velocity -4",
         ),
         program=_motion,
+        names=NAMES,
         cheaper="fewer impacts",
     ),
     "diagram": Command(
@@ -176,6 +196,7 @@ COMMANDS = {
         ),
         examples=("diagram --amplitude 0.9 1.1 --points 5 --restitution 0.85",),
         program=_diagram,
+        names=NAMES,
         cheaper="fewer amplitudes, fewer starts or fewer impacts",
     ),
 }

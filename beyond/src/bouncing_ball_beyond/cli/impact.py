@@ -2,15 +2,7 @@
 
 from typing import Any
 
-from bouncing_ball.cli.options import (
-    Parser,
-    add_assignments,
-    add_choice,
-    add_number,
-    laws,
-    meanings,
-    option,
-)
+from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings
 from bouncing_ball.datasets.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
@@ -19,11 +11,12 @@ from bouncing_ball.datasets.arguments import (
     ReleaseName,
 )
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball_beyond.cli.options import add_assignments, option
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.law_balls import contact_law
-from bouncing_ball_beyond.models.laws.named import law_named
 from bouncing_ball_beyond.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
+from bouncing_ball_beyond.models.named_laws import LAWS, law_named
+from bouncing_ball_beyond.periodic.law_balls import contact_law
 
 MODELS = ("restitution", "spring-damper", "corrected")
 
@@ -44,8 +37,9 @@ def add_ball(parser: Parser) -> None:
     add_contact(parser, with_ratio=True)
     default = 'By default "spring-damper" if ϖ is given, and otherwise "restitution".'
     add_choice(parser, "model", MODELS, f'"restitution", "spring-damper" or "corrected". {default}')
-    name = "Name of a contact law, in place of the linear spring and damper."
-    parser.add_argument(option("law"), metavar="X", help=name + laws())
+    names = f"Laws: {', '.join(LAWS)}."
+    text = f"Name of a contact law, in place of the linear spring and damper. {names}"
+    parser.add_argument(option("law"), metavar="X", help=text)
     by_name = "Parameters of the contact law by name, such as stiffness=1000."
     add_assignments(parser, "parameters", by_name)
     texts = meanings(contact_law)

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.cli.options import Parser, add_file, add_interval, add_number, meanings
+from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, START
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
 from bouncing_ball_beyond.cli.impact import add_ball, ball_of
+from bouncing_ball_beyond.cli.options import add_file, add_interval
 from bouncing_ball_beyond.cli.periodic import Answer
 from bouncing_ball_beyond.cli.simulate import note_on
 from bouncing_ball_beyond.models.ball import Ball

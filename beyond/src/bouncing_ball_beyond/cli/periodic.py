@@ -1,4 +1,4 @@
-"""``bouncing-ball orbit``, ``limits``, ``error-law`` and ``permanent-contact``."""
+"""``bouncing-ball law-orbit``, ``law-limits`` and ``error-law``."""
 
 import math
 from typing import Any, Literal, get_args
@@ -9,16 +9,14 @@ from bouncing_ball.cli.options import (
     Parser,
     add_choice,
     add_number,
-    add_optional_number,
     meanings,
 )
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
-    FREQUENCY_RATIO,
     ReleaseName,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
+from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball_beyond.accuracy import error_law as error_laws
 from bouncing_ball_beyond.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -36,11 +34,6 @@ SideOrAll = Literal["stable", "unstable", "all"]
 _SIDE = (
     'Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every orbit '
     "at this amplitude, in order of contact duration."
-)
-_DIGITS = count(100, low=10)
-_CERTIFY = (
-    "Prove both limits by ball arithmetic, and print this number of decimal digits of Λ with a "
-    "bound of the error. Numbers of up to 15 digits are taken as exact decimal numbers."
 )
 _INDEX = 'Number, from 1, of one orbit in the list of side "all".'
 
@@ -126,24 +119,17 @@ def _law_of(found: Orbit) -> Answer:
 def limits_options(parser: Parser) -> None:
     """Add the options of :func:`limits`."""
     add_number(parser, "n", FAMILY, meanings(library.limits)["n"], default=1)
-    add_optional_number(parser, "certify", _DIGITS, _CERTIFY, const=30)
     add_ball(parser)
 
 
-def limits(*, n: int, certify: int | None, **impact: Any) -> Answer:
+def limits(*, n: int, **impact: Any) -> Answer:
     """Saddle-node and period doubling of a family, and whether their orbits are admissible.
-
-    With ``certify``, a number of decimal digits, both are proved by ball arithmetic as well.
 
     Raises
     ------
     NoOrbitError
         If the branch has no saddle-node or no period doubling.
-    ModelError
-        If something cannot be certified; the message gives the reason.
     """
-    if certify is not None:
-        return {"certified": _certified(n, certify, **impact)} | limits(n=n, certify=None, **impact)
     found: Any = library.limits(ball_of(**impact), n)
     answer: Answer = {}
     for name, end in found._asdict().items():
@@ -157,41 +143,6 @@ def limits(*, n: int, certify: int | None, **impact: Any) -> Answer:
     # speed of the restitution model.
     model = found.saddle_node.model
     return answer | law_values(model.impact_law, float(restitution_speed(n, model)[0]))
-
-
-def _certified(
-    n: int,
-    digits: int,
-    *,
-    frequency_ratio: float | None,
-    restitution: float | None,
-    **others: Any,
-) -> Answer:
-    """Λ of both limits as decimal texts with bounds of their errors, and what was proved."""
-    usual = (None, "spring-damper", "displacement")
-    given = [name for name, value in others.items() if value not in usual]
-    if given:
-        raise ParameterError(f"{{certify}} is not allowed with {{{given[0]}}}")
-    if frequency_ratio is None:
-        raise ParameterError("{certify} needs {frequency_ratio}: it is for spring-damper contacts")
-    if restitution is None:
-        raise ParameterError("{certify} needs {restitution}")
-    with extra("proofs"):
-        from bouncing_ball_beyond.proofs import certificates
-        from bouncing_ball_beyond.proofs.balls import exactly
-        from bouncing_ball_beyond.proofs.problem import RationalProblem
-
-    problem = RationalProblem(exactly(frequency_ratio), exactly(restitution), n)
-    proofs = {
-        "saddle_node": certificates.saddle_node(problem, digits),
-        "period_doubling": certificates.period_doubling(problem, digits),
-    }
-    answer = {}
-    for name, found in proofs.items():
-        amplitude, radius = found.texts(digits)
-        proved = [str(each) for each in found.proved]
-        answer[name] = {"amplitude": amplitude, "radius": radius, "proved": proved}
-    return answer
 
 
 def error_law_options(parser: Parser) -> None:
@@ -225,20 +176,6 @@ def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:
         "second_order": {"permanent_contact": abs(float(second))},
         **law_values(law),
     }
-
-
-def permanent_contact_options(parser: Parser) -> None:
-    """Add the options of :func:`permanent_contact`."""
-    text = meanings(spring_damper)["frequency_ratio"]
-    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, text, required=True)
-    add_contact(parser, with_ratio=False)
-
-
-def permanent_contact(**contact: Any) -> Answer:
-    """The Λ up to which the ball stays on the table."""
-    ball = _ball(**contact)
-    threshold = ball.permanent_contact_threshold()
-    return {"threshold_amplitude": float(threshold), **law_values(ball.impact_law)}
 
 
 def _ball(*, release: ReleaseName | None, **contact: Any) -> ContactModel:

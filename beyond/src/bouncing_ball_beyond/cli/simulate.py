@@ -1,4 +1,4 @@
-"""``bouncing-ball simulate``: the impacts of one ball."""
+"""``bouncing-ball law-simulate``: the impacts of one ball."""
 
 import math
 from typing import Any

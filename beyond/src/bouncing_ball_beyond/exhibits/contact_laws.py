@@ -31,16 +31,16 @@ from numpy.typing import ArrayLike
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
 from bouncing_ball_beyond.accuracy.errors import Quantity, paper_error, values
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
 from bouncing_ball_beyond.accuracy.thresholds import last_zero
+from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.laws.named import LAWS
 from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t

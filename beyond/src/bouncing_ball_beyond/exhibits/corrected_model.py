@@ -16,11 +16,10 @@ from pydantic import Field
 
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
-from bouncing_ball.paper.exhibits.time_histories import ContactHistory
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search
+from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitErrors, OrbitOnContact
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
@@ -72,7 +71,7 @@ VARIABLES = {
 }
 
 
-class OneContact(ContactHistory):
+class OneContact(OrbitOnContact):
     """An orbit on one contact, shown from before its contact until after it."""
 
     # Samples lie at equal steps over 2.2 times the duration of the contact.

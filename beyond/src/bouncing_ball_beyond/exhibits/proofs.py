@@ -1,4 +1,7 @@
-"""Certified numbers: those that the paper prints, and what is proved of each."""
+"""Certified numbers: those that the paper prints, and what is proved of each.
+
+A number whose parameters are the paper's has the name of the claim of the paper that prints it.
+"""
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
@@ -48,8 +51,13 @@ VARIABLES = {
     "certified_bits": Variable("bits of the balls in the proof"),
     "certified_what": Variable("what the proof shows, or why there is none"),
     "certified_approximation": Variable("the certified number in double precision"),
-    "certified_claim": Variable("claim of the paper whose number it is"),
+    "certified_claim": Variable("claim of the paper whose number it is, empty if it is of none"),
 }
+# The parameters with which the numbers are those that the paper prints.
+_TABLE_1 = 0.85
+_DAMPINGS = (0.85, 0.65)
+_APPARENT = {"n": 1, "restitution": 0.65, "amplitude": 1.2, "frequency_ratio": 1.0}
+_THRESHOLDS = {"n": 1, "restitution": 0.65, "amplitude": 1.0, "tolerance": 0.01}
 
 # The grid of ϖ in which the threshold is first sought in double precision.
 _GRID = np.geomspace(1.0, 1e4, 101)
@@ -102,6 +110,11 @@ def _row(name: str, prove: Callable[[], CertifiedNumber], claim: str = "") -> Ce
     return CertifiedRow(name, found.ball, found.bits, "; ".join(found.proved), claim)
 
 
+def _claim(name: str, parameters: Parameters, printed: dict[str, float]) -> str:
+    """The claim of this name, if the parameters are those of the printed number."""
+    return name if parameters.model_dump() == printed else ""
+
+
 def ends_of_table_1(parameters: Proofs) -> Iterator[CertifiedRow]:
     """The saddle-nodes and period doublings of all contacts and families."""
     certify = {Bifurcation.SADDLE_NODE: saddle_node, Bifurcation.PERIOD_DOUBLING: period_doubling}
@@ -114,7 +127,8 @@ def ends_of_table_1(parameters: Proofs) -> Iterator[CertifiedRow]:
             return CertifiedNumber(found.amplitude, found.bits, found.proved)
 
         name = f"Λ of the {kind}, ϖ = {ratio:g}, n = {n}"
-        yield _row(name, prove, f"Table 1: {ratio:g}, {n}, {kind}")
+        printed = f"Table 1: {ratio:g}, {n}, {kind}" if parameters.restitution == _TABLE_1 else ""
+        yield _row(name, prove, printed)
 
 
 def dampings(parameters: Proofs) -> Iterator[CertifiedRow]:
@@ -126,7 +140,7 @@ def dampings(parameters: Proofs) -> Iterator[CertifiedRow]:
             with precision(bits):
                 return CertifiedNumber(damping_of(exactly(r)), bits, (Proved.FORMULA,))
 
-        yield _row(f"ζ of r = {r:g}", prove, f"damping of {r:g}")
+        yield _row(f"ζ of r = {r:g}", prove, f"damping of {r:g}" if r in _DAMPINGS else "")
 
 
 def certified_apparent(parameters: Apparent, digits: int) -> CertifiedRow:
@@ -145,7 +159,7 @@ def certified_apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     name = (
         f"apparent restitution of r = {parameters.restitution:g}, ϖ = {float(ratio):g}, Λ = {lam:g}"
     )
-    return _row(name, prove, f"compliant end of {lam:g}")
+    return _row(name, prove, _claim(f"compliant end of {lam:g}", parameters, _APPARENT))
 
 
 def certified_thresholds(parameters: ToleratedError, digits: int) -> Iterator[CertifiedRow]:
@@ -153,14 +167,14 @@ def certified_thresholds(parameters: ToleratedError, digits: int) -> Iterator[Ce
     yield _row(
         f"ϖ for {parameters.tolerance:.0%} of max height",
         lambda: _threshold_of_height(parameters, digits),
-        "height threshold",
+        _claim("height threshold", parameters, _THRESHOLDS),
     )
     r = exactly(parameters.restitution)
     tolerance = exactly(parameters.tolerance)
     yield _row(
         "ϖ of permanent contact",
         lambda: permanent_contact_threshold(r, tolerance, digits),
-        "permanent contact threshold",
+        _claim("permanent contact threshold", parameters, _THRESHOLDS),
     )
 
 
@@ -190,8 +204,8 @@ def _threshold_of_height(parameters: ToleratedError, digits: int) -> CertifiedNu
 def proofs(parameters: Proofs) -> xr.Dataset:
     """Certified numbers as decimal texts with their radii, over ``certificate``.
 
-    ``certified_what`` says what was proved, or why nothing was; ``certified_claim`` is the id of
-    the claim of the paper whose number it is if the parameters are the paper's.
+    ``certified_what`` says what was proved, or why nothing was; ``certified_claim`` is the name of
+    the claim of the paper whose number it is, or empty.
     """
     digits = parameters.digits
     rows = [

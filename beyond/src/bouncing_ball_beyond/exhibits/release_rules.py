@@ -22,12 +22,10 @@ from bouncing_ball.datasets.parameters import (
     Parameters,
     Samples,
     Span,
-    Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
-from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
-from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
+from bouncing_ball_beyond.accuracy.simple_models import Search, search
+from bouncing_ball_beyond.exhibits.orbit_parameters import ComparedQuantities
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import (
     LINEAR,
@@ -36,6 +34,7 @@ from bouncing_ball_beyond.models.damping import (
     restitution_coefficient,
 )
 from bouncing_ball_beyond.models.oscillator import responses
+from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
@@ -53,19 +52,13 @@ VARIABLES = {
 }
 
 
-class RuleThresholds(ErrorsAlongRatio):
-    """One orbit, the quantities compared on it, and the tolerated relative error."""
-
-    tolerance: Tolerance
-
-
 class ReleaseRules(Parameters):
     """Families whose bifurcations are followed along ϖ, and an orbit for the thresholds."""
 
     n: Many[Family]
     restitution: LossyRestitution
     frequency_ratio: Span
-    thresholds: RuleThresholds
+    thresholds: ComparedQuantities
 
 
 def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
@@ -77,7 +70,7 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     saddle_nodes = n_t.saddle_node(model, families[:, np.newaxis]).amplitude
     doublings = n_t.period_doubling(model, families[:, np.newaxis]).amplitude
     ends = np.stack([saddle_nodes, doublings], axis=-1)
-    turns = lowest_along_ratio(ratios, doublings, zeta, rule, families)
+    turns = _turns(ratios, doublings, zeta, rule, families)
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
@@ -92,7 +85,52 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     )
 
 
-def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
+def _turns(
+    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: np.ndarray
+) -> np.ndarray:
+    """The ϖ at which the period doubling of each family is lowest, shape (n,).
+
+    With falling ϖ the period doubling first moves to smaller Λ, turns, and then moves to larger Λ.
+    ``amplitude`` has its Λ on the grid of ϖ, shape (n, ϖ), and NaN where there is none. The result
+    is NaN for a family whose period doubling is lowest at an end of the grid.
+    """
+    # This module of scipy is not loaded on first use, and its import takes a third of a second.
+    from scipy.optimize.elementwise import find_minimum
+
+    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
+        model = ContactModel(SpringDamper(np.exp(log_ratio), zeta, rule))
+        return n_t.period_doubling(model, n).amplitude
+
+    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
+    # Elsewhere the neighbours of the lowest sample are no bracket of a minimum.
+    inside = np.flatnonzero((lowest > 0) & (lowest < ratios.size - 1))
+    turns = np.full(lowest.shape, np.nan)
+    if inside.size:
+        bracket = tuple(np.log(ratios[lowest[inside] + k]) for k in (-1, 0, 1))
+        found = find_minimum(doubling, bracket, args=(n[inside],))
+        turns[inside] = np.where(found.success, np.exp(found.x), np.nan)
+    return turns
+
+
+def _search(wanted: ComparedQuantities, rule: Release, restitution: float) -> Search:
+    """Thresholds of the restitution model with this r, for contacts with r by Eq. 16."""
+
+    def simple(contact: SpringDamper) -> list[RestitutionModel]:
+        return [RestitutionModel(restitution)]
+
+    return search(
+        damping_ratio(wanted.restitution),
+        rule,
+        wanted.n,
+        wanted.amplitude,
+        ratios=wanted.frequency_ratio.grid(),
+        tolerance=wanted.tolerance,
+        quantities=wanted.quantities,
+        simple=simple,
+    )
+
+
+def _thresholds(wanted: ComparedQuantities) -> xr.Dataset:
     """The ϖ above which each quantity is within the tolerance, for each reading of r."""
     r = wanted.restitution
     force_restitution = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
@@ -101,23 +139,17 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
         "force release, r of Eq. 16": (Release.FORCE, r),
         "force release, its own r": (Release.FORCE, force_restitution),
     }
-    found = [
-        errors_along_ratio(
-            r,
-            rule,
-            n=wanted.n,
-            amplitude=wanted.amplitude,
-            ratios=wanted.frequency_ratio.grid(),
-            quantities=wanted.quantities,
-            tolerances=[wanted.tolerance],
-            compared_restitution=simple,
-        )
-        .isel(tolerance=0, drop=True)
-        .drop_dims("frequency_ratio")
-        .assign_coords(reading=reading)
-        for reading, (rule, simple) in readings.items()
-    ]
-    return xr.concat(found, "reading").assign(force_restitution=force_restitution)
+    found = [_search(wanted, rule, simple) for rule, simple in readings.values()]
+    # There is one simple model, and one orbit.
+    dims = ("reading", "quantity")
+    return xr.Dataset(
+        {
+            "error_threshold": (dims, [each.threshold[0, :, 0] for each in found]),
+            "threshold_status": (dims, [each.status[0, :, 0] for each in found]),
+            "force_restitution": force_restitution,
+        },
+        coords={"reading": list(readings), "quantity": list(map(str, wanted.quantities))},
+    )
 
 
 def release_rules(parameters: ReleaseRules) -> xr.Dataset:

@@ -11,10 +11,10 @@ Next to the saddle-node the error changes with √p, so that the positions, p = 
 angles, are dense there, and at the period doubling as well.
 
 The orbits are points of the explicit branch
-(:mod:`bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`), whose parameter ε_b is the excess
-angle of the contact. For a stiff contact ϖ ε_b tends to a limit: only the load a = 1 - Λ sin φ of
-the restitution model's orbit delays the release, by ``(1 + r) a/(r v ϖ²)`` with ``v = 2nπ/(1 + r)``
-(:mod:`bouncing_ball_beyond.models.laws.signature`), so that ::
+(:mod:`bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`), whose parameter ε_b is the
+excess angle of the contact. For a stiff contact ϖ ε_b tends to a limit: only the load a = 1 - Λ sin
+φ of the restitution model's orbit delays the release, by ``(1 + r) a/(r v ϖ²)`` with ``v = 2nπ/(1 +
+r)`` (:mod:`bouncing_ball_beyond.models.laws.signature`), so that ::
 
     ε_b → √(1 - ζ²) (1 + r)² a/(2nπ r ϖ)
 

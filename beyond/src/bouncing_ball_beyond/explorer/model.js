@@ -1,5 +1,5 @@
-// The closed forms of bouncing_ball.periodic and bouncing_ball.models.corrected, in plain
-// JavaScript: the same formulas in the same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md for
+// The closed forms of bouncing_ball_beyond.periodic and models.corrected, in plain
+// JavaScript: the same formulas in the same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md of the root for
 // the derivation. "NaN" stands for what does not exist, as there.
 "use strict";
 
@@ -142,7 +142,7 @@ function traceOf({omega, zeta, sine}, flight, [u, x, y], sinD, cosD, at, push) {
   return columns[0][0] + columns[1][1];
 }
 
-// ---- Roots, as bouncing_ball.periodic.one_impact.spring_damper_bifurcations finds them.
+// ---- Roots, as periodic.one_impact.spring_damper_bifurcations finds them.
 // Chandrupatla's method, to four units in the last place of the root.
 function rootOf(f, a, b, fa = f(a), fb = f(b)) {
   if (fa === 0) return a;

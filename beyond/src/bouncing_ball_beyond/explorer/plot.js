@@ -12,7 +12,7 @@ function nearest(x, digits) {
     : Number(x.toPrecision(digits));
 }
 const shown = (x, digits = 6) => Number.isFinite(x) ? String(nearest(x, digits)) : "none";
-// A share in two digits, and above 99.5 % as a whole number: bouncing_ball.contacts.texts.
+// A share in two digits, and above 99.5 % as a whole number.
 const percent = x => !Number.isFinite(x) ? "none"
   : x > 0 && x < 1e-5 ? "less than 0.001 %"
     : `${nearest(100 * x, x < 0.995 ? 2 : String(Math.trunc(100 * x)).length)} %`;

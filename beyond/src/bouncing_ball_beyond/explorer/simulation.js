@@ -1,5 +1,5 @@
 // One ball from impact to impact, with a restitution coefficient or a spring-damper contact:
-// bouncing_ball.models in plain JavaScript. δ is the height above the table. A contact that ends by
+// bouncing_ball_beyond.models in plain JavaScript. δ is the height above the table. A contact that ends by
 // its force leaves the ball below the table's level, where it may resume.
 "use strict";
 

@@ -1,5 +1,5 @@
 // On which motions balls end that start from an even grid of impacts on the contact, and with which
-// shares: bouncing_ball.contacts.starts. Each verdict has these shares beside it.
+// shares. Each verdict has these shares beside it.
 "use strict";
 
 // Starts along each axis, impacts for which a ball is followed, and the share below which few balls

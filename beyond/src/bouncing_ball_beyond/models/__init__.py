@@ -16,6 +16,7 @@ The modules in reading order:
 ``ball``, ``model``           what all balls share, and the interface of every model
 ``rigid``, ``restitution_by_speed``   models with instantaneous impacts
 ``spring_damper``             the paper's contact
+``named_laws``                the contact laws by their names
 ``contact_model``             balls on a contact of any law
 ``makers``                    balls by their parameters, which a user calls
 ``history``                   the motion of a ball over time

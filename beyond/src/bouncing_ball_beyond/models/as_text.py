@@ -15,27 +15,16 @@ import numpy as np
 from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
-from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
-from bouncing_ball_beyond.models.laws.hertzian import (
-    HuntCrossley,
-    KuwabaraKono,
-    LinearHuntCrossley,
-    Tsuji,
-)
 from bouncing_ball_beyond.models.laws.signature import Signature
-from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 _MODELS = (RestitutionModel, ContactModel, CorrectedModel, RestitutionLawModel)
-_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
-_OTHERS = (ElastoBacklash, LankaraniNikravesh, Flores)
-_PARTS = (SpringDamper, Signature)
 _OF_USERS = (ForceLaw, RestitutionLaw, Model)
-_KNOWN = {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
+_KNOWN = {each.__name__: each for each in (*_MODELS, Signature, *LAWS.values())}
 # The keys of the type of an object, and of the name of the variable with an array.
 _TYPE = "type"
 _ARRAY = "array"

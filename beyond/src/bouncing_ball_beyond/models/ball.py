@@ -2,10 +2,9 @@
 
 Every model is a ball (:class:`~bouncing_ball_beyond.models.model.Model`), also an array of models.
 The parameters of a contact law may be unknown, and given instead by the restitution r and the
-duration D of one free impact. These depend on the impact speed, so that such a ball
-(:class:`~bouncing_ball_beyond.models.law_balls.FreeImpactBall`) has a model only once this speed is
-chosen, by one of the methods ``at_…``. A ball whose parameters are known is itself the model at
-every speed.
+duration D of one free impact. These depend on the impact speed, so that such a ball has a model
+only once this speed is chosen, by one of the methods ``at_…``. A ball whose parameters are known is
+itself the model at every speed.
 """
 
 from __future__ import annotations

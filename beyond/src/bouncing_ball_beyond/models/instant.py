@@ -1,7 +1,7 @@
 """A contact seen from outside: an impact at an instant, with a delay, a restitution and a load.
 
-:mod:`bouncing_ball_beyond.models.laws.signature` derives the numbers. Every law and every model has them
-as its method ``signature``.
+:mod:`bouncing_ball_beyond.models.laws.signature` derives the numbers. Every law and every model has
+them as its method ``signature``.
 """
 
 from __future__ import annotations

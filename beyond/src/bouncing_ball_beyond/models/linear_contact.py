@@ -321,10 +321,10 @@ class LinearContactDynamics(ResumingDynamics):
     def _released(self, impact: Impact, departure: Departure) -> Released:
         """The deviations at the release of unit deviations of φ and of δ′ at the impact.
 
-        The responses Q and P to the table (:mod:`bouncing_ball_beyond.models.oscillator`) give that of φ.
-        Where a contact forgets its start, the rounding errors of these responses would remain.
-        There a deviation of φ is one along the motion, which changes only the time, less one of the
-        state at the start, which decays.
+        The responses Q and P to the table (:mod:`bouncing_ball_beyond.models.oscillator`) give that
+        of φ. Where a contact forgets its start, the rounding errors of these responses would
+        remain. There a deviation of φ is one along the motion, which changes only the time, less
+        one of the state at the start, which decays.
         """
         contact = self.law
         flight = departure.flight

@@ -1,9 +1,8 @@
 """Balls by their parameters: models of the impact, whose parameters are checked and are labels.
 
 :func:`rigid` makes a ball of the restitution model, :func:`spring_damper` one on a spring-damper
-contact, and :func:`corrected` one of the corrected restitution model of a contact. Balls on
-contacts of other laws are made in :mod:`~bouncing_ball_beyond.models.law_balls`. Parameters that are
-arrays make several balls.
+contact, and :func:`corrected` one of the corrected restitution model of a contact. Parameters that
+are arrays make several balls.
 """
 
 from __future__ import annotations

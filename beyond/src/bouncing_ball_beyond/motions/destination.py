@@ -25,7 +25,8 @@ A motion is called chaotic if it is not known to repeat in the impacts for which
 and if its neighbours separate exponentially. More impacts may show that it is a long transient.
 With instantaneous impacts such a ball has stuck once at most. On a contact of finite stiffness it
 may have stuck many times, because a contact that shrinks deviations by a finite factor makes no
-motion repeat; ``times_stuck`` of :class:`~bouncing_ball_beyond.motions.motions.Motions` is their number.
+motion repeat; ``times_stuck`` of :class:`~bouncing_ball_beyond.motions.motions.Motions` is their
+number.
 
 Balls are followed with the operations + - × ÷ and √ only, so that the same bits give the same
 motion on every processor. A ball with a long transient loses the digits of its start, and the last

@@ -58,8 +58,8 @@ def motion_of(
     -------
     Result
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
-        "undecided" (:class:`bouncing_ball_beyond.motions.motions.Kind`), the ``periods`` of the table
-        and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
+        "undecided" (:class:`bouncing_ball_beyond.motions.motions.Kind`), the ``periods`` of the
+        table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
         the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
         an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
         it was followed, up to ``followed_time``, ``in_words`` says both, and ``digits_lost`` is the

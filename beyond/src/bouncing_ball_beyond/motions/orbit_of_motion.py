@@ -36,8 +36,9 @@ def orbit_of_motion(
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
 
-    The parameters are those of :func:`bouncing_ball_beyond.motion_of`, for a single ball. A ball that is
-    given by r and D of a free impact has the law with these at the speed of the first impact.
+    The parameters are those of :func:`bouncing_ball_beyond.motion_of`, for a single ball. A ball
+    that is given by r and D of a free impact has the law with these at the speed of the first
+    impact.
 
     Raises
     ------

@@ -8,6 +8,7 @@ The rooms in reading order, each of which imports only those before it:
 
 Calls for balls with arrays of parameters:
 
+``law_balls``          balls on contacts of other laws than the linear one
 ``places``             results at each place of the grid of the arguments
 ``orbits_of_ball``     an orbit, all orbits at an amplitude, and the limits of a family
 ``branches_of_ball``   whole branches over Λ

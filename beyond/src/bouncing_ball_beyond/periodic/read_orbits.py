@@ -21,10 +21,10 @@ _RESULTS: dict[str, Any] = {
 
 @suggesting
 def open(path: str | Path) -> Result:
-    """The dataset in a netCDF file, such as that of an artifact of the replication.
+    """The dataset in a netCDF file, such as that of an artifact of a run.
 
-    ``bouncing_ball_beyond.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure from it.
-    A branch or a curve has its orbits, as from :func:`bouncing_ball_beyond.read_orbits`.
+    ``bouncing_ball_beyond.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure
+    from it. A branch or a curve has its orbits, as from :func:`bouncing_ball_beyond.read_orbits`.
 
     Raises
     ------
@@ -46,8 +46,9 @@ def _result_of(data: xr.Dataset) -> Result:
 def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | SpecialCurve:
     """Orbits, a branch or a curve from a netCDF file or a dataset, with the same bits.
 
-    Every result of :func:`bouncing_ball_beyond.follow` and :func:`bouncing_ball_beyond.branch` is such a dataset,
-    and so is that of ``orbit.to_dataset()``; ``to_netcdf(path)`` writes it to a file.
+    Every result of :func:`bouncing_ball_beyond.follow` and :func:`bouncing_ball_beyond.branch` is
+    such a dataset, and so is that of ``orbit.to_dataset()``; ``to_netcdf(path)`` writes it to a
+    file.
 
     Parameters
     ----------
@@ -66,10 +67,10 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
 
     Examples
     --------
-    >>> import bouncing_ball_beyond
-    >>> one = bouncing_ball_beyond.orbit(bouncing_ball_beyond.rigid(restitution=0.85), amplitude=0.9)
-    >>> branch = bouncing_ball_beyond.follow(one, to=1.2)
-    >>> part = bouncing_ball_beyond.read_orbits(branch.isel(point=slice(2, 5)))
+    >>> import bouncing_ball_beyond as bb
+    >>> one = bb.orbit(bb.rigid(restitution=0.85), amplitude=0.9)
+    >>> branch = bb.follow(one, to=1.2)
+    >>> part = bb.read_orbits(branch.isel(point=slice(2, 5)))
     >>> part.first("period doubling") == branch.first("period doubling")
     True
     >>> list(part.states()) == list(branch.states())[2:5]

@@ -1,5 +1,7 @@
 """Laws whose force depends on the load of the ball, as that of MuJoCo's impedance does.
 
+No law of this house is one; the contacts of engines have one.
+
 The load is the acceleration a that the ball has towards the table without a contact. The force of
 most laws is the same under any load. The numerical methods call :func:`under`, which accepts any
 law, and what is done for a :class:`LoadedLaw` only depends on its class.
@@ -62,10 +64,7 @@ def under(law: ForceLaw, load: Any) -> ForceLaw:
 
     Examples
     --------
-    >>> from bouncing_ball_contacts.engines.impedance import Impedance
     >>> from bouncing_ball_beyond.models.laws.hertzian import Tsuji
-    >>> float(under(Impedance(2.0, 0.5, 0.75), 4.0).force(1.0, -2.0))
-    3.0
     >>> law = Tsuji(100.0, 0.1)
     >>> under(law, 4.0) is law
     True

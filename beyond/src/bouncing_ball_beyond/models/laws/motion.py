@@ -59,7 +59,7 @@ _BISECTIONS = 60
 
 @dataclass(frozen=True, repr=False)
 class ContactDynamics(ResumingDynamics):
-    """Contacts of any :class:`~bouncing_ball_beyond.models.laws.contact_law.ContactLaw`, and flights."""
+    """Contacts of any :class:`.ContactLaw`, and flights."""
 
     # The collocation divides its contacts into blocks itself. Large blocks here cost less, because
     # the few long contacts are then computed together.

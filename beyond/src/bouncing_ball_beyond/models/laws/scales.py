@@ -69,12 +69,6 @@ def rest(law: ForceLaw) -> float:
     >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
     >>> round(rest(SpringDamper(2.0, 0.1)), 6)
     0.25
-
-    With a constant impedance d only the share 1 - d of the weight acts, so that p = (1 - d)/ϖ²:
-
-    >>> from bouncing_ball_contacts.engines.impedance import Impedance
-    >>> round(rest(Impedance(0.5, 0.1, 0.75)), 12)
-    1.0
     """
     weight = np.ones(1)
     deepest = float(depth(law, 0 * weight, 0.0, weight)[0])

@@ -1,9 +1,9 @@
 r"""The steady contact of a law in which the ball never leaves the table, and its largest Λ.
 
-The spring and damper has a closed form (:mod:`bouncing_ball_beyond.models.permanent_contact`, Eqs. 28-36),
-which its law gives as ``permanent_contact``. Most other laws have none. At the threshold the grip g
-vanishes exactly once per period and does not change its sign. The steady motion is then a solution
-of the boundary value problem ::
+The spring and damper has a closed form (:mod:`bouncing_ball_beyond.models.permanent_contact`, Eqs.
+28-36), which its law gives as ``permanent_contact``. Most other laws have none. At the threshold
+the grip g vanishes exactly once per period and does not change its sign. The steady motion is then
+a solution of the boundary value problem ::
 
     p″ = a - f(p, p′),   a = 1 - Λ sin(φ + t),   0 ≤ t ≤ 2π
     p(0) = p(2π),   p′(0) = p′(2π),   g = 0 and dg/dt = 0 at t = 0

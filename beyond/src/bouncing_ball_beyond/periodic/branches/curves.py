@@ -3,8 +3,8 @@ r"""Curves of special orbits in two parameters.
 A saddle-node, a period doubling or a grazing orbit is a solution of the equations of the orbit and
 of one more equation, g = 0. With two parameters the solutions are a curve, which is followed in
 the same way as a branch. The end of sticking alone has no such g. Its curve is followed from point
-to point, by :mod:`~bouncing_ball_beyond.periodic.branches.sticking_curve`. On the other curves these
-points are named:
+to point, by :mod:`~bouncing_ball_beyond.periodic.branches.sticking_curve`. On the other curves
+these points are named:
 
 * a cusp, where two saddle-nodes meet: the curve turns back in the plane of the parameters;
 * a generalized period doubling, where the coefficient of the normal form vanishes: the doublings on

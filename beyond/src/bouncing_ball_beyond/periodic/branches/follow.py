@@ -70,8 +70,8 @@ def follow(
     Parameters
     ----------
     orbit : Orbit
-        An orbit of :func:`bouncing_ball_beyond.orbit`, :func:`orbit_of_motion` or of a branch, such as
-        ``found.first("period doubling")``.
+        An orbit of :func:`bouncing_ball_beyond.orbit`, :func:`orbit_of_motion` or of a branch, such
+        as ``found.first("period doubling")``.
     along : str or two of them, optional
         The parameter: "amplitude", or one of the law, such as "frequency_ratio", "damping_ratio",
         "restitution" or the "stiffness" of a contact law. The default is that of the branch from
@@ -89,9 +89,9 @@ def follow(
     -------
     FollowedBranch or SpecialCurve
         The parameter at each ``point``, ``phase``, ``contact_duration`` and the other observables
-        of :func:`bouncing_ball_beyond.branch` for each ``impact``, and whether the orbit is ``stable`` and
-        ``admissible``; ``special_kind`` and the place of the special orbits; ``end_reason`` says
-        why the branch ends.
+        of :func:`bouncing_ball_beyond.branch` for each ``impact``, and whether the orbit is
+        ``stable`` and ``admissible``; ``special_kind`` and the place of the special orbits;
+        ``end_reason`` says why the branch ends.
 
     Raises
     ------

@@ -90,8 +90,8 @@ def branch_variables(found: Followed) -> dict[str, Any]:
     pass ±π continuously. The multipliers are over (point, multiplier), ``special_…`` over
     ``special``, of which phases and durations are over (special, impact) too, and ``end_reason``
     over ``end``. ``special_point`` is the number of the last point before a special orbit. The
-    variables of :mod:`~bouncing_ball_beyond.periodic.orbits.saved` are among them, so that the orbits come
-    back.
+    variables of :mod:`~bouncing_ball_beyond.periodic.orbits.saved` are among them, so that the
+    orbits come back.
     """
     special = _special_places(found)
     orbits = found.with_special

@@ -64,7 +64,7 @@ class RestitutionLine(OrbitsOfModel):
 
 @dataclass(frozen=True)
 class SpringDamperBranch(OrbitsOfModel):
-    """The explicit branch of :mod:`~bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`."""
+    """The explicit branch of :mod:`.spring_damper_branch`."""
 
     model: ContactModel
 
@@ -111,9 +111,7 @@ class SpringDamperBranch(OrbitsOfModel):
 
 @dataclass(frozen=True)
 class CorrectedLine(OrbitsOfModel):
-    """The line of :mod:`~bouncing_ball_beyond.periodic.one_impact.corrected_branch`, for a signature that
-    does not depend on the speed.
-    """
+    """The line of :mod:`.corrected_branch`, for a signature that does not depend on the speed."""
 
     model: CorrectedModel
 

@@ -1,9 +1,10 @@
 """The n-T orbits of any model: one impact in n periods of the table.
 
 They follow from the closed form of the model's branch if there is one
-(:mod:`~bouncing_ball_beyond.periodic.one_impact.closed_forms`), and otherwise from a search that starts
-from the corrected model (:mod:`~bouncing_ball_beyond.periodic.one_impact.searched_orbits`). A branch of
-n-T orbits begins at one of these orbits, and :func:`orbits_of` alone decides how it is found.
+(:mod:`~bouncing_ball_beyond.periodic.one_impact.closed_forms`), and otherwise from a search that
+starts from the corrected model (:mod:`~bouncing_ball_beyond.periodic.one_impact.searched_orbits`).
+A branch of n-T orbits begins at one of these orbits, and :func:`orbits_of` alone decides how it is
+found.
 """
 
 from enum import StrEnum

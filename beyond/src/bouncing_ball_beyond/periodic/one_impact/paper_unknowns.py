@@ -3,8 +3,9 @@
 Of the paper's six unknowns φ, z′_i, τ_b, z′_b, A and B, three are eliminated, all linearly: A and B
 by the start of contact (Eqs. 21-22) and z′_b by the periodicity (Eq. 27). The remaining ones are
 scaled to order one, ``y = (φ, z′_i, ϖ τ_b, Λ)``; an impact that is an instant has no τ_b. The
-equations are those of :mod:`~bouncing_ball_beyond.periodic.orbits.problem` with one impact, whose unknowns
-are ``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this choice.
+equations are those of :mod:`~bouncing_ball_beyond.periodic.orbits.problem` with one impact, whose
+unknowns are ``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this
+choice.
 """
 
 from dataclasses import dataclass, replace

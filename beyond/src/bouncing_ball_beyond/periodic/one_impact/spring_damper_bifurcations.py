@@ -1,9 +1,9 @@
 """Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
 
 These are roots of functions of one variable, the excess angle ε, along the branch of
-:mod:`bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`, computed for arrays of contacts at
-the same time. A scan brackets the first root next to the fold, and Chandrupatla's method
-(:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
+:mod:`bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`, computed for arrays of
+contacts at the same time. A scan brackets the first root next to the fold, and Chandrupatla's
+method (:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
 
 The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact
 duration grows, until the saddle-node: this is the side that is stable next to the
@@ -207,8 +207,8 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     Returns
     -------
     ndarray
-        ε for :func:`~bouncing_ball_beyond.periodic.one_impact.spring_damper_branch.branch_point`, of the
-        shape to which the contact and n broadcast. NaN where the branch has no fold.
+        ε for :func:`~bouncing_ball_beyond.periodic.one_impact.spring_damper_branch.branch_point`,
+        of the shape to which the contact and n broadcast. NaN where the branch has no fold.
 
     Raises
     ------

@@ -1,10 +1,11 @@
 """The branch of n-T orbits of a model, followed from one end to the other.
 
 The branch is a solution curve of the equations of n-T orbits in the unknowns of the paper
-(:mod:`bouncing_ball_beyond.periodic.one_impact.paper_unknowns`), with Λ as the parameter. It is followed
-to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window. Where an
-event cannot be located, for example next to permanent contact, the branch is kept up to there, and
-its end says which event it is; such an end is not finished (:class:`~.numerics.branch.End`).
+(:mod:`bouncing_ball_beyond.periodic.one_impact.paper_unknowns`), with Λ as the parameter. It is
+followed to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
+Where an event cannot be located, for example next to permanent contact, the branch is kept up to
+there, and its end says which event it is; such an end is not finished
+(:class:`~.numerics.branch.End`).
 """
 
 from collections.abc import Collection

@@ -135,7 +135,8 @@ class OrbitImpacts(Batch):
     def to_dataset(self) -> xr.Dataset:
         """The orbit, or a row of orbits, as a labelled dataset with the model and its parameters.
 
-        :func:`bouncing_ball_beyond.read_orbits` makes equal orbits from it, also from a netCDF file of it.
+        :func:`bouncing_ball_beyond.read_orbits` makes equal orbits from it, also from a netCDF file
+        of it.
 
         Examples
         --------

@@ -23,10 +23,10 @@ class Legs:
     """The legs of orbits, arrays of shape (..., k).
 
     ``residual`` are the two equations of each leg, its height and its velocity in the words of
-    :mod:`bouncing_ball_beyond.periodic.orbits.problem`, shape (..., k, 2), and ``duration`` the durations
-    of the contacts. ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1}, with y
-    of :class:`Landing`. ``dynamics``, which is None where no ball is inside the
-    ranges of the parameters, ``impact``, ``departure`` and ``landing`` are flat.
+    :mod:`bouncing_ball_beyond.periodic.orbits.problem`, shape (..., k, 2), and ``duration`` the
+    durations of the contacts. ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1},
+    with y of :class:`Landing`. ``dynamics``, which is None where no ball is inside the ranges of
+    the parameters, ``impact``, ``departure`` and ``landing`` are flat.
     """
 
     residual: np.ndarray

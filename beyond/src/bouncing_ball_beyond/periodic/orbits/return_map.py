@@ -1,9 +1,9 @@
 """The return map next to a periodic orbit, with its derivative.
 
-The equations of :mod:`~bouncing_ball_beyond.periodic.orbits.problem` are solved by orbits alone. Here the
-map is evaluated at states beside the first impact of an orbit: each flight lands near the time at
-which the orbit lands, and each contact ends near the time at which that of the orbit does, so that
-the map is the smooth continuation of that of the orbit.
+The equations of :mod:`~bouncing_ball_beyond.periodic.orbits.problem` are solved by orbits alone.
+Here the map is evaluated at states beside the first impact of an orbit: each flight lands near the
+time at which the orbit lands, and each contact ends near the time at which that of the orbit does,
+so that the map is the smooth continuation of that of the orbit.
 """
 
 from typing import NamedTuple

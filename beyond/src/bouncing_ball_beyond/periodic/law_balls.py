@@ -33,8 +33,8 @@ from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball_beyond.models.laws.named import law_named
 from bouncing_ball_beyond.models.makers import corrected, flattened
+from bouncing_ball_beyond.models.named_laws import law_named
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.orbits.stability import Side

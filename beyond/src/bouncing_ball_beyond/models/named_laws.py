@@ -1,6 +1,10 @@
-"""The contact laws by their names."""
+"""The contact laws by their names.
 
-from bouncing_ball_contacts.engines.impedance import Impedance
+A law is registered in one place, :data:`LAWS`. A house above this one that has further laws makes a
+registry of both, by :func:`by_name`, and hands it to :func:`law_named`.
+"""
+
+from collections.abc import Mapping
 
 from bouncing_ball.errors import one_of
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -29,7 +33,7 @@ def by_name(*laws: type[ContactLaw]) -> dict[str, type[ContactLaw]]:
 
 
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
-LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash, Impedance)
+LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash)
 """The laws by their names on the command line and in calls."""
 
 
@@ -59,8 +63,8 @@ def contact_in_words(law: ContactLaw) -> str:
     return _IN_WORDS.get(law.name, f"{law.name} contact")
 
 
-def law_named(name: str) -> type[ContactLaw]:
-    """The class of the contact law with this name.
+def law_named(name: str, laws: Mapping[str, type[ContactLaw]] = LAWS) -> type[ContactLaw]:
+    """The class of the contact law with this name in a registry, by default that of this house.
 
     Raises
     ------
@@ -72,4 +76,4 @@ def law_named(name: str) -> type[ContactLaw]:
     >>> law_named("tsuji").__name__
     'Tsuji'
     """
-    return one_of("contact law", name, LAWS)
+    return one_of("contact law", name, laws)

@@ -2,7 +2,7 @@
 
 from math import pi
 
-from bouncing_ball import Contact, Question, Table, assess_contact
+from bouncing_ball_contacts import Contact, Question, Table, assess_contact
 
 # A tutorial of MercuryDPM (github.com/gladk/MercuryDPM, Drivers/Tutorials/Tutorial4.cpp) drops
 # a ball of 5 mm and 2500 kg/m³ on a wall, with a spring and a damper computed for 5 ms and r =

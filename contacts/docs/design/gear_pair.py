@@ -1,6 +1,6 @@
 """An idle gear that the driving flank throws off and the drag brings back: a bouncing ball."""
 
-from bouncing_ball import Contact, Question, Table, assess_contact, choose_contact
+from bouncing_ball_contacts import Contact, Question, Table, assess_contact, choose_contact
 
 # Inertia, base radius, 16 teeth, mesh stiffness and a damping ratio of 0.05 of the pair of A.
 # Kahraman and R. Singh (Journal of Sound and Vibration 146, 1991, 135–156), as quoted in

@@ -1,6 +1,6 @@
 """A rubber ball of r = 0.9 that stays in contact for 8.4 ms, whatever the height of its fall."""
 
-from bouncing_ball import Contact, Question, Table, assess_contact
+from bouncing_ball_contacts import Contact, Question, Table, assess_contact
 
 # Measured, within 1 ms: journals.azbuki.bg, "Measuring the collision time of a ball with high
 # coefficient of restitution". A time that does not depend on the speed is that of a linear

@@ -2,7 +2,7 @@
 
 from math import pi, sqrt
 
-from bouncing_ball import Contact, Table, assess_contact
+from bouncing_ball_contacts import Contact, Table, assess_contact
 
 # Steel of the rotor library ROSS (github.com/petrobras/ross, ross/materials.py).
 density, young, shear = 7810.0, 211e9, 81.2e9

@@ -7,7 +7,6 @@ from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
 
-import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 
 TABLE = Table(frequency="50 Hz", acceleration="0.8 g")
@@ -28,7 +27,7 @@ BALL = bouncing_ball_beyond.rigid(restitution=0.5)
 ])  # fmt: skip
 def test_an_argument_of_a_wrong_class_is_named_in_one_line(refusal, call, arguments, words):
     with refusal(ParameterError, words):
-        getattr(bouncing_ball, call)(*arguments)
+        getattr(bouncing_ball_contacts, call)(*arguments)
 
 
 SETUP = EngineSetup(engine="mujoco")
@@ -42,7 +41,7 @@ SETUP = EngineSetup(engine="mujoco")
 ])  # fmt: skip
 def test_swapped_arguments_are_answered_with_their_order(refusal, call, arguments, order):
     with refusal(ParameterError, f"write {order}, in this order"):
-        getattr(bouncing_ball, call)(*arguments)
+        getattr(bouncing_ball_contacts, call)(*arguments)
 
 
 @pytest.mark.parametrize(("call", "given", "words"), [
@@ -55,14 +54,14 @@ def test_swapped_arguments_are_answered_with_their_order(refusal, call, argument
 ])  # fmt: skip
 def test_an_unknown_keyword_is_answered_with_the_one_that_it_resembles(call, given, words):
     with pytest.raises(TypeError) as wrong:
-        getattr(bouncing_ball, call)(**given)
+        getattr(bouncing_ball_contacts, call)(**given)
     assert str(wrong.value).startswith(f"{call}() got an unexpected keyword argument")
     assert words in str(wrong.value) and "\n" not in str(wrong.value)
 
 
 def test_every_public_function_answers_an_unknown_keyword():
-    for name in bouncing_ball.__all__:
-        call = getattr(bouncing_ball, name)
+    for name in bouncing_ball_contacts.__all__:
+        call = getattr(bouncing_ball_contacts, name)
         # The parameters of a contact law are keywords of any name.
         if not isinstance(call, type) and name != "contact_law":
             with pytest.raises(

@@ -4,8 +4,8 @@ import re
 
 import pytest
 from asked_contacts import assessed
+from bouncing_ball_contacts import Contact, Question, Table, choose_contact
 
-from bouncing_ball import Contact, Question, Table, choose_contact
 from bouncing_ball.errors import NoOrbitError
 
 pytestmark = pytest.mark.usefixtures("short_runs")

@@ -11,8 +11,8 @@ from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
-from bouncing_ball_beyond.models.laws.named import LAWS
 from bouncing_ball_beyond.models.laws.signature import Signature
+from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t

@@ -1,13 +1,11 @@
 """What bounce one gets: engines whose restitution is a number that the user sets.
 
-`make test-engines` writes the datasets ext_bounces.nc and ext_bounce_settings.nc in results/config;
-`make accept ONLY='ext_bounces ext_bounce_settings'` accepts them. An engine that is not installed
-is skipped by its name, and then its dataset is not written.
+`make test-engines` writes the datasets bounces.nc and bounce_settings.nc in docs/data. An engine
+that is not installed is skipped by its name, and then its dataset is not written.
 """
 
 import math
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,19 +13,15 @@ import xarray as xr
 from bounce_runs import BOUNCE, SETTINGS, G, rebounds
 from bouncing_ball_contacts.documents.bounces import (
     ALL_VARIABLES,
-    DRAWING,
-    SETTINGS_DRAWING,
     SETTINGS_TITLE,
     TITLE,
 )
 from installed_engines import LAST_SEEN, engine_of, only_if_installed, package
+from the_docs import DATA, MEASURED
 
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
-from bouncing_ball.pipeline.yaml_files import read_yaml
 
-ROOT = Path(__file__).parents[3]
 ASKED = (0.3, 0.5, 0.75, 0.9)
 STEPS = (1 / 60, 1 / 240, 1 / 1000)
 DROPS = (0.1, 1.0, 2.0)
@@ -45,10 +39,11 @@ def dropped(run, asked, step, drop):
     return got.mean(), got.min(), got.max()
 
 
-def written(name, data, drawn):
-    origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
-    target = ROOT / "results" / "config" / f"{name}.nc"
-    write_dataset(describe(data, ALL_VARIABLES).assign_attrs(drawn, **origin), target)
+def written(name, data, title):
+    write_dataset(
+        describe(data, ALL_VARIABLES).assign_attrs(title=title, history=MEASURED),
+        DATA / f"{name}.nc",
+    )
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +67,7 @@ def record():
             "asked": sorted(ASKED),
         },
     )
-    written("ext_bounces", data, {"title": TITLE, "drawing": DRAWING})
+    written("bounces", data, TITLE)
 
 
 @pytest.fixture(scope="module")
@@ -90,8 +85,7 @@ def settings_record():
         {name: (dims, found[..., k]) for k, name in enumerate(NAMES)} | {"time_step": OF_SETTINGS},
         coords={"setting": list(SETTINGS), "drop_height": sorted(DROPS), "asked": sorted(ASKED)},
     )
-    drawn = {"title": SETTINGS_TITLE, "drawing": SETTINGS_DRAWING}
-    written("ext_bounce_settings", data, drawn)
+    written("bounce_settings", data, SETTINGS_TITLE)
 
 
 @pytest.mark.engines
@@ -120,7 +114,7 @@ def test_the_bounce_with_a_setting_is_recorded(name, drop, asked, settings_recor
 
 
 def test_the_accepted_bounces_are_what_the_page_says():
-    data = read_dataset(ROOT / "config" / "ext_bounces.nc")
+    data = read_dataset(DATA / "bounces.nc")
     made = dict(zip(data.engine.values.tolist(), data.engine_version.values.tolist(), strict=True))
     assert made == {name: LAST_SEEN[engine_of(name)] for name in BOUNCE}
     at = data.sel(drop_height=1.0)
@@ -138,8 +132,8 @@ def test_the_accepted_bounces_are_what_the_page_says():
 
 
 def test_the_accepted_settings_are_what_the_page_says():
-    data = read_dataset(ROOT / "config" / "ext_bounces.nc").sel(time_step=OF_SETTINGS)
-    varied = read_dataset(ROOT / "config" / "ext_bounce_settings.nc")
+    data = read_dataset(DATA / "bounces.nc").sel(time_step=OF_SETTINGS)
+    varied = read_dataset(DATA / "bounce_settings.nc")
     assert varied.setting.values.tolist() == list(SETTINGS)
     assert varied.time_step == OF_SETTINGS
     moved = {

@@ -1,26 +1,22 @@
 """The drivers and threads of docs/bounces.md: the page has what they print.
 
-`make test-engines` writes the dataset results/config/bounce_drivers.nc; `make accept
-ONLY=bounce_drivers` accepts it.
+`make test-engines` writes the dataset docs/data/bounce_drivers.nc.
 """
 
 import csv
 import runpy
-from pathlib import Path
 
 import pytest
 import xarray as xr
 from bouncing_ball_contacts.documents.bounces import ALL_VARIABLES, DRIVERS_TITLE
 from driver_runs import DRIVERS, certified, top
 from installed_engines import LAST_SEEN, only_if_installed
+from the_docs import DATA, DOCS, MEASURED
 
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
-from bouncing_ball.pipeline.yaml_files import read_yaml
 
-ROOT = Path(__file__).parents[3]
-FOLDER = ROOT / "docs" / "bounces"
+FOLDER = DOCS / "bounces"
 
 
 @pytest.fixture(scope="module")
@@ -38,10 +34,8 @@ def record():
         },
         coords={"driver": list(DRIVERS)},
     )
-    origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
-    target = ROOT / "results" / "config" / "bounce_drivers.nc"
-    data = describe(data, ALL_VARIABLES).assign_attrs({"title": DRIVERS_TITLE}, **origin)
-    write_dataset(data, target)
+    data = describe(data, ALL_VARIABLES).assign_attrs(title=DRIVERS_TITLE, history=MEASURED)
+    write_dataset(data, DATA / "bounce_drivers.nc")
 
 
 @pytest.mark.engines
@@ -49,16 +43,16 @@ def record():
 def test_a_driver_has_the_height_that_the_page_says(name, record):
     only_if_installed(name)
     record[name] = top(name)
-    data = read_dataset(ROOT / "config" / "bounce_drivers.nc")
+    data = read_dataset(DATA / "bounce_drivers.nc")
     # The page has four digits.
     said = float(data.driver_height.sel(driver=name))
     assert record[name] == pytest.approx(said, abs=1e-4)
 
 
-def test_every_driver_is_in_the_accepted_dataset_with_its_certified_height():
+def test_every_driver_is_in_the_dataset_with_its_certified_height():
     paths = sorted((FOLDER / "drivers").glob("*_driver.py"))
     assert {path.stem for path in paths} == {f"{name}_driver" for name in DRIVERS}
-    data = read_dataset(ROOT / "config" / "bounce_drivers.nc")
+    data = read_dataset(DATA / "bounce_drivers.nc")
     assert data.driver.values.tolist() == list(DRIVERS)
     known = [certified(name) for name in DRIVERS]
     assert data.driver_certified.values.tolist() == known

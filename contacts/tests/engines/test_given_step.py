@@ -8,6 +8,7 @@ import pytest
 from asked_contacts import answered
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts import Contact, EngineSetup, write_contact
 from bouncing_ball_contacts.engines import given_step
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.given_step import at_step, spread_in_steps, stiffest_contact
@@ -17,7 +18,7 @@ from bouncing_ball_contacts.engines.scheme import Scheme
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
-from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
+from bouncing_ball.errors import ModelError
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -11,13 +11,13 @@ import re
 from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
-from pathlib import Path
 from time import process_time
 
 import numpy as np
 import pytest
 import xarray as xr
 from asked_contacts import answered
+from bouncing_ball_beyond import corrected, limits, rigid, spring_damper
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -27,6 +27,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_contacts.documents.engine_steps import (
+    RUNS_TITLE,
     VARIABLES,
     EngineOrbit,
     model_errors,
@@ -40,17 +41,12 @@ from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
 from engine_runs import RUN, Trial, drake, mujoco
 from installed_engines import LAST_SEEN, missing, only_if_installed
+from make_data import ENGINE_STEPS as PARAMETERS
 from pandas import DataFrame
+from the_docs import DATA, MEASURED
 
-from bouncing_ball import corrected, limits, rigid, spring_damper
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
-from bouncing_ball.pipeline.yaml_files import read_yaml
-
-ROOT = Path(__file__).parents[3]
-WRITTEN = read_yaml(ROOT / CONFIGURATION)
-PARAMETERS = WRITTEN["beyond"]["ext_engines"]
 
 RELEASES = [(name, release) for name in RUN for release in ENGINES[name].releases]
 LOSSES = (0.65, 0.85)
@@ -154,7 +150,7 @@ def simulated(name, case, steps):
 
 @pytest.fixture(scope="module")
 def record():
-    """What the tests measure: the dataset in results/, written at the end."""
+    """What the tests measure: the dataset of the docs, written at the end."""
     rows: tuple[list[dict], ...] = ([], [], [])
     yield rows
     if not all(rows):
@@ -172,9 +168,8 @@ def record():
     data = xr.merge(parts, join="outer").reindex(engine=list(RUN))
     made = ["not installed" if missing(name) else version(name) for name in RUN]
     data["engine_version"] = ("engine", made)
-    origin = gather("make test-engines", [], ROOT, WRITTEN)
-    target = ROOT / "results" / "config" / "engines.nc"
-    write_dataset(describe(data, VARIABLES).assign_attrs(origin), target)
+    data = describe(data, VARIABLES).assign_attrs(title=RUNS_TITLE, history=MEASURED)
+    write_dataset(data, DATA / "engines.nc")
 
 
 @pytest.mark.engines
@@ -306,7 +301,7 @@ def test_a_bounce_is_as_right_as_the_corrected_models(name, frequency_ratio, rec
 
 
 def test_the_accepted_heights_are_those_of_the_model():
-    data = read_dataset(ROOT / "config" / "engines.nc")
+    data = read_dataset(DATA / "engines.nc")
     made = zip(data.engine.values.tolist(), data.engine_version.values.tolist(), strict=True)
     assert dict(made) == {name: LAST_SEEN[name] for name in RUN}
     runs = data.stack(run=["engine", *ORBIT]).dropna("run", subset=["height_error"])

@@ -11,7 +11,7 @@ from engine_runs import Trial
 from installed_engines import only_if_installed
 from newer_runs import NEWER, RECIPES
 
-from bouncing_ball import ModelError
+from bouncing_ball.errors import ModelError
 
 G = 9.80665
 MASS = 0.5

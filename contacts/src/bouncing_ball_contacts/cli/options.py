@@ -102,7 +102,7 @@ def _call_with(parameter: inspect.Parameter, text: str) -> Callable:
         pass
 
     call.__doc__ = f"Parameters\n----------\n{parameter.name}\n    {text}"
-    setattr(call, "__signature__", inspect.Signature([parameter]))
+    call.__signature__ = inspect.Signature([parameter])
     return call
 
 

@@ -9,10 +9,10 @@ import numpy as np
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, models_of_law
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
-from bouncing_ball_beyond.models.laws.named import model_name
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.steady_contact import known_threshold
 from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.models.named_laws import model_name
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from numpy.typing import ArrayLike

@@ -25,8 +25,6 @@ VARIABLES = {
 }
 # Engines and their versions are declared where their steps are.
 ALL_VARIABLES = VARIABLES | engine_steps.VARIABLES
-DRAWING = "bouncing_ball_contacts.documents.bounces_figures:bounces"
 TITLE = "The bounce that physics engines give where r is a number that the user sets"
 DRIVERS_TITLE = "One bounce in the driver of each engine, beside certified numbers"
-SETTINGS_DRAWING = "bouncing_ball_contacts.documents.bounces_figures:settings"
 SETTINGS_TITLE = "The bounce that physics engines give with other settings of their solvers"

@@ -1,4 +1,4 @@
-"""The restitution that engines have beside the one asked for (ext_bounces, ext_bounce_settings)."""
+"""The restitution that engines have beside the one asked for (bounces, bounce_settings)."""
 
 import csv
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ _RANGE = (-0.2, 0.2)
 
 
 def bounces(data: xr.Dataset) -> Figure:
-    """Draw the r that engines have minus the one asked for, against r (ext_bounces).
+    """Draw the r that engines have minus the one asked for, against r.
 
     There is a column for each time step and a row for each height of the drop. A bar spans the
     instants within a step at which a ball meets the ground.
@@ -51,7 +51,7 @@ def bounces(data: xr.Dataset) -> Figure:
     return figure
 
 
-def ext_bounces(data: xr.Dataset) -> TextTable:
+def bounces_table(data: xr.Dataset) -> TextTable:
     """The r that engines have, for each engine, step, drop and r asked for."""
     columns: Columns = {
         "engine": text("engine"),
@@ -68,7 +68,7 @@ def ext_bounces(data: xr.Dataset) -> TextTable:
 def settings(data: xr.Dataset) -> Figure:
     """Draw the r that engines have with other settings minus the one asked for.
 
-    There is a row for each setting and a column for each height of the drop (ext_bounce_settings).
+    There is a row for each setting and a column for each height of the drop.
     """
     many = data.sizes["setting"]
     drops = data.sizes["drop_height"]
@@ -94,7 +94,7 @@ def settings(data: xr.Dataset) -> Figure:
     return figure
 
 
-def ext_bounce_settings(data: xr.Dataset) -> TextTable:
+def settings_table(data: xr.Dataset) -> TextTable:
     """The r that engines have with other settings, for each drop and r asked for."""
     columns: Columns = {
         "engine and setting": text("setting"),

@@ -1,15 +1,14 @@
-r"""Errors due to the time steps of physics engines, and errors of the models (beyond the paper).
+r"""Errors due to the time steps of physics engines, and errors of the models.
 
 A contact that an engine resolves by N time steps has the restitution r_N of its scheme, which
 depends on the fraction of a step at which the contact begins
 (:mod:`bouncing_ball_contacts.engines.scheme`). The ball is therefore simulated here from event to
 event with the exact contact that has this r, which changes from impact to impact. Errors of heights
-are relative to the height of the engine, or of the model, as in Eq. 37. The results of the engines
-are read from the accepted dataset of their runs.
+are relative to the height of the engine, or of the model, as in Eq. 37.
 """
 
-from collections.abc import Mapping
-from typing import Annotated, Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -20,9 +19,7 @@ from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from pydantic import AfterValidator, Field, Strict
 
-from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball_contacts.engines.impacts import restitution_in_steps
@@ -83,46 +80,27 @@ VARIABLES = {
         "time steps in a period of the orbit for the corrected model's error", budget=1e-09
     ),
 }
-Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=131072)]
+RUNS_TITLE = "Orbits that physics engines ran"
+TITLE = "What the time steps of physics engines cost, beside the models"
 
 
-FAMILIES = (1, 2)
-RESTITUTIONS = (0.65, 0.85)
-"""The families n and the restitution coefficients r of the orbits that the engines ran, each of
-them with both release rules.
-"""
-
-
-def _require_run(values: tuple[float, ...]) -> AfterValidator:
-    def check(value: float) -> float:
-        if value not in values:
-            raise ValueError(
-                f"must be {' or '.join(map(str, values))}, those of the orbits that the physics "
-                "engines ran (config/engines.nc)"
-            )
-        return value
-
-    return AfterValidator(check)
-
-
-def _only(values: tuple[float, ...]) -> Any:
-    """The field of a number of which the page of the configuration says that these are allowed."""
-    return Field(json_schema_extra={"enum": list(values)})
-
-
-class EngineOrbit(Parameters):
+@dataclass(frozen=True)
+class EngineOrbit:
     """One of the orbits that were run in the engines, and how it is simulated here in few and in
     many time steps.
+
+    ``steps`` are those in a contact, rising and at least 8 to resolve it. ``balls`` are simulated,
+    and of their impacts so many are recorded after the first ``transient`` ones.
     """
 
-    n: Annotated[Family, _require_run(FAMILIES), _only(FAMILIES)]
-    restitution: Annotated[Restitution, _require_run(RESTITUTIONS), _only(RESTITUTIONS)]
-    release: Annotated[Release, Strict(False)]
-    steps: Annotated[Many[Steps], AfterValidator(sorted)]
-    balls: Annotated[int, number("balls in each simulation", ge=1, le=1000)]
-    transient: Annotated[int, number("number of first impacts that are skipped", ge=0, le=1000)]
-    impacts: Annotated[int, number("number of impacts that are recorded", ge=1, le=1000)]
-    seed: Seed
+    n: int
+    restitution: float
+    release: Release
+    steps: Sequence[int]
+    balls: int
+    transient: int
+    impacts: int
+    seed: int
 
 
 def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
@@ -226,13 +204,13 @@ def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
     return float(np.exp(log_steps))
 
 
-def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.Dataset:
-    """The accepted runs of the engines beside the models, and the part that their schemes explain.
+def conformance(runs: xr.Dataset, parameters: EngineOrbit) -> xr.Dataset:
+    """The runs of the engines beside the models, and the part that their schemes explain.
 
     Parameters
     ----------
-    data : mapping
-        ``engines``, the dataset of the runs.
+    runs : xarray.Dataset
+        What the engines did, docs/data/engines.nc.
     parameters : EngineOrbit
         The orbit of which bounces are simulated over the steps in a contact.
 
@@ -253,7 +231,6 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     ModelError
         If the dataset does not have this orbit.
     """
-    runs = data["engines"]
     along = ("restitution", "n", "frequency_ratio")
     r, n, ratio = (runs[name].values for name in along)
     place = [index_of(runs[name], name, getattr(parameters, name)) for name in along[:2]]

@@ -1,4 +1,4 @@
-"""Errors of physics engines over their time steps, beside those of the models (ext_engines)."""
+"""Errors of physics engines over their time steps, beside those of the models."""
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,7 @@ _MARKED: Look = {"linestyle": "none", "color": "black", "markerfacecolor": "none
 
 
 def engines(data: xr.Dataset) -> Figure:
-    """Draw the errors of a bounce's height over the time steps in a period (ext_engines).
+    """Draw the errors of a bounce's height over the time steps in a period.
 
     There is a panel for each ϖ, with a line for each scheme of time stepping, markers of the
     engines, and a level for each model without steps. A note gives the number of steps that one
@@ -74,7 +74,7 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
 _OF_ENGINES = ("free_steps", "measured_restitution", "contact_steps", "height_scatter")
 
 
-def ext_engines(data: xr.Dataset) -> TextTable:
+def engines_table(data: xr.Dataset) -> TextTable:
     """Physics engines and models: restitution, steps, and the heights of orbits.
 
     Errors are the mean of the bounces ± their scatter. Times are relative to that of the

@@ -1,4 +1,4 @@
-"""Measured impacts against every law, and what a constant r costs (beyond the paper).
+"""Measured impacts against every law, and what a constant r costs.
 
 Each experiment of the package (:mod:`bouncing_ball_contacts.measured.experiment`) is fitted by each contact
 law, and the law is judged by points that the fit has not seen
@@ -26,8 +26,9 @@ which is Eq. 8 for the exact map if b = r. The balls of the other families land 
 r(v).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Self
+from typing import Self
 
 import numpy as np
 import xarray as xr
@@ -37,14 +38,12 @@ from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch
-from pydantic import AfterValidator
 
-from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.measured.curves import CURVES
-from bouncing_ball_contacts.measured.experiment import Experiment, experiment, experiment_names
+from bouncing_ball_contacts.measured.experiment import Experiment, experiment
 from bouncing_ball_contacts.measured.fit import ContactFit
 from bouncing_ball_contacts.measured.law_fit import LEVEL, LawFit, MeasuredPoints
 from bouncing_ball_contacts.measured.verdicts import (
@@ -58,7 +57,7 @@ from bouncing_ball_contacts.measured.verdicts import (
     trend_of_scatter,
 )
 
-# Ten times the largest change when a fit starts elsewhere, see tests/beyond/exhibits.
+# Ten times the largest change when a fit starts elsewhere, see tests/documents.
 _FITTED = 1e-10
 
 VARIABLES = {
@@ -148,33 +147,28 @@ VARIABLES = {
 COMPARED = (Quantity.MAX_HEIGHT, Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
 
 
-def _known(name: str) -> str:
-    if name not in experiment_names():
-        raise ValueError(f"must be one of {', '.join(experiment_names())}")
-    return name
+TITLE = "Measured impacts against every contact law"
+SHAKER_TITLE = "The balls of the experiments on shakers, and the cost of a constant r"
 
 
-Name = Annotated[str, number("name of an experiment of the package"), AfterValidator(_known)]
+@dataclass(frozen=True)
+class MeasuredImpacts:
+    """The experiments that are fitted, and the number of points of the curves r(v)."""
+
+    experiments: Sequence[str]
+    samples: int
 
 
-class MeasuredImpacts(Parameters):
-    """The experiments that are fitted, and the samples of the curves r(v)."""
-
-    experiments: Many[Name]
-    samples: Samples
-
-
-class Shaker(Parameters):
-    """Shakers, and the families of orbits on them: Λ at a share of the way from the saddle-node to
-    the period doubling. The constant r is that of the first family.
+@dataclass(frozen=True)
+class Shaker:
+    """Shakers of frequencies in Hz, and the families of orbits on them: Λ at a share of the way
+    from the saddle-node to the period doubling. The constant r is that of the first family.
     """
 
-    experiments: Many[Name]
-    n: Many[Family]
-    frequencies: Many[Annotated[float, number("frequency of the shaker", "Hz", gt=0)]]
-    position: Annotated[
-        float, number("place of Λ between saddle-node and period doubling", gt=0, lt=1)
-    ]
+    experiments: Sequence[str]
+    n: Sequence[int]
+    frequencies: Sequence[float]
+    position: float
 
 
 def measured_impacts(parameters: MeasuredImpacts) -> xr.Dataset:

@@ -60,7 +60,7 @@ _MANY_TICKS = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5)
 
 
 def measured_impacts(data: xr.Dataset) -> Figure:
-    """ext_measured: a panel for each experiment with several speeds."""
+    """A panel for each experiment with several speeds."""
     several = _with_several_speeds(data)
     if not several.sizes["experiment"]:
         figure, axes = canvas()
@@ -132,7 +132,7 @@ def _with_several_speeds(data: xr.Dataset) -> xr.Dataset:
     return data.isel(experiment=np.flatnonzero(count > 1))
 
 
-def ext_measured(data: xr.Dataset) -> TextTable:
+def measured_table(data: xr.Dataset) -> TextTable:
     """The verdict on each law and experiment of several speeds, with the errors of its predictions.
 
     A single impact is met by every law.
@@ -161,7 +161,7 @@ def _probability(name: str) -> Column:
     return lambda part: f"< {_LEAST:g}" if float(part[name]) < _LEAST else shown(part)
 
 
-def ext_shaker(data: xr.Dataset) -> TextTable:
+def shaker_table(data: xr.Dataset) -> TextTable:
     """The balls of the experiments on shakers, and the errors of the restitution model there.
 
     A ball has no rows if nothing can be said of its errors: its r is constant and its contact time

@@ -1,6 +1,6 @@
 """The contact laws by their names: those of ``bouncing_ball_beyond``, and MuJoCo's impedance."""
 
-from bouncing_ball_beyond.models.laws import named
+from bouncing_ball_beyond.models import named_laws as named
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 
 from bouncing_ball_contacts.engines.impedance import Impedance

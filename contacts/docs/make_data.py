@@ -1,8 +1,8 @@
-"""Make the data, the pictures and the tables of the docs, and the parts of pages with their numbers.
+"""Make the data, the pictures and the tables of the docs, and the parts of pages from them.
 
-``python docs/make_data.py`` in this folder's parent, ``contacts/``. It takes no engine: what engines
-measured is in data/engines.nc, bounces.nc, bounce_settings.nc and bounce_drivers.nc, which ``make
-test-engines`` writes. Call this script after it.
+``python docs/make_data.py`` makes all of this again, in half a minute. It takes no engine: what
+engines measured is in engines.nc, bounces.nc, bounce_settings.nc and bounce_drivers.nc in data/,
+which ``make test-engines`` writes. Call this script after it.
 """
 
 from collections.abc import Callable

@@ -2,6 +2,7 @@
 
 import math
 
+import bouncing_ball_beyond
 import bouncing_ball_contacts as bb
 import pytest
 
@@ -16,9 +17,11 @@ def test_the_quantities_of_all_models_are_those_of_their_orbits_in_si_units():
     omega = 2 * math.pi * FREQUENCY
     height = GRAVITY / omega**2
     speed = GRAVITY / omega
-    ball = bb.spring_damper(restitution=0.85, frequency_ratio=math.sqrt(1e6 / 0.02) / omega)
+    ball = bouncing_ball_beyond.spring_damper(
+        restitution=0.85, frequency_ratio=math.sqrt(1e6 / 0.02) / omega
+    )
     one = found.orbits[0]
-    orbit = bb.orbit(ball, n=one.n, amplitude=0.8)
+    orbit = bouncing_ball_beyond.orbit(ball, n=one.n, amplitude=0.8)
     model = next(iter(one.values["max_height"]))
     assert one.values["max_height"][model] == pytest.approx(height * orbit.max_height, rel=1e-9)
     assert one.max_height == pytest.approx(height * orbit.max_height, rel=1e-9)

@@ -1,4 +1,5 @@
-"""The commands and the scripts of docs/engines.md and README.md print what these pages say."""
+"""The commands and the scripts of docs/engines.md, docs/bounces.md and README.md print what these
+pages say."""
 
 import io
 import math
@@ -6,7 +7,6 @@ import re
 import runpy
 import shlex
 import sys
-from pathlib import Path
 
 import numpy as np
 import pandas
@@ -15,13 +15,13 @@ from bouncing_ball_contacts.documents.bounces_figures import in_javascript, rapi
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.engine import Physical
 from scipy.integrate import solve_ivp
+from the_docs import DOCS
 
 from bouncing_ball.cli.main import main
 
-ROOT = Path(__file__).parents[3]
-PAGE = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8")
-BOUNCES = (ROOT / "docs" / "bounces.md").read_text(encoding="utf-8")
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "engines.md").read_text(encoding="utf-8")
+BOUNCES = (DOCS / "bounces.md").read_text(encoding="utf-8")
+README = (DOCS.parent / "README.md").read_text(encoding="utf-8")
 BLOCKS, SHOWN, OF_BOUNCES = (
     re.findall(r"```\n\$ ((?:.*\\\n)*.*)\n([^`]*)```", text) for text in (PAGE, README, BOUNCES)
 )
@@ -31,7 +31,7 @@ BLOCKS, SHOWN, OF_BOUNCES = (
 @pytest.mark.parametrize(("command", "printed"), BLOCKS + SHOWN + OF_BOUNCES)
 def test_a_command_prints_what_the_page_says(command, printed, monkeypatch, capsys):
     program, *arguments = shlex.split(command.replace("\\\n", ""))
-    monkeypatch.chdir(ROOT)
+    monkeypatch.chdir(DOCS.parent)
     if program == "bouncing-ball":
         main(arguments)
     else:
@@ -44,11 +44,11 @@ def test_a_command_prints_what_the_page_says(command, printed, monkeypatch, caps
 
 
 def test_every_script_is_on_the_page_and_the_readme_asks_whether_a_coefficient_is_enough():
-    scripts = sorted((ROOT / "docs" / "engines").glob("*.py"))
+    scripts = sorted((DOCS / "engines").glob("*.py"))
     commands = [command for command, _ in BLOCKS]
     assert {f"python docs/engines/{path.name}" for path in scripts} < set(commands)
     assert BLOCKS[0][0].startswith("bouncing-ball design --engine")
-    ((command, answer),) = SHOWN
+    command, answer = SHOWN[0]
     assert command.startswith("bouncing-ball design") and "not good enough" in answer
     assert all(len(path.read_text(encoding="utf-8").splitlines()) <= 30 for path in scripts)
 
@@ -74,7 +74,7 @@ def test_the_table_has_every_engine_with_its_formulas_and_releases():
 
 
 def test_the_table_of_rapier_974_is_that_of_its_file():
-    folder = ROOT / "docs" / "bounces"
+    folder = DOCS / "bounces"
     lines = (folder / "rapier_974.csv").read_text(encoding="utf-8").splitlines()
     table = rapier_974(lines)
     assert f"<!-- rapier_974 -->\n\n{table}" in BOUNCES
@@ -83,7 +83,7 @@ def test_the_table_of_rapier_974_is_that_of_its_file():
 
 
 def test_the_engines_for_javascript_bounce_as_the_page_says():
-    lines = (ROOT / "docs" / "bounces" / "javascript.csv").read_text(encoding="utf-8").splitlines()
+    lines = (DOCS / "bounces" / "javascript.csv").read_text(encoding="utf-8").splitlines()
     assert f"<!-- javascript -->\n\n{in_javascript(lines)}" in BOUNCES
     found = pandas.read_csv(io.StringIO("\n".join(lines)))
     jolt = found[found.engine == "Jolt"]
@@ -130,7 +130,7 @@ def test_the_answer_on_openhfdib_is_that_of_its_force(asked):
         atol=1e-14,
         max_step=1e-3,
     )
-    answer = runpy.run_path(str(ROOT / "docs" / "bounces" / "threads.py"))["openhfdib_18"]()
+    answer = runpy.run_path(str(DOCS / "bounces" / "threads.py"))["openhfdib_18"]()
     promised = dict(
         zip((0.9, 0.75, 0.5), map(float, answer.split("r = ")[1].split(", ")), strict=True)
     )

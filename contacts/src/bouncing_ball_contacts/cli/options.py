@@ -48,7 +48,7 @@ def add_optional(parser: Parser, call: Callable, names: Iterable[str]) -> None:
         elif name in NAMES:
             parser.add_argument(option(name), dest=name, metavar="X", help=_help(texts[name]))
         else:
-            add_parameters(parser, _call_with(parameters[name], texts[name]))
+            add_parameters(parser, _CallWith(parameters[name], texts[name]))
 
 
 def _assignment(text: str) -> tuple[str, float]:
@@ -91,19 +91,19 @@ def _help(text: str) -> str:
     return text.replace("%", "%%")
 
 
-def _call_with(parameter: inspect.Parameter, text: str) -> Callable:
-    """A call that has this parameter alone, which is not required."""
-    if parameter.name == "law":
-        text += laws()
-    if parameter.default is parameter.empty:
-        parameter = parameter.replace(default=None)
+class _CallWith:
+    """A call that has one parameter alone, which is not required, for :func:`add_parameters`."""
 
-    def call() -> None:
-        pass
+    def __init__(self, parameter: inspect.Parameter, text: str) -> None:
+        if parameter.name == "law":
+            text += laws()
+        if parameter.default is parameter.empty:
+            parameter = parameter.replace(default=None)
+        self.__doc__ = f"Parameters\n----------\n{parameter.name}\n    {text}"
+        self.__signature__ = inspect.Signature([parameter])
 
-    call.__doc__ = f"Parameters\n----------\n{parameter.name}\n    {text}"
-    call.__signature__ = inspect.Signature([parameter])
-    return call
+    def __call__(self) -> None:
+        """Nothing: only the signature and the docstring are read."""
 
 
 def laws() -> str:

@@ -209,7 +209,8 @@ def assess_contact(table: Table, contact: Contact, question: Question | None = N
     """Whether the restitution model is good enough for a contact on a vibrating table.
 
     The tolerance and all errors of the answer are relative to the values on the contact; those of
-    the paper, and of :func:`bouncing_ball_beyond.error_thresholds`, are relative to the restitution model.
+    the paper, and of :func:`bouncing_ball_beyond.error_thresholds`, are relative to the restitution
+    model.
 
     Parameters
     ----------

@@ -169,8 +169,9 @@ def _of_law(
     that of the linear contact for which the restitution model is within the tolerance.
 
     The search answers how long an impact with this r may take;
-    :func:`~bouncing_ball_contacts.contact.resolve.resolve` finds the law with this r and each duration. The
-    error grows about as the duration: the secant method in logarithms needs a few steps.
+    :func:`~bouncing_ball_contacts.contact.resolve.resolve` finds the law with this r and each
+    duration. The error grows about as the duration: the secant method in logarithms needs a few
+    steps.
     """
     measured = replace(contact.with_measured_restitution(), law=None, release=str(rule))
     linear = choose(replace(measured, radius=None), table, question)

@@ -62,10 +62,10 @@ class ComparedOrbit:
     ``exists``, ``is_stable`` and ``is_admissible`` refer to the orbit of the exact model, which
     comes first in ``standing``. ``values`` has each quantity in every model, the exact one first,
     in m, in m/s or without a unit. All errors are deviations from the exact value, relative to it
-    (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`), and have a sign, positive where the model
-    predicts too much: ``errors`` are those of the restitution model, ``corrected_errors`` those of
-    the corrected model, and ``law_errors`` those that the error law gives for the restitution
-    model; ``law_holds`` tells whether the law holds.
+    (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`), and have a sign, positive where the
+    model predicts too much: ``errors`` are those of the restitution model, ``corrected_errors``
+    those of the corrected model, and ``law_errors`` those that the error law gives for the
+    restitution model; ``law_holds`` tells whether the law holds.
     """
 
     n: int

@@ -1,8 +1,8 @@
 r"""The Hertz contact of two elastic bodies, with the damping of Tsuji, in SI units.
 
 It has the force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R. Its r is the same at every
-speed (:mod:`bouncing_ball_beyond.models.laws.hertzian`), so that E*, R and r determine it. For two elastic
-bodies, the ball and the table (Hertz), ::
+speed (:mod:`bouncing_ball_beyond.models.laws.hertzian`), so that E*, R and r determine it. For two
+elastic bodies, the ball and the table (Hertz), ::
 
     1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
 """

@@ -1,9 +1,9 @@
 r"""The damping ratio of a contact whose loss is given.
 
-A free impact ends at the angle π - 2α (:mod:`bouncing_ball_beyond.models.damping`), from which ζ follows
-for a given r. A drop test is a drop with gravity onto a table at rest, from which ζ is fitted
-(:mod:`bouncing_ball_contacts.contact.drop_test`) and which depends on the stiffness for this reason. For a
-contact law gravity is neglected, and r = √(h′/h).
+A free impact ends at the angle π - 2α (:mod:`bouncing_ball_beyond.models.damping`), from which ζ
+follows for a given r. A drop test is a drop with gravity onto a table at rest, from which ζ is
+fitted (:mod:`bouncing_ball_contacts.contact.drop_test`) and which depends on the stiffness for this
+reason. For a contact law gravity is neglected, and r = √(h′/h).
 """
 
 import math

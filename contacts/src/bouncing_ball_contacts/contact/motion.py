@@ -1,8 +1,8 @@
 """The motion on which a ball ends, and how accurately the restitution model predicts it.
 
 A ball on a stable orbit stays there. A ball near an unstable one leaves, and is followed until the
-motion is known on which it ends (:mod:`bouncing_ball_beyond.motions.destination`). If this motion repeats
-in both models, its greatest heights are compared.
+motion is known on which it ends (:mod:`bouncing_ball_beyond.motions.destination`). If this motion
+repeats in both models, its greatest heights are compared.
 """
 
 import math

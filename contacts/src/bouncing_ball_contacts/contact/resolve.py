@@ -1,12 +1,13 @@
 r"""From the parameters of a contact to its model: the way of every contact that is given.
 
 With ω² = k/m and c = 2ζmω, a free impact ends at the angle ω√(1 - ζ²) t = π - 2α
-(:mod:`bouncing_ball_beyond.models.damping`). The loss gives ζ (:mod:`bouncing_ball_contacts.contact.loss`), and
-stiffness or contact time then give ω. A contact law has the r and the duration of the free impact
-at the impact speed of the orbit; the elastic data of both bodies determine the law of Hertz and
-Tsuji (:mod:`bouncing_ball_contacts.contact.hertz`). The parameters of an engine are first translated
-(:meth:`.contact.Contact.by_stiffness_and_loss`). A contact that is chosen for a tolerance
-(:mod:`bouncing_ball_contacts.contact.choose`) is found with its model.
+(:mod:`bouncing_ball_beyond.models.damping`). The loss gives ζ
+(:mod:`bouncing_ball_contacts.contact.loss`), and stiffness or contact time then give ω. A contact
+law has the r and the duration of the free impact at the impact speed of the orbit; the elastic data
+of both bodies determine the law of Hertz and Tsuji (:mod:`bouncing_ball_contacts.contact.hertz`).
+The parameters of an engine are first translated (:meth:`.contact.Contact.by_stiffness_and_loss`). A
+contact that is chosen for a tolerance (:mod:`bouncing_ball_contacts.contact.choose`) is found with
+its model.
 """
 
 import math

@@ -1,9 +1,9 @@
 """On which motions balls end that start from an even grid of impacts, and with which shares.
 
 The grid is over the phase of the table and the speed of the first impact. It is followed on the
-contact itself. A contact law has fewer starts (:mod:`bouncing_ball_contacts.contact.effort`); its shares
-then have Wilson's intervals (E. B. Wilson, Journal of the American Statistical Association 22,
-1927).
+contact itself. A contact law has fewer starts (:mod:`bouncing_ball_contacts.contact.effort`); its
+shares then have Wilson's intervals (E. B. Wilson, Journal of the American Statistical Association
+22, 1927).
 
 They hold for random starts. Those of an even grid are nearer to the shares of all starts, unless
 the basins are finer than the grid.

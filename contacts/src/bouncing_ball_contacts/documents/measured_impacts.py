@@ -1,9 +1,9 @@
 """Measured impacts against every law, and what a constant r costs.
 
-Each experiment of the package (:mod:`bouncing_ball_contacts.measured.experiment`) is fitted by each contact
-law, and the law is judged by points that the fit has not seen
-(:mod:`bouncing_ball_contacts.measured.verdicts`). The paper's two models have a constant r: they are the
-laws ``restitution``, without a contact, and ``linear``.
+Each experiment of the package (:mod:`bouncing_ball_contacts.measured.experiment`) is fitted by each
+contact law, and the law is judged by points that the fit has not seen
+(:mod:`bouncing_ball_contacts.measured.verdicts`). The paper's two models have a constant r: they
+are the laws ``restitution``, without a contact, and ``linear``.
 
 An experiment without uncertainties is judged by the scatter of its points, in which a systematic
 error of the measurement does not show. The dataset says which those are, and with which size of the
@@ -13,12 +13,12 @@ On a shaker the ball of an n-T orbit lands with 2nπ/(1 + r) g/Ω at every ampli
 measured speeds. The law that fits best gives r(v) there and, if a contact time is known, the
 duration of the contact, and so the ϖ of the linear contact with the same r and duration. The error
 of the restitution model has two parts, signed and relative to the restitution model with r(v). The
-first is that by the duration, of the error law (:mod:`bouncing_ball_beyond.accuracy.error_law`), which
-r(v) does not remove. The second is that by a constant r. The constant r is the best one for this
-shaker: the r(v) at the impact speed of the first family of orbits. For this family it leaves the
-saddle-node and the heights as they are, because the impact speed is the same on all its orbits. It
-does not leave the period doubling, on which b = d(r v)/dv acts: with ``X = nπ (1 - r)/(1 + r)`` it
-is at ::
+first is that by the duration, of the error law (:mod:`bouncing_ball_beyond.accuracy.error_law`),
+which r(v) does not remove. The second is that by a constant r. The constant r is the best one for
+this shaker: the r(v) at the impact speed of the first family of orbits. For this family it leaves
+the saddle-node and the heights as they are, because the impact speed is the same on all its orbits.
+It does not leave the period doubling, on which b = d(r v)/dv acts: with ``X = nπ (1 - r)/(1 + r)``
+it is at ::
 
     Λ² = X² + Y²,    Y = 2 (1 + r b)/((1 + r)(1 + b))
 

@@ -1,8 +1,8 @@
 r"""Restitution and contact time over the impact speed, for each contact law.
 
 In units of its scales P and P/v a free impact depends on one number, the dissipation *group*, which
-is proportional to a power of the speed (:mod:`bouncing_ball_beyond.models.laws.force_law`). Relative to
-their values at a speed v₀ therefore ::
+is proportional to a power of the speed (:mod:`bouncing_ball_beyond.models.laws.force_law`).
+Relative to their values at a speed v₀ therefore ::
 
     r(v) = R(G (v/v₀)^a),    T(v) = τ (v/v₀)^b D(G (v/v₀)^a)
 

@@ -12,7 +12,8 @@ The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_
 column ``recording`` numbers the recordings if there are several. ``uncertainty``, of the
 restitution coefficient, ``duration`` and ``duration_uncertainty`` may follow speeds or heights. If
 the mass and the diameter of the ball are known, the drag of the air is removed from heights and
-intervals (:mod:`bouncing_ball_contacts.measured.flights`). The files of the package are in SI units.
+intervals (:mod:`bouncing_ball_contacts.measured.flights`). The files of the package are in SI
+units.
 
 Where a file has no uncertainties their size follows from the scatter of the points. Errors of
 restitution coefficients that stand in the file are then taken as equal. Those that follow from

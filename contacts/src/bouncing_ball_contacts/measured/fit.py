@@ -1,9 +1,9 @@
 """The parameters of all contact laws from measured restitution coefficients and contact times.
 
-Each law is fitted to the restitution coefficients (:mod:`bouncing_ball_contacts.measured.law_fit`); the time
-scale τ follows from the contact times. Contact times tell nothing of the loss, and restitution
-coefficients nothing of the stiffness, so that the two fits are separate. The laws are ranked by
-Akaike's criterion with the correction for few points.
+Each law is fitted to the restitution coefficients (:mod:`bouncing_ball_contacts.measured.law_fit`);
+the time scale τ follows from the contact times. Contact times tell nothing of the loss, and
+restitution coefficients nothing of the stiffness, so that the two fits are separate. The laws are
+ranked by Akaike's criterion with the correction for few points.
 """
 
 from collections.abc import Sequence

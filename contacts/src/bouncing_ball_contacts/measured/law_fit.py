@@ -1,12 +1,12 @@
 r"""A contact law fitted to measured restitution coefficients.
 
-The parameter θ of the law (:mod:`bouncing_ball_contacts.measured.curves`) is fitted by least squares,
-weighted if the uncertainties are given. Then the intervals are those of the normal distribution,
-and χ² tests the fit. Otherwise the variance of the points is estimated from the fit itself, up to
-the ratios of the errors if these are known, the intervals are Student's, and no test of the fit
-follows from the points alone (:mod:`bouncing_ball_contacts.measured.verdicts` takes the scatter about a
-smooth curve). The error of leaving out one point follows from the fit of all points:
-``(e_i - r(v_i))/(1 - h_i)``, h the diagonal of the hat matrix.
+The parameter θ of the law (:mod:`bouncing_ball_contacts.measured.curves`) is fitted by least
+squares, weighted if the uncertainties are given. Then the intervals are those of the normal
+distribution, and χ² tests the fit. Otherwise the variance of the points is estimated from the fit
+itself, up to the ratios of the errors if these are known, the intervals are Student's, and no test
+of the fit follows from the points alone (:mod:`bouncing_ball_contacts.measured.verdicts` takes the
+scatter about a smooth curve). The error of leaving out one point follows from the fit of all
+points: ``(e_i - r(v_i))/(1 - h_i)``, h the diagonal of the hat matrix.
 """
 
 from collections.abc import Callable, Sequence

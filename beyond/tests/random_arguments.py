@@ -14,9 +14,9 @@ from typing import Any
 
 import bouncing_ball_beyond as bb
 import numpy as np
-from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS
-from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.makers import LOSSES
+from bouncing_ball_beyond.models.named_laws import LAWS
+from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS
 from bouncing_ball_contacts.contact.units import SIParameter, in_si
 from declared_arguments import Declared, arguments
 from hypothesis import strategies as st

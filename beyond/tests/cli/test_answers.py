@@ -6,6 +6,7 @@ import math
 import bouncing_ball_beyond
 import numpy as np
 import pytest
+from bouncing_ball_beyond import corrected, rigid, spring_damper
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -16,8 +17,6 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
 from hypothesis import given
 from hypothesis import strategies as st
-
-from bouncing_ball import corrected, rigid, spring_damper
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")

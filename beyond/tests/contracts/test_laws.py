@@ -27,16 +27,16 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 )
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.loaded import under
-from bouncing_ball_beyond.models.named_laws import LAWS as NAMED
-from bouncing_ball_beyond.models.named_laws import by_name
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball_beyond.models.laws.steady_contact import permanent_contact
+from bouncing_ball_beyond.models.named_laws import LAWS as NAMED
+from bouncing_ball_beyond.models.named_laws import by_name
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.engines.impedance import Impedance
+from loaded_laws import Sharing
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -76,20 +76,18 @@ LAWS = {
     "elasto-backlash": ElastoBacklash(10.0, 0.136),
     "elasto-backlash, strong": ElastoBacklash(10.0, 0.5),
     "elasto-backlash, elastic": ElastoBacklash(3.0, 0.0),
-    "impedance": Impedance(10.0, 0.136),
-    "impedance, weak": Impedance(3.0, 0.05, 0.5),
-    "impedance, by depth": Impedance(10.0, 0.136, 0.95, 0.5, width=0.2),
-    "impedance, by depth and deep": Impedance(
-        10.0, 0.05, share=0.6, at_surface=0.2, width=0.05, midpoint=0.3, power=3.0
-    ),
+    "sharing": Sharing(10.0, 0.136),
+    "sharing, weak": Sharing(3.0, 0.05, 0.5),
+    "sharing, by depth": Sharing(10.0, 0.136, 0.95, 0.5, width=0.2),
+    "sharing, by depth and deep": Sharing(10.0, 0.05, share=0.6, at_surface=0.2, width=0.05),
     "hardening spring": runpy.run_path(str(Path(__file__).with_name("hardening_spring.py")))["LAW"],
 }
 # Other parameters of laws that are tried often: weekly.
 SELDOM = (
     "tsuji, strong",
     "elasto-backlash, strong",
-    "impedance, weak",
-    "impedance, by depth and deep",
+    "sharing, weak",
+    "sharing, by depth and deep",
 )
 every_law = pytest.mark.parametrize(
     "law",
@@ -431,7 +429,7 @@ def test_a_ball_that_the_load_pulls_away_meets_no_force_at_the_surface(
     surface, amplitude, phase, speed
 ):
     """It sinks or comes back freely until the force pushes, and may be released while it sinks."""
-    law = Impedance(20.0, 0.05, 0.95, surface, width=0.1)
+    law = Sharing(20.0, 0.05, 0.95, surface, width=0.1)
     found = law.dynamics(amplitude).simulate(phase, amplitude * np.cos(phase) - speed, 3)
     assert found.status == Status.BOUNCING and found.contact_duration[0] == 0.0
 
@@ -453,14 +451,12 @@ def test_a_ball_that_the_load_pulls_away_meets_no_force_at_the_surface(
 
 CHANGED = {
     **{name: LAWS[name] for name in ("hunt-crossley", "tsuji", "kuwabara-kono")},
-    **{name: LAWS[name] for name in ("elasto-backlash", "impedance", "impedance, by depth")},
+    "elasto-backlash": LAWS["elasto-backlash"],
     "hunt-crossley-linear": LinearHuntCrossley(1e3, 0.08),
     "lankarani-nikravesh": LankaraniNikravesh(1e3, 0.8),
     "flores": Flores(1e3, 0.8),
     "linear": SpringDamper(10.0, 0.136, "force"),
     "damped on approach": SpringDamper(10.0, 0.136, "approach"),
-    "hardly damped": Impedance(10.0, 5e-5, 0.95, 0.5, width=0.2),
-    "undamped": Impedance(10.0, 0.0, 0.95, 0.5, width=0.2),
 }
 
 
@@ -481,7 +477,7 @@ def test_a_law_without_a_stiffness_is_not_made_stiffer():
 
 
 @pytest.mark.parametrize("width", [1e-9, 1e-5, 0.1])
-def test_a_ball_at_rest_on_a_stiff_impedance_is_held_by_force_and_load(width):
-    law = Impedance(3e4, 0.1, 0.9, 0.2, width=width)
+def test_a_ball_at_rest_on_a_stiff_contact_is_held_by_force_and_load(width):
+    law = Sharing(3e4, 0.1, 0.9, 0.2, width=width)
     depth = np.array(rest(law))
     assert float(under(law, 1.0).force(depth, np.array(0.0))) == pytest.approx(1.0, abs=1e-14)

@@ -30,11 +30,10 @@ from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations as events_of
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
-from bouncing_ball_contacts.engines.impedance import Impedance
+from loaded_laws import Sharing
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.paper.claims.witness import nearest
 
 EPS = np.finfo(float).eps
 COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)
@@ -43,7 +42,7 @@ PUSHING = SpringDamper.from_restitution(0.65, 20.0, "force")
 HERTZ = {
     "tsuji": Tsuji(500.0, 0.3),
     "kuwabara-kono": KuwabaraKono(2e3, 0.008),
-    "impedance": Impedance(15.0, 0.1),
+    "sharing": Sharing(15.0, 0.1),
     "elasto-backlash": ElastoBacklash(15.0, 0.1),
     "hardening spring": runpy.run_path(str(Path(__file__).with_name("hardening_spring.py")))["LAW"],
 }
@@ -67,7 +66,7 @@ MODELS = {
     "one's own": OWN["MODEL"],
 }
 # Other laws of the same model: one of them is tried often, and the others weekly.
-SELDOM = ("kuwabara-kono", "elasto-backlash", "impedance")
+SELDOM = ("kuwabara-kono", "elasto-backlash", "sharing")
 # Of these some tests take seconds, and "tsuji" and "corrected" are of the same kinds.
 SLOW = (*SELDOM, "corrected, kuwabara-kono", "hardening spring")
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
@@ -360,13 +359,6 @@ def test_a_closed_form_is_what_the_continuation_finds(name):
     for orbit in map(search.orbits(1, 0.9).__getitem__, range(2)):
         assert np.min(orbit.distance(exact)) < 1e-10
     assert np.isnan(search.orbit(1, 1e-3, Side.STABLE).phase)
-
-
-@every_side
-@pytest.mark.parametrize("name", CLOSED)
-def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
-    orbit = some_orbit(name, 1, 0.6, side)
-    assert nearest(orbit).distance(orbit) < 1e-12
 
 
 @each_kind

@@ -3,12 +3,12 @@
 import mpmath
 import numpy as np
 import pytest
+from bouncing_ball_beyond import contact_law
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from scipy.integrate import solve_ivp
 
-from bouncing_ball import contact_law
 from bouncing_ball.errors import ModelError
 
 EPS = np.finfo(float).eps

@@ -4,6 +4,8 @@ import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
 
+from bouncing_ball.errors import ModelError
+
 
 def on_contact(stiffness, damping):
     return bb.contact_law("kuwabara-kono", stiffness=stiffness, damping=damping)
@@ -30,5 +32,5 @@ def test_a_ball_that_lies_on_a_moving_table_moves_with_it():
 
 
 def test_a_motion_that_takes_too_long_is_refused(refusal):
-    with refusal(bb.ModelError, "fewer periods"):
+    with refusal(ModelError, "fewer periods"):
         bb.drop(on_contact(6.2e5, 0.031), height=10.0, amplitude=0.5, periods=2000.0, samples=1)

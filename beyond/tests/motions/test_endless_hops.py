@@ -7,6 +7,8 @@ import pytest
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.motions import over_time
 
+from bouncing_ball.errors import ModelError
+
 BALLS = {
     "rigid": bb.rigid(restitution=1.0),
     "spring": bb.spring_damper(restitution=1.0, frequency_ratio=1e4),
@@ -32,7 +34,7 @@ def simulated(monkeypatch):
 @pytest.mark.parametrize("ball", BALLS)
 def test_too_many_hops_are_refused_after_the_first_impacts(ball, simulated, refusal):
     # Each hop lasts 2√(2h) = 0.09, and a contact π/ϖ: 700,000 impacts in 10,000 periods.
-    with refusal(bb.ModelError, "more than 65536 impacts", "fewer periods"):
+    with refusal(ModelError, "more than 65536 impacts", "fewer periods"):
         bb.drop(BALLS[ball], height=1e-3, periods=10_000.0, samples=1)
     assert simulated == [4]
 
@@ -41,7 +43,7 @@ def test_too_many_hops_are_refused_after_the_first_impacts(ball, simulated, refu
 def test_other_balls_are_followed(restitution, amplitude, simulated, monkeypatch, refusal):
     monkeypatch.setattr(over_time, "_MOST", 64)
     ball = bb.rigid(restitution=restitution)
-    with refusal(bb.ModelError, "more than 64 impacts"):
+    with refusal(ModelError, "more than 64 impacts"):
         # On the moving table the orbit of one period is unstable: a ball may leave it later.
         bb.history(ball, amplitude=amplitude, phase=math.pi / 2, periods=70.0, samples=1)
     assert simulated == [4, 16, 64]
@@ -57,6 +59,6 @@ def test_as_many_hops_as_are_allowed_are_answered(simulated, monkeypatch, refusa
         if end < 126:
             assert bb.history(ball, amplitude=0.0, **arguments).ball.notnull().all()
         else:
-            with refusal(bb.ModelError, "more than 64 impacts"):
+            with refusal(ModelError, "more than 64 impacts"):
                 bb.history(ball, amplitude=0.0, **arguments)
         assert simulated == rounds

@@ -8,6 +8,7 @@ import pytest
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 from bouncing_ball.cli.main import main
+from bouncing_ball.errors import ModelError
 
 R = bb.rigid(restitution=0.5)
 STIFF = bb.spring_damper(restitution=0.5, frequency_ratio=100.0)
@@ -102,7 +103,7 @@ def test_the_exponent_is_that_of_the_motion():
     ],
 )
 def test_a_mistake_is_one_line_with_what_is_allowed(call, text):
-    with pytest.raises(bb.ModelError) as error:
+    with pytest.raises(ModelError) as error:
         call()
     assert text in str(error.value)
     assert "\n" not in str(error.value)

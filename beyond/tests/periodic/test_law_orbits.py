@@ -10,14 +10,14 @@ from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, paper_error
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.instant import Instant
-from bouncing_ball_beyond.periodic.law_balls import contact_law
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.named_laws import LAWS, law_named
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
+from bouncing_ball_beyond.models.named_laws import LAWS, law_named
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.law_balls import contact_law
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
@@ -29,7 +29,7 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import 
     orbits_at as by_formula,
 )
 from bouncing_ball_beyond.periodic.orbits.stability import Side
-from bouncing_ball_contacts.engines.impedance import Impedance
+from loaded_laws import Sharing
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -50,17 +50,17 @@ def test_the_impact_speed_of_the_restitution_models_orbits_solves_its_equation(l
     np.testing.assert_allclose(period, 2 * np.pi * n, rtol=1e-6)
 
 
-# A law that feels its load, a Hertz contact and one with a kink; the others weekly.
-SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in ("tsuji", "impedance")]
+# A Hertz contact, and a law that feels its load and has a kink; the others weekly.
+SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x != "tsuji"]
 
 
-@pytest.mark.parametrize("name", ["tsuji", "impedance", "by depth", *SELDOM])
+@pytest.mark.parametrize("name", ["tsuji", "by depth", *SELDOM])
 def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name):
     errors = []
     for duration in (0.04, 0.02):
         if name == "by depth":
             # The width is that of the impact, so that r is the same at both durations.
-            law = Impedance(np.pi / duration, 0.1, 0.95, 0.5, width=duration / 2)
+            law = Sharing(np.pi / duration, 0.1, 0.95, 0.5, width=duration / 2)
         else:
             # The damping of this law is limited by e = 0, and r by 2/3.
             r = 0.7 if LAWS[name] is LankaraniNikravesh else 0.65
@@ -158,7 +158,7 @@ def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, n
     assert np.abs(found.contact_duration - known.contact_duration).max() < 1e-11
 
 
-@pytest.mark.parametrize("law", [HuntCrossley, SpringDamper, Impedance])
+@pytest.mark.parametrize("law", [HuntCrossley, SpringDamper])
 @pytest.mark.parametrize("value", ["x", "2.0", True, [[1.0], [2.0, 3.0]]])
 def test_a_parameter_of_a_law_that_is_no_number_is_refused(law, value, refusal):
     first, second, *_ = law.parameter_names()

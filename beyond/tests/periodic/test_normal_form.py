@@ -7,8 +7,8 @@ import bouncing_ball_beyond
 import mpmath as mp
 import numpy as np
 import pytest
-from bouncing_ball.periodic.orbits.return_map import returned
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.orbits.return_map import returned
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -56,7 +56,7 @@ def test_the_saddle_node_of_the_restitution_model_is_that_of_its_closed_form(r, 
 
 def test_a_state_of_which_newtons_method_finds_no_landing_does_not_return():
     r, lam = 0.5, 1.4
-    one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=r), amplitude=lam)
+    one = bouncing_ball_beyond.orbit(bouncing_ball_beyond.rigid(restitution=r), amplitude=lam)
     problem = one.problem()
     aside = np.random.default_rng(0).uniform([-3.0, -3.0], [3.0, 4.0], (2000, 2))
     distance = returned(problem, one.point(problem), aside).distance

@@ -16,7 +16,7 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from scipy.optimize import brentq
 
-import bouncing_ball
+from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.corrector import solve
 
 
@@ -133,5 +133,5 @@ def test_an_orbit_draws_itself_and_a_row_of_orbits_is_refused(tmp_path, refusal)
     drawn = {line.get_label(): line.get_ydata() for line in figure.axes[0].lines}
     assert drawn["ball $z$"].max() == pytest.approx(orbit.max_height, rel=1e-4)
     row = Orbit.of(orbit.model, 1, np.array([1.0, 1.0]), np.array([1.0, 1.1]))
-    with refusal(bouncing_ball.ModelError, "history", "one orbit"):
+    with refusal(ModelError, "history", "one orbit"):
         row.plot()

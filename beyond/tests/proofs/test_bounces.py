@@ -12,7 +12,7 @@ from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
 from scipy.integrate import solve_ivp
 
-from bouncing_ball import ModelError
+from bouncing_ball.errors import ModelError
 
 FOLDER = Path(__file__).parents[3] / "docs" / "bounces"
 G = 9.81

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from bouncing_ball_beyond import error_thresholds, rigid
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.proofs import newton
@@ -21,8 +22,6 @@ from bouncing_ball_beyond.proofs.thresholds import (
 from flint import arb
 from mpmath import mp, mpf
 from sixty_digits import Exact
-
-from bouncing_ball import error_thresholds, rigid
 
 R = Fraction(65, 100)
 TOLERANCE = Fraction(1, 100)

@@ -7,8 +7,8 @@ from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.collocation import contacts
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.laws.signature import Signature
+from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 

@@ -18,7 +18,7 @@ from bouncing_ball_beyond.models.laws.march import march
 from bouncing_ball_beyond.models.laws.panel import BallsInContact, Start
 from bouncing_ball_beyond.models.laws.sweeps import Sweeps
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.engines.impedance import Impedance
+from loaded_laws import Sharing
 from scipy.special import beta
 
 from bouncing_ball.errors import ModelError
@@ -55,9 +55,9 @@ def test_tsujis_damping_gives_its_restitution_at_every_speed(restitution):
     np.testing.assert_allclose(-end.rate / speed, restitution, rtol=1e-12)
 
 
-def test_a_load_holds_an_undamped_impedance_up_to_the_level():
+def test_a_shared_load_holds_an_undamped_ball_up_to_the_level():
     # p = b sin ωt + c (1 - cos ωt), b = v/ω, c = (1 - d)/ω²: zero where tan(ωt/2) = -b/c.
-    end = contacts(Impedance(3.0, 0.0, 0.5), 2.0)
+    end = contacts(Sharing(3.0, 0.0, 0.5), 2.0)
     np.testing.assert_allclose(end.rate, -2.0, rtol=1e-13)
     assert abs(end.penetration) < 1e-14
     b = 2 / 3
@@ -95,7 +95,7 @@ def test_a_contact_does_not_depend_on_its_neighbours_in_the_row():
 
 @pytest.mark.parametrize("until", [None, np.ones(1)], ids=["release", "time"])
 @pytest.mark.parametrize(
-    "law", [ElastoBacklash(3.0, 0.2), Impedance(3.0, 0.1, 0.9, 0.5, width=0.5), Tsuji(50.0, 0.2)]
+    "law", [ElastoBacklash(3.0, 0.2), Sharing(3.0, 0.1, 0.9, 0.5, width=0.5), Tsuji(50.0, 0.2)]
 )
 def test_newtons_slopes_at_the_end_of_a_panel_are_the_derivatives_along_the_motion(law, until):
     start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
@@ -116,10 +116,10 @@ def test_contacts_of_a_ball_coming_to_rest_end_despite_rounding():
     zero = np.zeros(200)
     one = np.ones(200)
     start = Start(zero, np.geomspace(1e-6, 1e-4, 200), zero + 1.456, one, one)
-    assert np.isfinite(march(Impedance(31.4, 0.1335, 0.95), start, 40).duration).all()
+    assert np.isfinite(march(Sharing(31.4, 0.1335, 0.95), start, 40).duration).all()
     # The load of nearly zero lets go of these after a long contact.
     start = start._replace(rate=np.linspace(8e-4, 9e-4, 200), phase=zero - 0.1135)
-    law = Impedance(104.7, 0.0535, 0.95, 0.9, width=0.016)
+    law = Sharing(104.7, 0.0535, 0.95, 0.9, width=0.016)
     assert np.isfinite(march(law, start, 400).duration).all()
 
 
@@ -132,14 +132,6 @@ def test_a_long_contact_ends_although_its_neighbours_do_not():
     together = march(law, start, 60).duration
     alone = march(law, Start(*(x[:3] for x in start)), 60).duration
     np.testing.assert_allclose(together, np.append(alone, np.full(297, np.nan)), rtol=1e-14)
-
-
-def test_a_varying_impedance_does_not_depend_on_its_neighbours_in_the_row():
-    # At x = 1/4 of the width d is x²/c = 1/8 of the way up, with c = 1/2, if it varies.
-    law = Impedance(2.0, 0.5, 0.75, np.array([0.25, 0.75]), width=4.0)
-    assert law.has_kink and law.impedance(np.ones(2)).tolist() == [0.3125, 0.75]
-    # Below both kinks, at p = 5, a ball that was above the midpoint has passed a kink.
-    assert law.continued(np.zeros(2), np.ones(2)).kink(np.full(2, 5.0), 0.0).tolist() == [-3.0, 1.0]
 
 
 def test_a_ball_without_speed_or_put_down_slowly_has_no_end_of_contact():
@@ -165,19 +157,13 @@ class _Sinking(ContactLaw):
         return penetration + 4 * rate
 
 
-def test_an_impedance_outside_its_range_is_refused():
-    for wrong in ({"midpoint": 0.0}, {"midpoint": 1.0}, {"share": 1.0}, {"power": 0.9}):
-        with pytest.raises(ModelError, match=f"= {max(wrong.values())} is not"):
-            Impedance(2.0, 0.5, **wrong)
-
-
 @pytest.mark.parametrize(("zeta", "angle"), [(1.0, 2.0), (1.25, 8 / 3 * np.log(2))])
-def test_an_impedance_without_oscillation_releases_the_ball(zeta, angle):
+def test_a_law_without_oscillation_that_shares_the_load_releases_the_ball(zeta, angle):
     # ϖD = 2 arcosh ζ/√(ζ² - 1) and r = exp(-ζϖD), and σ_d as for ζ < 1.
     omega = 50.0
     d = 0.95
     r = np.exp(-zeta * angle)
-    impact = Impedance(omega, zeta, d).signature(1.0)
+    impact = Sharing(omega, zeta, d).signature(1.0)
     lag = 2 * zeta / omega
     load = (1 - r) * angle / omega - (2 - d) * lag * r
     expected = [r * (angle / omega + lag) / (1 + r), r, load, angle / omega]

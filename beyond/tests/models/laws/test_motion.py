@@ -12,9 +12,9 @@ from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.orbits.stability import Side
-from bouncing_ball_contacts.engines.impedance import Impedance
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loaded_laws import Sharing
 
 CASES = [
     # n, r, ϖ, Λ
@@ -115,9 +115,9 @@ def test_after_a_release_below_the_level_the_first_of_landing_and_resumption_is_
 
 
 def test_a_contact_that_ends_at_the_level_does_not_resume_within_a_rounding_error():
-    """Where an impedance lets the contact end at p = 0, the force that is left is positive."""
+    """Where a shared load lets the contact end at p = 0, the force that is left is positive."""
     phase, fall = np.random.default_rng(0).uniform([[-3], [1.5]], [[3], [5]], (2, 500))
-    run = Impedance(30.0, 0.05, 0.95).dynamics(1.0).simulate(phase, -fall - 1, 40)
+    run = Sharing(30.0, 0.05, 0.95).dynamics(1.0).simulate(phase, -fall - 1, 40)
     assert np.sum(run.release_displacement == 0) > 500
     assert not np.any((run.displacement < 0) & (run.displacement > -1e-15))
 

@@ -14,7 +14,7 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 )
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.engines.impedance import Impedance
+from loaded_laws import Sharing
 
 from bouncing_ball.errors import ModelError
 
@@ -88,7 +88,7 @@ def test_an_overdamped_contact_that_does_not_pull_has_the_signature_of_its_roots
     assert found.duration[0] == pytest.approx(end, rel=1e-10)
 
 
-KINKED = Impedance(10.0, 0.136, 0.95, 0.5, width=0.2)
+KINKED = Sharing(10.0, 0.136, 0.95, 0.5, width=0.2)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ import pytest
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.laws.loaded import LoadedLaw
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.steady_contact import (
     _holds,
@@ -18,7 +17,7 @@ from bouncing_ball_beyond.models.laws.steady_contact import (
     permanent_contact,
 )
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.engines.impedance import Impedance
+from loaded_laws import Sharing
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
@@ -90,15 +89,15 @@ def test_more_nodes_do_not_change_a_threshold(law, monkeypatch):
     assert found == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
-@pytest.mark.parametrize("law", [ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)])
-def test_steady_contacts_have_the_thresholds_of_the_closed_forms(law):
-    found = _touching(law, isinstance(law, LoadedLaw))
+def test_a_steady_contact_has_the_threshold_of_its_closed_form():
+    law = ElastoBacklash(3.0, 0.5)
+    found = _touching(law, False)
     assert found == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
 def test_the_grip_changes_at_the_rate_that_depth_speed_and_load_give_it():
     # The grip of this law depends on the load, which changes at the rate -Λ cos φ.
-    law = Impedance(5.0, 0.2, 0.9, 0.45, width=0.1)
+    law = Sharing(5.0, 0.2, 0.9, 0.45, width=0.1)
     steady = _Steady(law, rest(law))
     z = np.array([0.3, 0.7])
     first = np.array([0.8, 0.2])
@@ -113,12 +112,12 @@ def test_the_grip_changes_at_the_rate_that_depth_speed_and_load_give_it():
     assert rate == pytest.approx((after - before) / (2 * step), rel=1e-8)
 
 
-def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():
+def test_a_share_by_depth_touches_the_surface_at_its_threshold():
     # Far above the width it is d_min, with a spring of the share s = 1/2.
-    flat = permanent_contact(Impedance(5.0, 0.2, 0.9, 0.45, width=1e5))
-    assert flat == pytest.approx(permanent_contact(Impedance(2.5, 0.2, 0.45)), rel=1e-8)
-    # The lowest point of a settled motion is the surface, where the impedance varies.
-    law = Impedance(10.0, 0.2, 0.9, 0.45, width=0.02)
+    flat = permanent_contact(Sharing(5.0, 0.2, 0.9, 0.45, width=1e9))
+    assert flat == pytest.approx(permanent_contact(Sharing(2.5, 0.2, 0.45)), rel=1e-8)
+    # The lowest point of a settled motion is the surface, where the share varies.
+    law = Sharing(10.0, 0.2, 0.9, 0.45, width=0.02)
     lam = permanent_contact(law) * np.array([0.99, 1.0])
 
     def rates(t, state):

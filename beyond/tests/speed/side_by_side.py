@@ -31,8 +31,6 @@ from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.ends import Window
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import Special
-from bouncing_ball_contacts.engines.engine import Physical
-from bouncing_ball_contacts.engines.mujoco import MuJoCo
 
 from bouncing_ball.numerics.corrector import newton, plane
 
@@ -350,9 +348,12 @@ def engine_row() -> Row:
     landing = 0.9 * np.sin(sequence.phase[-1, 0])
     error = abs(float(landing + sequence.impact_velocity[-1, 0] ** 2 / 2) / highest - 1)
     task = f"{BOUNCES} bounces of one ball on a contact with ϖ = 20, released at zero force"
-    if not peer("mujoco"):
+    # The engine's time step is that of the contacts, a house above this one.
+    if not (peer("mujoco") and peer("bouncing_ball_contacts")):
         return Row(task, ours, error, "MuJoCo: absent")
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "contacts" / "tests"))
+    from bouncing_ball_contacts.engines.engine import Physical
+    from bouncing_ball_contacts.engines.mujoco import MuJoCo
     from engine_runs import Trial, mujoco
 
     stiffness = 20.0**2

@@ -1,14 +1,12 @@
-"""The options of ``design`` and ``fit`` that the root's commands do not have."""
+"""The options of ``design`` and ``fit`` that neither the root's commands nor beyond's have."""
 
-import argparse
 import inspect
 from collections.abc import Callable, Iterable
-from pathlib import Path
-from typing import Any
+
+from bouncing_ball_beyond.cli.options import add_assignments
 
 from bouncing_ball.cli import options
 from bouncing_ball.cli.options import Parser, add_parameters, meanings
-from bouncing_ball.errors import Range
 
 NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
 """The options that are not called as their parameters."""
@@ -25,19 +23,6 @@ def option(name: str) -> str:
     return options.option(NAMES.get(name, name))
 
 
-def add_file(parser: Parser, name: str, text: str) -> None:
-    """Add an option for a file that is written."""
-    parser.add_argument(option(name), dest=name, type=_path, metavar="FILE", help=_help(text))
-
-
-def _path(text: str) -> Path:
-    """The path of a file."""
-    # An empty text would be the path of the current folder.
-    if not text:
-        raise argparse.ArgumentTypeError("the name is empty")
-    return Path(text)
-
-
 def add_optional(parser: Parser, call: Callable, names: Iterable[str]) -> None:
     """Add options for some parameters of a call, of which none is required."""
     texts = meanings(call)
@@ -46,49 +31,9 @@ def add_optional(parser: Parser, call: Callable, names: Iterable[str]) -> None:
         if name == "parameters":
             add_assignments(parser, name, texts[name])
         elif name in NAMES:
-            parser.add_argument(option(name), dest=name, metavar="X", help=_help(texts[name]))
+            parser.add_argument(option(name), dest=name, metavar="X", help=texts[name])
         else:
             add_parameters(parser, _CallWith(parameters[name], texts[name]))
-
-
-def _assignment(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    number = options._number(value)
-    if not name.strip() or number not in Range():
-        why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
-        if "=" in value:
-            why += ": repeat the option for each parameter"
-        elif "=" in text:
-            why += options._plain(value, Range())
-        raise argparse.ArgumentTypeError(why)
-    return name.strip(), number
-
-
-class _Assignments(argparse.Action):
-    """Collects assignments to different names in a dictionary."""
-
-    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
-        found = getattr(namespace, self.dest) or {}
-        if values[0] in found:
-            parser.error(f"argument {option_string}: {values[0]} is given twice")
-        setattr(namespace, self.dest, found | {values[0]: values[1]})
-
-
-def add_assignments(parser: Parser, name: str, text: str) -> None:
-    """Add an option for assignments such as stiffness=1000, which may be repeated."""
-    parser.add_argument(
-        option(name),
-        dest=name,
-        type=_assignment,
-        action=_Assignments,
-        metavar="NAME=NUMBER",
-        help=_help(text),
-    )
-
-
-def _help(text: str) -> str:
-    # argparse fills in what follows a percent sign.
-    return text.replace("%", "%%")
 
 
 class _CallWith:

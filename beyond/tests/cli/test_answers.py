@@ -1,4 +1,4 @@
-"""Answers of the subcommands: the numbers of the models, and one line for each mistake."""
+"""Answers of beyond's subcommands: the numbers of the calls, and one line for each mistake."""
 
 import json
 import math
@@ -12,13 +12,12 @@ from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball_beyond.models.named_laws import LAWS
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
 from hypothesis import given
 from hypothesis import strategies as st
 
-ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
+ORBIT = ("law-orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")
 COMPLIANT = ("--restitution", "0.85", "--amplitude", "0.9", "--frequency-ratio", "2")
 HERTZ = ("--law", "hunt-crossley", "--set", "stiffness=1000", "--set", "damping=0.08")
@@ -54,7 +53,7 @@ def test_an_orbit_is_that_of_the_call_in_full_precision(ask, side, options, ball
 
 def test_the_loss_has_three_names_of_one_meaning(ask):
     zeta = repr(float(damping_ratio(0.85)))
-    call = ("orbit", "--amplitude", "1", *FORCE)
+    call = ("law-orbit", "--amplitude", "1", *FORCE)
     by_eq_16 = ask(*call, "--restitution", "0.85")
     assert ask(*call, "--damping-ratio", zeta) == by_eq_16
     # The force release has a higher r than that of Eq. 16.
@@ -63,12 +62,12 @@ def test_the_loss_has_three_names_of_one_meaning(ask):
     assert own["measured_restitution"] == pytest.approx(0.85, rel=1e-14)
     assert own["damping_ratio"] > by_eq_16["damping_ratio"]
     # Without a contact there is one r only.
-    bare = ("orbit", "--amplitude", "1")
+    bare = ("law-orbit", "--amplitude", "1")
     assert ask(*bare, "--measured-restitution", "0.7") == ask(*bare, "--restitution", "0.7")
 
 
 def test_every_orbit_can_be_reached(ask, refused, said):
-    call = ("orbit", *COMPLIANT)
+    call = ("law-orbit", *COMPLIANT)
     found = ask(*call, "--side", "all")["orbits"]
     assert [orbit["is_stable"] for orbit in found] == [True, False, True]
     third = ask(*call, "--index", "3")
@@ -81,7 +80,7 @@ def test_every_orbit_can_be_reached(ask, refused, said):
 def test_limits_are_those_of_the_call(ask, refused):
     contact = spring_damper(restitution=0.85, frequency_ratio=10.0)
     for options, ball in (((), RIGID), (FORCE[:2], contact)):
-        answer = ask("limits", "--n", "2", "--restitution", "0.85", *options)
+        answer = ask("law-limits", "--n", "2", "--restitution", "0.85", *options)
         expected = bouncing_ball_beyond.limits(ball, 2)
         for name, orbit in expected._asdict().items():
             assert answer[name] == {
@@ -90,25 +89,16 @@ def test_limits_are_those_of_the_call(ask, refused):
                 "contact_duration": orbit.contact_duration,
                 "is_admissible": orbit.is_admissible(),
             }
-    status, line = refused("limits", "--frequency-ratio", "0.7071", "--damping-ratio", "0.2155")
+    status, line = refused("law-limits", "--frequency-ratio", "0.7071", "--damping-ratio", "0.2155")
     assert status == 1 and "no saddle-node was found on the branch of 1-T orbits" in line
-
-
-def test_the_threshold_of_permanent_contact_is_that_of_the_model(ask):
-    call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio")
-    for release in ("displacement", "force"):
-        answer = ask(*call, "6", "--release", release)
-        contact = SpringDamper.from_restitution(0.65, 6.0, release)
-        exact = ContactModel(contact).permanent_contact_threshold()
-        assert answer["threshold_amplitude"] == exact
 
 
 def test_the_error_law_is_about_the_contacts_own_r(ask):
     contact = ("--damping-ratio", "0.2", "--release", "force", "--amplitude", "1.5")
     found = ask("error-law", *contact)
-    exact = ask("orbit", "--frequency-ratio", "1e4", *contact)
+    exact = ask("law-orbit", "--frequency-ratio", "1e4", *contact)
     r = repr(found["measured_restitution"])
-    plain = ask("orbit", "--restitution", r, "--amplitude", "1.5")
+    plain = ask("law-orbit", "--restitution", r, "--amplitude", "1.5")
     for name in ("max_height", "bounce_velocity", "phase", "apparent_restitution"):
         error = 1e4 * (exact[name] / plain[name] - 1)
         # The next order is about 1/ϖ of it, more for the apparent restitution.
@@ -122,13 +112,13 @@ def test_the_error_law_is_about_the_contacts_own_r(ask):
 
 def test_a_ball_that_starts_on_a_stable_orbit_stays_on_it(ask, said):
     contact = (*ORBIT[3:], *FORCE[:2])
-    orbit = ask("orbit", *contact)
+    orbit = ask("law-orbit", *contact)
     start = ("--phase", repr(orbit["phase"]), "--velocity", repr(orbit["impact_velocity"]))
-    answer = ask("simulate", *(contact + start), "--impacts", "30")
+    answer = ask("law-simulate", *(contact + start), "--impacts", "30")
     assert answer["status"] == "bouncing" and len(answer["sequence"]["time"]) == 30
     # Rounding stays rounding on a stable orbit.
     assert np.ptp(answer["sequence"]["impact_velocity"]) < 1e-12
-    call = ("simulate", "--restitution", "0.5", "--amplitude", "0.5", *FORCE[:2])
+    call = ("law-simulate", "--restitution", "0.5", "--amplitude", "0.5", *FORCE[:2])
     answer = ask(*call, "--velocity", "-1")
     assert answer["status"] == "permanent contact"
     assert answer["sequence"]["contact_duration"][-1] is None
@@ -136,26 +126,26 @@ def test_a_ball_that_starts_on_a_stable_orbit_stays_on_it(ask, said):
 
 
 def test_an_orbit_on_a_contact_law_is_that_of_its_model(ask):
-    answer = ask("orbit", *HERTZ, "--amplitude", "1")
+    answer = ask("law-orbit", *HERTZ, "--amplitude", "1")
     assert set(FIELDS) <= set(answer)
     orbit = n_t.orbit(ContactModel(HuntCrossley(1000.0, 0.08)), 1, 1.0)
     assert answer["max_height"] == float(orbit.max_height)
     assert answer["parameters"] == {"stiffness": 1000.0, "damping": 0.08}
     assert answer["frequency_ratio"] == pytest.approx(math.pi / answer["free_duration"])
-    corrected = ask("orbit", *HERTZ, "--amplitude", "1", "--model", "corrected")
+    corrected = ask("law-orbit", *HERTZ, "--amplitude", "1", "--model", "corrected")
     assert corrected["max_height"] == pytest.approx(answer["max_height"], rel=1e-3)
 
 
 def test_a_law_by_its_free_impact_has_it_at_the_speed_in_question(ask):
-    answer = ask("orbit", *FREE, "--amplitude", "1")
+    answer = ask("law-orbit", *FREE, "--amplitude", "1")
     assert answer["measured_restitution"] == pytest.approx(0.65, rel=1e-12)
     assert answer["free_duration"] == pytest.approx(0.1, rel=1e-12)
     assert answer["parameters"]["damping"] == pytest.approx(float(tsuji_damping(0.65)), rel=1e-12)
-    limits = ask("limits", *FREE)
+    limits = ask("law-limits", *FREE)
     assert limits["at_impact_speed"] == pytest.approx(2 * math.pi / 1.65, rel=1e-12)
     assert limits["free_duration"] == pytest.approx(0.1, rel=1e-12)
     # The first impact, of a speed Λ cos φ - z′.
-    start = ("simulate", "--amplitude", "1", "--velocity", "-2", "--impacts", "3")
+    start = ("law-simulate", "--amplitude", "1", "--velocity", "-2", "--impacts", "3")
     command = (*start, *FREE)
     run = ask(*command)
     assert run["at_impact_speed"] == 3.0
@@ -172,13 +162,13 @@ class _OfItsParameters(HuntCrossley):
 def test_a_law_that_is_not_scaled_is_given_by_its_parameters_only(refused, monkeypatch):
     monkeypatch.setitem(LAWS, "rubber", _OfItsParameters)
     call = ("--law", "rubber", "--restitution", "0.95", "--duration", "0.3", "--amplitude", "1")
-    status, line = refused("orbit", *call)
+    status, line = refused("law-orbit", *call)
     assert status == 2
     assert line.endswith("rubber is given by its parameters, not by restitution and duration")
 
 
 def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
-    call = ("orbit", "--restitution", "0.85", "--amplitude", "0.1")
+    call = ("law-orbit", "--restitution", "0.85", "--amplitude", "0.1")
     assert refused(*call) == (
         1,
         "bouncing-ball: no 1-T orbit at Λ = 0.1 for r = 0.85: below the saddle-node "
@@ -192,26 +182,34 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
     ("arguments", "said"),
     [
         ("", "a command is missing, one of orbit, limits"),
-        ("orbit --amplitude 1", "--restitution --damping-ratio --measured-restitution is required"),
-        ("orbit --restitution 0.85", "required: --amplitude"),
-        ("permanent-contact --restitution 0.5", "required: --frequency-ratio"),
-        ("orbit --damping-ratio 0.1 --amplitude 1", "--damping-ratio needs --frequency-ratio"),
+        (
+            "law-orbit --amplitude 1",
+            "--restitution --damping-ratio --measured-restitution is required",
+        ),
+        ("law-orbit --restitution 0.85", "required: --amplitude"),
+        ("law-orbit --damping-ratio 0.1 --amplitude 1", "--damping-ratio needs --frequency-ratio"),
         ("@ --damping-ratio 0.1", "--damping-ratio: not allowed with argument --restitution"),
         ("@ --model spring-damper", "--model spring-damper needs --frequency-ratio"),
         ("@ --model restitution --frequency-ratio 3", "--frequency-ratio has no meaning"),
         ("@ --release force", "--release has no meaning for --model restitution"),
         ("@ --side all --index 2", "not allowed with argument --side"),
-        ("@ --tension 1", "unrecognized arguments: --tension 1: see bouncing-ball orbit --help"),
+        (
+            "@ --tension 1",
+            "unrecognized arguments: --tension 1: see bouncing-ball law-orbit --help",
+        ),
         ("@ --frequency 50", "arguments: --frequency 50; did you mean --frequency-ratio?"),
         ("@ 2", "unrecognized arguments: 2: --amplitude takes one value"),
         ("@ --release Force", "'displacement', 'force', 'approach'); did you mean force?"),
-        ("orbit --amplitude 1g", "'1g' is not a number in [1e-12, 1e+08]: give it without a unit"),
-        ("orbit --amplitude 1 --restitution 85", "not a number in (0, 1]: did you mean 0.85?"),
-        ("orbit --amplitude 1 --restitution 85%", "not a number in (0, 1]: did you mean 0.85?"),
+        (
+            "law-orbit --amplitude 1g",
+            "'1g' is not a number in [1e-12, 1e+08]: give it without a unit",
+        ),
+        ("law-orbit --amplitude 1 --restitution 85", "not a number in (0, 1]: did you mean 0.85?"),
+        ("law-orbit --amplitude 1 --restitution 85%", "not a number in (0, 1]: did you mean 0.85?"),
         ("@ --n 2.0", "'2.0' is not a whole number from 1 to 1000: did you mean 2?"),
         ("contact --measured-restitution 0.1 --release force", "r = 0.1 is not in (e⁻², 1]"),
         (
-            "simulate --restitution 0.5 --amplitude 1 --velocity 9",
+            "law-simulate --restitution 0.5 --amplitude 1 --velocity 9",
             "rises from the table has no impact: its velocity z′ = 9 is above that of the table, "
             "w′ = 1",
         ),
@@ -237,9 +235,9 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
 )
 def test_a_mistake_exits_2_with_one_line(refused, arguments, said):
     words = arguments.split()
-    start = {"@": ORBIT, "law": ("orbit", "--amplitude", "1", "--law")}
-    start["contact"] = ("orbit", "--amplitude", "9", "--frequency-ratio", "10")
-    start["free"] = ("orbit", "--amplitude", "1", *FREE)
+    start = {"@": ORBIT, "law": ("law-orbit", "--amplitude", "1", "--law")}
+    start["contact"] = ("law-orbit", "--amplitude", "9", "--frequency-ratio", "10")
+    start["free"] = ("law-orbit", "--amplitude", "1", *FREE)
     begin = start.get(words[0], words[:1]) if words else ()
     command = (*begin, *words[1:])
     status, line = refused(*command)
@@ -257,7 +255,7 @@ def test_a_mistake_exits_2_with_one_line(refused, arguments, said):
 )
 def test_no_traceback_and_no_warning_ever(outcome, ratio, release, r, amplitude, n, side):
     # Warnings are errors in this suite.
-    command = ["orbit", "--restitution", str(r), "--amplitude", str(amplitude), "--n", str(n)]
+    command = ["law-orbit", "--restitution", str(r), "--amplitude", str(amplitude), "--n", str(n)]
     command += ["--side", side, "--json"]
     if ratio is not None:
         command += ["--frequency-ratio", str(ratio), "--release", release]

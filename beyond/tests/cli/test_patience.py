@@ -17,7 +17,7 @@ from bouncing_ball.cli.patience import told_if_slow
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
-LONG = "simulate --amplitude 1.1 --law tsuji --restitution 0.85 --duration 0.1 --impacts 100000"
+LONG = "law-simulate --amplitude 1.1 --law tsuji --restitution 0.85 --duration 0.1 --impacts 100000"
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def test_a_command_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monk
         return simulate(*given)
 
     monkeypatch.setattr(Dynamics, "simulate", slow)
-    main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
+    main(["law-simulate", "--amplitude", "1", "--restitution", "0.5"])
     out, err = capfd.readouterr()
     assert out.startswith("status")
     assert 2 <= err.count("\n") <= 5
@@ -84,7 +84,7 @@ def test_an_interrupt_of_a_command_is_one_line(capsys, monkeypatch):
 
     monkeypatch.setattr(Dynamics, "simulate", interrupted)
     with pytest.raises(SystemExit) as end:
-        main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
+        main(["law-simulate", "--amplitude", "1", "--restitution", "0.5"])
     assert end.value.code == 130
     assert capsys.readouterr() == ("", "bouncing-ball: interrupted\n")
 

@@ -58,7 +58,7 @@ def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
         shape=(),
         durations=np.array([1.0]),
         phases=np.zeros(1),
-        _table_height=np.zeros_like,
+        _lam=np.zeros(1),
         _in_contact=lambda time: (-((time - top) ** 2), None),
     )
     assert abs(Orbit._contact_top(contact)) < 1e-13

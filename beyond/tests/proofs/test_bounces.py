@@ -1,11 +1,6 @@
-"""The reference numbers of bounces: against an independent integration, and as they are written."""
+"""The reference numbers of bounces: against an independent integration."""
 
-import csv
-import json
 import math
-import runpy
-import shutil
-from pathlib import Path
 
 import pytest
 from bouncing_ball_beyond.models.damping import Release
@@ -14,7 +9,6 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
 
-FOLDER = Path(__file__).parents[3] / "docs" / "bounces"
 G = 9.81
 
 
@@ -80,14 +74,3 @@ def test_a_hard_ball_loses_the_square_of_r():
     first, second = hard("0.5", "2", "9.81", 2)
     assert (rounded_ball(first.height, 3), rounded_ball(second.height, 3)) == ("0.500", "0.125")
     assert float(second.impact - first.impact) == pytest.approx(2 * math.sqrt(2 * 0.5 / G))
-
-
-def test_the_files_are_those_that_the_script_writes(tmp_path):
-    shutil.copy(FOLDER / "reference_numbers.py", tmp_path)
-    runpy.run_path(str(tmp_path / "reference_numbers.py"))["main"]()
-    for name in ("bounces.csv", "bounces.json"):
-        made = (tmp_path / "reference" / name).read_text()
-        assert made == (FOLDER / "reference" / name).read_text()
-    rows = json.loads((FOLDER / "reference" / "bounces.json").read_text())
-    with (FOLDER / "reference" / "bounces.csv").open() as file:
-        assert [{k: v for k, v in row.items() if v} for row in csv.DictReader(file)] == rows

@@ -6,6 +6,7 @@ which ``make test-engines`` writes. Call this script after it.
 """
 
 from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -155,6 +156,14 @@ def tables(name: str, data: xr.Dataset) -> dict[str, str]:
     return tables_by_suffix(*SHOWN[name].table(data))
 
 
+def drawn(name: str, data: xr.Dataset) -> Any:
+    """The figure of a dataset that has one."""
+    draw = SHOWN[name].draw
+    assert draw is not None
+    with style():
+        return draw(data)
+
+
 def pages() -> dict[str, str]:
     """The pages with their parts, which have the numbers of the data, by the names of the pages."""
     names = ("engine_steps", "measured", "shaker")
@@ -205,10 +214,11 @@ def main() -> None:
         for suffix, text in tables(name, data).items():
             write_text(DATA / f"{name}{suffix}", text)
         if shown.draw is not None:
-            with style():
-                figure = shown.draw(data)
+            figure = drawn(name, data)
+            # Another matplotlib may draw other pixels.
+            made = {"Title": shown.title, "matplotlib": version("matplotlib")}
             for suffix in (".png", ".svg"):
-                save(figure, DATA / f"{name}{suffix}", {"Title": shown.title})
+                save(figure, DATA / f"{name}{suffix}", made)
         print(f"data/{name}: pictures and tables")
     for page, text in pages().items():
         write_text(DOCS / page, text)

@@ -4,10 +4,7 @@ import functools
 from pathlib import Path
 
 import pytest
-from declared_artifacts import ARTIFACTS
-from jinja2 import BytecodeCache, Environment
-
-from bouncing_ball.beyond.exhibits import (
+from bouncing_ball_beyond.exhibits import (
     certified_verdicts_figures,
     contact_laws_figures,
     corrected_model_figures,
@@ -15,7 +12,10 @@ from bouncing_ball.beyond.exhibits import (
     measured_impacts_figures,
     proofs_figures,
 )
-from bouncing_ball.beyond.exhibits.certified_verdicts import certified_verdicts
+from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
+from declared_artifacts import ARTIFACTS
+from jinja2 import BytecodeCache, Environment
+
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.claims import tables as rows

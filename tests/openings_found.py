@@ -3,17 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
-
-from bouncing_ball.beyond.exhibits.cascade_of_flights import stiff_openings
-from bouncing_ball.long_run.destination import IMPACTS, final_motions
-from bouncing_ball.long_run.orbit_of_motion import of_motion
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.branches.following import branch_from
-from bouncing_ball.periodic.orbits.special import Special
-from bouncing_ball.periodic.orbits.steps import STEPS
+from bouncing_ball_beyond.exhibits.cascade_of_flights import stiff_openings
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
+from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
+from bouncing_ball_beyond.periodic.branches.following import branch_from
+from bouncing_ball_beyond.periodic.orbits.special import Special
+from bouncing_ball_beyond.periodic.orbits.steps import STEPS
 
 
 def threshold(r, ratio):

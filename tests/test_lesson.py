@@ -24,7 +24,7 @@ def test_the_lesson_prints_and_draws_what_it_says(tmp_path, monkeypatch):
 
 
 def test_the_lesson_shows_every_scene_of_the_stage():
-    scenes = json.loads(files("bouncing_ball.explorer").joinpath("scenes.json").read_text())
+    scenes = json.loads(files("bouncing_ball_beyond.explorer").joinpath("scenes.json").read_text())
     shown = re.findall(
         r"\(\.\./figures/beyond/explorer\.html#scene=(\w+)\)", PAGE.read_text("utf-8")
     )

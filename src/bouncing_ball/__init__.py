@@ -53,45 +53,48 @@ from typing import TYPE_CHECKING, Any
 
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
-    from bouncing_ball.accuracy.error_thresholds import error_thresholds as error_thresholds
-    from bouncing_ball.contacts.assess import assess_contact as assess_contact
-    from bouncing_ball.contacts.choose import choose_contact as choose_contact
-    from bouncing_ball.contacts.contact import Contact as Contact
-    from bouncing_ball.contacts.describe import describe_contact as describe_contact
-    from bouncing_ball.contacts.law_balls import contact_law as contact_law
-    from bouncing_ball.contacts.question import EngineSetup as EngineSetup
-    from bouncing_ball.contacts.question import Question as Question
-    from bouncing_ball.contacts.table import Table as Table
-    from bouncing_ball.contacts.write import write_contact as write_contact
+    from bouncing_ball_beyond.accuracy.error_thresholds import error_thresholds as error_thresholds
+    from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
+    from bouncing_ball_beyond.models.law_balls import contact_law as contact_law
+    from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
+    from bouncing_ball_beyond.models.laws.start_speed import (
+        LankaraniNikravesh as LankaraniNikravesh,
+    )
+    from bouncing_ball_beyond.models.makers import corrected as corrected
+    from bouncing_ball_beyond.models.makers import rigid as rigid
+    from bouncing_ball_beyond.models.makers import spring_damper as spring_damper
+    from bouncing_ball_beyond.models.rigid import RestitutionModel as RestitutionModel
+    from bouncing_ball_beyond.models.spring_damper import SpringDamper as SpringDamper
+    from bouncing_ball_beyond.motions.motion_of import basins as basins
+    from bouncing_ball_beyond.motions.motion_of import lyapunov_exponent as lyapunov_exponent
+    from bouncing_ball_beyond.motions.motion_of import motion_of as motion_of
+    from bouncing_ball_beyond.motions.motion_of import orbit_diagram as orbit_diagram
+    from bouncing_ball_beyond.motions.orbit_of_motion import orbit_of_motion as orbit_of_motion
+    from bouncing_ball_beyond.motions.over_time import drop as drop
+    from bouncing_ball_beyond.motions.over_time import history as history
+    from bouncing_ball_beyond.motions.over_time import simulate as simulate
+    from bouncing_ball_beyond.periodic.branches.follow import follow as follow
+    from bouncing_ball_beyond.periodic.branches.grazing import grazing_form as grazing_form
+    from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
+    from bouncing_ball_beyond.periodic.orbits.normal_form import normal_form as normal_form
+    from bouncing_ball_beyond.periodic.orbits_of_ball import limits as limits
+    from bouncing_ball_beyond.periodic.orbits_of_ball import orbit as orbit
+    from bouncing_ball_beyond.periodic.orbits_of_ball import orbits as orbits
+    from bouncing_ball_beyond.periodic.orbits_of_ball import permanent_contact as permanent_contact
+    from bouncing_ball_beyond.periodic.read_orbits import open as open
+    from bouncing_ball_beyond.periodic.read_orbits import read_orbits as read_orbits
+    from bouncing_ball_contacts.contact.assess import assess_contact as assess_contact
+    from bouncing_ball_contacts.contact.choose import choose_contact as choose_contact
+    from bouncing_ball_contacts.contact.contact import Contact as Contact
+    from bouncing_ball_contacts.contact.describe import describe_contact as describe_contact
+    from bouncing_ball_contacts.contact.question import EngineSetup as EngineSetup
+    from bouncing_ball_contacts.contact.question import Question as Question
+    from bouncing_ball_contacts.contact.table import Table as Table
+    from bouncing_ball_contacts.contact.write import write_contact as write_contact
+    from bouncing_ball_contacts.measured.fit import fit_contact as fit_contact
+
     from bouncing_ball.errors import ModelError as ModelError
     from bouncing_ball.errors import NoOrbitError as NoOrbitError
-    from bouncing_ball.long_run.motion_of import basins as basins
-    from bouncing_ball.long_run.motion_of import lyapunov_exponent as lyapunov_exponent
-    from bouncing_ball.long_run.motion_of import motion_of as motion_of
-    from bouncing_ball.long_run.motion_of import orbit_diagram as orbit_diagram
-    from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion as orbit_of_motion
-    from bouncing_ball.long_run.over_time import drop as drop
-    from bouncing_ball.long_run.over_time import history as history
-    from bouncing_ball.long_run.over_time import simulate as simulate
-    from bouncing_ball.measured.fit import fit_contact as fit_contact
-    from bouncing_ball.models.contact_model import ContactModel as ContactModel
-    from bouncing_ball.models.laws.start_speed import Flores as Flores
-    from bouncing_ball.models.laws.start_speed import LankaraniNikravesh as LankaraniNikravesh
-    from bouncing_ball.models.makers import corrected as corrected
-    from bouncing_ball.models.makers import rigid as rigid
-    from bouncing_ball.models.makers import spring_damper as spring_damper
-    from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
-    from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
-    from bouncing_ball.periodic.branches.follow import follow as follow
-    from bouncing_ball.periodic.branches.grazing import grazing_form as grazing_form
-    from bouncing_ball.periodic.branches_of_ball import branch as branch
-    from bouncing_ball.periodic.orbits.normal_form import normal_form as normal_form
-    from bouncing_ball.periodic.orbits_of_ball import limits as limits
-    from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
-    from bouncing_ball.periodic.orbits_of_ball import orbits as orbits
-    from bouncing_ball.periodic.orbits_of_ball import permanent_contact as permanent_contact
-    from bouncing_ball.periodic.read_orbits import open as open
-    from bouncing_ball.periodic.read_orbits import read_orbits as read_orbits
 
 __version__ = "0.1.0"
 

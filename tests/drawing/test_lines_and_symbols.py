@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
+from bouncing_ball_beyond.exhibits.contact_laws_figures import contact_laws
 from matplotlib.figure import Figure
 
 import bouncing_ball as bb
-from bouncing_ball.beyond.exhibits.contact_laws_figures import contact_laws
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
 from bouncing_ball.drawing.labels import _SYMBOLS, in_a_row

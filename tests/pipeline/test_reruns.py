@@ -89,8 +89,8 @@ def test_the_modules_of_a_stage_are_those_that_python_imports():
     ("module", "data"),
     [
         ("bouncing_ball.drawing.style", "drawing/style.mplstyle"),
-        ("bouncing_ball.explorer.document", "explorer/model.js"),
-        ("bouncing_ball.contacts.engines.engine", "contacts/engines/snippets/generic.txt"),
+        ("bouncing_ball_beyond.explorer.document", "explorer/model.js"),
+        ("bouncing_ball_contacts.engines.engine", "contacts/engines/snippets/generic.txt"),
     ],
 )
 def test_the_data_that_a_module_reads_belong_to_its_code(module, data):

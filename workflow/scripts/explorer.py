@@ -1,8 +1,9 @@
 """The explorer's page from its reference orbits."""
 
-from bouncing_ball.accuracy.errors import QUANTITIES
+from bouncing_ball_beyond.accuracy.errors import QUANTITIES
+from bouncing_ball_beyond.explorer.document import to_html
+
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.explorer.document import to_html
 from bouncing_ball.pipeline.jobs import logged, read_input
 
 with logged(snakemake) as lines:

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from bouncing_ball.beyond.exhibits.bounces_figures import drivers, in_javascript, rapier_974
+from bouncing_ball_contacts.documents.bounces_figures import drivers, in_javascript, rapier_974
+
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims

@@ -1,19 +1,31 @@
 """One subcommand of ``bouncing-ball``: its options, its answer, and the exit status."""
 
 import json
+from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 from bouncing_ball import __version__
-from bouncing_ball.cli.commands import COMMANDS, Program
+from bouncing_ball.cli.commands import Command, Program
+from bouncing_ball.cli.houses import commands, how_to_install
 from bouncing_ball.cli.interrupt import importing
 from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.cli.patience import told_if_slow
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
+COMMANDS: Mapping[str, Command] = commands()
+"""The subcommands of this house and of all houses that are installed, by name."""
+
 
 class _OfCommand(Parser):
     """The parser of a subcommand, which knows the options of the others."""
+
+    def _advice(self, unknown: list[str], given: Any) -> str:
+        command = COMMANDS[self.prog.split()[-1]]
+        known = self._option_string_actions
+        said = command.advice(unknown[0], given or (), known)
+        return said or super()._advice(unknown, given)
 
     def _elsewhere(self, unknown: str) -> str:
         name = unknown.partition("=")[0]
@@ -44,7 +56,7 @@ def parser(arguments: list[str]) -> Parser:
     top = Parser(
         prog="bouncing-ball",
         description="Orbits and other motions of a ball on a vibrating table. Quantities are "
-        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g. Only design has units.",
+        "dimensionless, unless a command says otherwise: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
         epilog="bouncing-ball COMMAND --help explains a command and gives examples",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
@@ -64,6 +76,9 @@ def answer(arguments: list[str]) -> None:
     """Answer one subcommand; exit with 1 if there is no answer, and with 2 on a mistake."""
     top = parser(arguments)
     first = arguments[0].partition("=")[0] if arguments else ""
+    if missing := how_to_install(first):
+        if first not in COMMANDS:
+            fail(missing, status=2)
     if first.startswith("-") and first not in top._option_string_actions:
         top.error(f"a command is missing before {first}, one of {', '.join(COMMANDS)}")
     given = vars(top.parse_args(arguments))
@@ -83,7 +98,10 @@ def answer(arguments: list[str]) -> None:
             else:
                 text = "\n".join(program.lines(found) if program.lines else [])
     except ValueError as error:
-        text = error.shown(option) if isinstance(error, ParameterError) else str(error)
+        names = COMMANDS[command].names
+        text = str(error)
+        if isinstance(error, ParameterError):
+            text = error.shown(lambda name: option(names.get(name, name)))
         if as_json:
             say(json.dumps({"error": text}))
         fail(text, status=1 if isinstance(error, NoOrbitError) else 2)

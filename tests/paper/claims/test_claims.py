@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from bouncing_ball_beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
 from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
 from bouncing_ball.paper.claims.parameters import PAPER, digest, of_dataset

@@ -4,11 +4,15 @@ from functools import partial
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbit
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from scipy.optimize import brentq
 
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
     altered_ends,
@@ -17,10 +21,6 @@ from bouncing_ball.paper.claims.forensics import (
     weightless_orbits,
 )
 from bouncing_ball.paper.claims.tables import forensics as rows
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
-from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.orbits.orbit import Orbit
 
 ZETA = float(damping_ratio(0.85))
 WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"

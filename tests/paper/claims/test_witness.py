@@ -5,9 +5,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import witness as witnesses
 from bouncing_ball.paper.claims.tables import witness as rows
@@ -19,7 +20,6 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
-from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 
 
 @pytest.fixture(scope="module")

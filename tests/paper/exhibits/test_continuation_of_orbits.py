@@ -2,13 +2,21 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.branches.following import orbits_along
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import (
+    period_doubling,
+    saddle_node,
+)
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point, excess_angle
+from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     both_domains,
     first_limits,
@@ -16,14 +24,6 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
-from bouncing_ball.periodic.branches.following import orbits_along
-from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
-    period_doubling,
-    saddle_node,
-)
-from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, excess_angle
-from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
-from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.

@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.accuracy.errors import Quantity, modulus, relative_errors
+from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 
-from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.paper.exhibits.kinds_of_motion import kinds_of_motion
-from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.lowest_period_doubling import (
     lowest_along_ratio,
     lowest_period_doublings,
 )
-from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

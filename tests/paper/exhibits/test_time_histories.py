@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.time_histories import both_histories, contact_history
-from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.

@@ -10,20 +10,20 @@ from functools import partial
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.linear_flow import ContactFlow
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.linear_flow import ContactFlow
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "rows": Variable("rows of the table that are compared", equation="Table 1"),

@@ -15,14 +15,16 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
+from bouncing_ball_beyond.models.restitution import RestitutionDynamics
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.sequence import Status
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.linear_contact import LinearContactDynamics
-from bouncing_ball.models.restitution import RestitutionDynamics
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import (
@@ -32,8 +34,6 @@ from bouncing_ball.paper.claims.formulas_in_use import (
     largest_defect,
     random_orbits,
 )
-from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "formula": Variable("printed formula"),

@@ -10,24 +10,24 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from bouncing_ball_beyond.accuracy.errors import Quantity, relative_errors
+from bouncing_ball_beyond.accuracy.simple_models import search
+from bouncing_ball_beyond.models import permanent_contact as threshold
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.contacts_and_flights import Impact
+from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball_beyond.models.flight import Flight
+from bouncing_ball_beyond.models.restitution import RestitutionDynamics
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch as rigid
+from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import ImpactMap
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
-from bouncing_ball.accuracy.errors import Quantity, relative_errors
-from bouncing_ball.accuracy.simple_models import search
-from bouncing_ball.models import permanent_contact as threshold
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.contacts_and_flights import Impact
-from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball.models.flight import Flight
-from bouncing_ball.models.restitution import RestitutionDynamics
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact import restitution_branch as rigid
-from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.one_impact.restitution_branch import ImpactMap
-from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
 _RATIOS = np.geomspace(1.0, 1e3, 31)

@@ -10,23 +10,23 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.claims import FORMULA
-from bouncing_ball.periodic.one_impact import restitution_branch
-from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.one_impact.spring_damper_branch import (
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch
+from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     excess_angle,
     nearest_excess,
     orbits_on_branch,
 )
-from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.stability import Bifurcation
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
+
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.claims import FORMULA
 
 VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),

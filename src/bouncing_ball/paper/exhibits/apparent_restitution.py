@@ -4,22 +4,22 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.branches.observables import OBSERVED, columns
+from bouncing_ball_beyond.periodic.one_impact import n_t
 from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.datasets.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
     require_amplitude,
     require_any_orbit,
 )
-from bouncing_ball.periodic.branches.observables import OBSERVED, columns
-from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "labelled": Variable("whether the figure marks this frequency ratio"),

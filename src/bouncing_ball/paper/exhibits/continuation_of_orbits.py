@@ -4,6 +4,34 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.branches import observables
+from bouncing_ball_beyond.periodic.branches.following import Followed, orbits_along
+from bouncing_ball_beyond.periodic.branches.observables import (
+    PLACE,
+    columns,
+    joined,
+    n_t_columns,
+    no_branch,
+)
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbits
+from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
+    excess_angle,
+    orbits_on_branch,
+)
+from bouncing_ball_beyond.periodic.one_impact.whole_branch import (
+    NoBranch,
+    branches_through,
+    starts_of_branches,
+    whole_branches,
+)
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.saved import KEPT
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 from bouncing_ball.datasets import LONG
 from bouncing_ball.datasets.parameters import (
@@ -16,10 +44,6 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.branch import Branch, ContinuationError
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     BranchEnd,
@@ -28,27 +52,6 @@ from bouncing_ball.paper.exhibits.orbit_parameters import (
     BranchRatios,
 )
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
-from bouncing_ball.periodic.branches import observables
-from bouncing_ball.periodic.branches.following import Followed, orbits_along
-from bouncing_ball.periodic.branches.observables import (
-    PLACE,
-    columns,
-    joined,
-    n_t_columns,
-    no_branch,
-)
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbits
-from bouncing_ball.periodic.one_impact.spring_damper_branch import excess_angle, orbits_on_branch
-from bouncing_ball.periodic.one_impact.whole_branch import (
-    NoBranch,
-    branches_through,
-    starts_of_branches,
-    whole_branches,
-)
-from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.saved import KEPT
-from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "absence": Variable("why there is no stable range"),

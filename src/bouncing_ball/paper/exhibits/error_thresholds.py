@@ -3,22 +3,22 @@
 from typing import Annotated
 
 import xarray as xr
+from bouncing_ball_beyond.accuracy.errors import Quantity
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
 from pydantic import Strict
 
-from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitErrors,
     OrbitsAlongRatio,
     require_any_orbit,
 )
-from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "restitution_max_height": Variable(

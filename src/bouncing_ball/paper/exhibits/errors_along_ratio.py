@@ -4,11 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-
-from bouncing_ball.accuracy.errors import Quantity, modulus
-from bouncing_ball.accuracy.simple_models import search
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball_beyond.accuracy.errors import Quantity, modulus
+from bouncing_ball_beyond.accuracy.simple_models import search
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.rigid import RestitutionModel
 
 
 def errors_along_ratio(

@@ -1,10 +1,10 @@
 """Periodic, subharmonic and chaotic motions of the restitution model, one ball for each.
 
 A few balls that start alike are followed from impact to impact on tables of different Λ, until it
-is known after how many impacts their motions repeat (:mod:`bouncing_ball.long_run.recurrence`). The
+is known after how many impacts their motions repeat (:mod:`bouncing_ball_beyond.motions.recurrence`). The
 simulation then shows whether a ball is back in its state up to rounding. If a motion does not
 repeat, a small deviation of the ball is mapped from impact to impact by the derivative of the map
-(:mod:`bouncing_ball.long_run.lyapunov`); in a chaotic motion the deviation grows exponentially.
+(:mod:`bouncing_ball_beyond.motions.lyapunov`); in a chaotic motion the deviation grows exponentially.
 
 A ball that sticks leaves in a state that does not depend on its earlier motion, so that a motion
 that sticks again and again repeats in the end. The amplitudes of the run are chosen so that no ball
@@ -15,14 +15,14 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.sequence import ImpactSequence
+from bouncing_ball_beyond.motions.destination import final_motions
+from bouncing_ball_beyond.motions.motions import Kind, Motions
 
 from bouncing_ball.datasets.parameters import Amplitude, Many, Parameters, Restitution, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
-from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.motions import Kind, Motions
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.sequence import ImpactSequence
 from bouncing_ball.numerics.elementary import reduce_angle
 
 VARIABLES = {

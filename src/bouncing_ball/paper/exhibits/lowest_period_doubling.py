@@ -6,13 +6,13 @@ paper says that it rises (Figs. 8 and 9, Table 1).
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
 from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Parameters, Span
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.one_impact import n_t
 
 
 class FamiliesAlongRatio(Parameters):

@@ -8,6 +8,12 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import saddle_node
+from bouncing_ball_beyond.periodic.orbits.stability import Side
 from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
@@ -24,12 +30,6 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact.restitution_branch import saddle_node
-from bouncing_ball.periodic.orbits.stability import Side
 
 # The next frequency ratio that has an orbit is sought among so many, up to the largest, and then
 # so many times between two of them, which gives six digits.

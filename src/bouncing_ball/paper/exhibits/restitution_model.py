@@ -4,17 +4,17 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch as orbits
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import ImpactMap
+from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.special import Special
 
 from bouncing_ball.datasets.parameters import Samples, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact import restitution_branch as orbits
-from bouncing_ball.periodic.one_impact.restitution_branch import ImpactMap
-from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
-from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.special import Special
 
 VARIABLES = {
     "grazing_amplitude": Variable(

@@ -2,17 +2,17 @@
 
 import numpy as np
 import xarray as xr
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.parameters import Many, Samples
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.contact_model import ContactModel
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import ContactRatio, OrbitParameters
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
     "table_phase": Variable("phase of the table, whose height is Λ sin τ", symbol="τ", units="rad"),

@@ -1,0 +1,22 @@
+"""A doubling cascade: the motion repeats after 1, 2, 4, 8 … impacts, and then not at all."""
+
+import bouncing_ball_beyond
+import matplotlib.pyplot as plt
+import numpy as np
+
+amplitudes = np.linspace(1.48, 1.76, 400)
+ball = bouncing_ball_beyond.rigid(restitution=0.5)
+beside = bouncing_ball_beyond.limits(ball).period_doubling.phase + 0.01
+impacts = bouncing_ball_beyond.motion_of(ball, amplitude=amplitudes, phase=beside).impacts
+found = bouncing_ball_beyond.simulate(ball, amplitude=amplitudes, phase=beside, impacts=600)
+figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
+axes.plot(amplitudes, found.impact_phase[:, -64:] / np.pi, ",", color="black")
+for number in (2, 4, 8):
+    first = float(impacts.amplitude[impacts == number].min())
+    axes.axvline(first, color="grey", linewidth=0.8)
+    axes.text(first, 0.48, f"{number} ", color="grey", ha="right")
+axes.set(xlabel="amplitude Λ (lines: the motion repeats after 2, 4, 8 impacts)")
+axes.set(
+    ylabel="phase of impact over π", title="r = 0.5, from balls that start beside the 1-T orbit"
+)
+figure.savefig("doubling_cascade.png")

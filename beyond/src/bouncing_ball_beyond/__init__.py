@@ -1,0 +1,100 @@
+"""Past the paper: how stiff is stiff enough, for any orbit and any contact law.
+
+The house on the plot that stands on ``bouncing_ball``, the replication. It has what the paper does
+not ask for: contacts of other laws, the corrected restitution model, periodic orbits with any
+number of impacts, which are followed along any parameter, the motions on which balls end, and
+enclosures that prove the paper's printed numbers.
+
+A ball is made once and handed to functions::
+
+    ball = bouncing_ball_beyond.contact_law("tsuji", restitution=0.85, duration=0.1)
+    one = bouncing_ball_beyond.orbit(ball, n=1, amplitude=1.0)
+    bouncing_ball_beyond.follow(one, along="amplitude", to=1.3).plot()
+    bouncing_ball_beyond.motion_of(ball, amplitude=1.1)
+
+A list or an array in place of a number becomes an axis of the result. All quantities are
+dimensionless, as in ``bouncing_ball``.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+# What type checkers, editors and the linter of imports see.
+if TYPE_CHECKING:
+    from bouncing_ball_beyond.accuracy.error_thresholds import error_thresholds as error_thresholds
+    from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
+    from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
+    from bouncing_ball_beyond.models.laws.start_speed import (
+        LankaraniNikravesh as LankaraniNikravesh,
+    )
+    from bouncing_ball_beyond.models.makers import corrected as corrected
+    from bouncing_ball_beyond.models.makers import rigid as rigid
+    from bouncing_ball_beyond.models.makers import spring_damper as spring_damper
+    from bouncing_ball_beyond.models.rigid import RestitutionModel as RestitutionModel
+    from bouncing_ball_beyond.models.spring_damper import SpringDamper as SpringDamper
+    from bouncing_ball_beyond.motions.motion_of import basins as basins
+    from bouncing_ball_beyond.motions.motion_of import lyapunov_exponent as lyapunov_exponent
+    from bouncing_ball_beyond.motions.motion_of import motion_of as motion_of
+    from bouncing_ball_beyond.motions.motion_of import orbit_diagram as orbit_diagram
+    from bouncing_ball_beyond.motions.orbit_of_motion import orbit_of_motion as orbit_of_motion
+    from bouncing_ball_beyond.motions.over_time import drop as drop
+    from bouncing_ball_beyond.motions.over_time import history as history
+    from bouncing_ball_beyond.motions.over_time import simulate as simulate
+    from bouncing_ball_beyond.periodic.branches.follow import follow as follow
+    from bouncing_ball_beyond.periodic.branches.grazing import grazing_form as grazing_form
+    from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
+    from bouncing_ball_beyond.periodic.law_balls import contact_law as contact_law
+    from bouncing_ball_beyond.periodic.orbits.normal_form import normal_form as normal_form
+    from bouncing_ball_beyond.periodic.orbits_of_ball import limits as limits
+    from bouncing_ball_beyond.periodic.orbits_of_ball import orbit as orbit
+    from bouncing_ball_beyond.periodic.orbits_of_ball import orbits as orbits
+    from bouncing_ball_beyond.periodic.orbits_of_ball import permanent_contact as permanent_contact
+    from bouncing_ball_beyond.periodic.read_orbits import open as open
+    from bouncing_ball_beyond.periodic.read_orbits import read_orbits as read_orbits
+
+__version__ = "0.1.0"
+
+# The public names and the modules in which they are defined.
+_MODULES = {
+    "ContactModel": "models.contact_model",
+    "Flores": "models.laws.start_speed",
+    "LankaraniNikravesh": "models.laws.start_speed",
+    "RestitutionModel": "models.rigid",
+    "SpringDamper": "models.spring_damper",
+    "basins": "motions.motion_of",
+    "branch": "periodic.branches_of_ball",
+    "contact_law": "periodic.law_balls",
+    "corrected": "models.makers",
+    "drop": "motions.over_time",
+    "error_thresholds": "accuracy.error_thresholds",
+    "follow": "periodic.branches.follow",
+    "grazing_form": "periodic.branches.grazing",
+    "history": "motions.over_time",
+    "limits": "periodic.orbits_of_ball",
+    "lyapunov_exponent": "motions.motion_of",
+    "motion_of": "motions.motion_of",
+    "normal_form": "periodic.orbits.normal_form",
+    "open": "periodic.read_orbits",
+    "orbit": "periodic.orbits_of_ball",
+    "orbit_diagram": "motions.motion_of",
+    "orbit_of_motion": "motions.orbit_of_motion",
+    "orbits": "periodic.orbits_of_ball",
+    "permanent_contact": "periodic.orbits_of_ball",
+    "read_orbits": "periodic.read_orbits",
+    "rigid": "models.makers",
+    "simulate": "motions.over_time",
+    "spring_damper": "models.makers",
+}
+
+__all__ = list(_MODULES)
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported on first use."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,138 @@
+"""The frequency ratio ϖ of a contact above which a rigid ball replaces it within a tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    TOLERANCE,
+    AmplitudeOfOrbitAxis,
+    FamilyAxis,
+    ReleaseName,
+    ToleranceAxis,
+    checked,
+    chosen,
+)
+from bouncing_ball.datasets.labelled import Grid
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.drawing.result import Result
+from bouncing_ball.errors import ParameterError, suggesting
+from bouncing_ball_beyond.accuracy.errors import Quantity
+from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
+from bouncing_ball_beyond.accuracy.thresholds import RATIOS
+from bouncing_ball_beyond.models.ball import Ball, a_known_ball
+from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+
+
+@suggesting
+def error_thresholds(
+    ball: Ball,
+    n: FamilyAxis = 1,
+    *,
+    amplitude: AmplitudeOfOrbitAxis,
+    tolerance: ToleranceAxis = 0.01,
+    quantities: Sequence[str] | None = None,
+    release: ReleaseName = "displacement",
+) -> Result:
+    """The ϖ above which the restitution model is accurate for a contact with a spring and a damper.
+
+    The contact has the r of the ball as the restitution coefficient of a free impact. The error of
+    a quantity is its value on the contact minus its value in the simple model, over the latter
+    (Eqs. 37-38). An engineer's contact is assessed by deviations, over the value on the contact
+    instead, so that its thresholds are others: an error e here is -e/(1 + e) there.
+
+    Parameters
+    ----------
+    ball : Ball
+        A ball made by :func:`bouncing_ball_beyond.rigid`.
+    n : int or array of int
+        Index n of the family.
+    amplitude : float or array
+        Excitation amplitude Λ > 0 of the stable orbit.
+    tolerance : float or array
+        Largest modulus of this error.
+    quantities : sequence of str, optional
+        The quantities compared; by default all: "max_height", "bounce_velocity", "phase",
+        "apparent_restitution", "saddle_node", "period_doubling" and "permanent_contact".
+    release : str
+        Where a contact ends, "displacement" or "force".
+
+    Returns
+    -------
+    Result
+        ``error_threshold``, ϖ between 1 and 10⁶, and ``threshold_status``: "found", "within" the
+        tolerance at every ϖ, or "outside" at the largest ϖ; the threshold is then NaN. The last
+        axes are ``simple``, the restitution model and the corrected one, and ``quantity``.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is of a wrong type or shape, or out of range, or the ball is not rigid.
+
+    Examples
+    --------
+    The paper's threshold of Fig. 14, printed as "≈ 82":
+
+    >>> from bouncing_ball import rigid
+    >>> found = error_thresholds(rigid(restitution=0.65), amplitude=1.0, quantities=["max_height"])
+    >>> found.error_threshold.values.round(3).tolist()
+    [[82.177], [2.29]]
+    """
+    if not isinstance(a_known_ball(ball), RestitutionModel):
+        raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
+    family = checked("n", n, FAMILY)
+    lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    level = checked("tolerance", tolerance, TOLERANCE)
+    rule = Release.of(chosen("release", release, [str(each) for each in LINEAR]))
+    asked = _names(quantities)
+    grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
+    found = _on_grid(grid, asked, rule)
+    return Result.of(grid.unfold(found), "error_thresholds")
+
+
+def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:
+    """Thresholds and statuses over (case, simple, quantity), a search for each tolerance."""
+    zeta = damping_ratio(grid.row("restitution"), release)
+    n = grid.row("n")
+    amplitude = grid.row("amplitude")
+    tolerance = grid.row("tolerance")
+    dims = (CASE, "simple", "quantity")
+    threshold = np.full((grid.size, len(SIMPLE), len(quantities)), np.nan)
+    status = np.full(threshold.shape, "", dtype=object)
+    for level in np.unique(tolerance):
+        here = tolerance == level
+        found = search(
+            zeta=zeta[here],
+            rule=release,
+            n=n[here],
+            amplitude=amplitude[here],
+            ratios=RATIOS,
+            tolerance=float(level),
+            quantities=quantities,
+        )
+        threshold[here] = np.moveaxis(found.threshold, -1, 0)
+        status[here] = np.moveaxis(found.status, -1, 0)
+    return described(
+        {"error_threshold": (dims, threshold), "threshold_status": (dims, status.astype(str))},
+        {"simple": list(SIMPLE), "quantity": quantities},
+    )
+
+
+def _names(quantities: Any) -> list[str]:
+    if quantities is None:
+        return [str(each) for each in Quantity]
+    try:
+        names = [quantities] if isinstance(quantities, str) else list(quantities)
+    except TypeError:
+        names = [quantities]
+    if not names:
+        raise ParameterError("{quantities} has no entries")
+    return [chosen("quantities", name, [str(each) for each in Quantity]) for name in names]

@@ -1,0 +1,132 @@
+"""The options of the model of the impact, and the ball that they describe."""
+
+from typing import Any
+
+from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings
+from bouncing_ball.datasets.arguments import (
+    DAMPING_RATIO,
+    FREQUENCY_RATIO,
+    POSITIVE,
+    RESTITUTION,
+    ReleaseName,
+)
+from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball_beyond.cli.options import add_assignments, option
+from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
+from bouncing_ball_beyond.models.named_laws import LAWS, law_named
+from bouncing_ball_beyond.periodic.law_balls import contact_law
+
+MODELS = ("restitution", "spring-damper", "corrected")
+
+
+def add_contact(parser: Parser, *, with_ratio: bool) -> None:
+    """Add the options for the loss of an impact, the release and, if asked for, the ratio ϖ."""
+    texts = meanings(spring_damper)
+    add_number(parser, "restitution", RESTITUTION, texts["restitution"])
+    if with_ratio:
+        add_number(parser, "frequency_ratio", FREQUENCY_RATIO, texts["frequency_ratio"])
+    add_choice(parser, "release", Release, texts["release"])
+    add_number(parser, "damping_ratio", DAMPING_RATIO, texts["damping_ratio"])
+    add_number(parser, "measured_restitution", RESTITUTION, texts["measured_restitution"])
+
+
+def add_ball(parser: Parser) -> None:
+    """Add the options of :func:`ball_of`."""
+    add_contact(parser, with_ratio=True)
+    default = 'By default "spring-damper" if ϖ is given, and otherwise "restitution".'
+    add_choice(parser, "model", MODELS, f'"restitution", "spring-damper" or "corrected". {default}')
+    names = f"Laws: {', '.join(LAWS)}."
+    text = f"Name of a contact law, in place of the linear spring and damper. {names}"
+    parser.add_argument(option("law"), metavar="X", help=text)
+    by_name = "Parameters of the contact law by name, such as stiffness=1000."
+    add_assignments(parser, "parameters", by_name)
+    texts = meanings(contact_law)
+    add_number(parser, "duration", POSITIVE, texts["duration"])
+    add_number(parser, "speed", POSITIVE, texts["speed"])
+
+
+def ball_of(
+    *,
+    restitution: float | None,
+    frequency_ratio: float | None,
+    release: ReleaseName | None,
+    damping_ratio: float | None,
+    measured_restitution: float | None,
+    model: str | None,
+    law: str | None,
+    parameters: dict[str, float] | None,
+    duration: float | None,
+    speed: float | None,
+) -> Ball:
+    """The ball that the options describe.
+
+    Raises
+    ------
+    ModelError
+        If an option is missing or contradicts another.
+    """
+    losses: dict[str, Any] = {
+        "restitution": restitution,
+        "damping_ratio": damping_ratio,
+        "measured_restitution": measured_restitution,
+    }
+    of_law = {"parameters": parameters, "duration": duration, "speed": speed}
+    if law is not None:
+        linear = {"frequency_ratio": frequency_ratio, **losses}
+        return _ball_of_law(law, model, linear, release, of_law)
+    _refuse(of_law, "needs {law}")
+    loss = the_loss(restitution, damping_ratio, measured_restitution)
+    kind = model or ("restitution" if frequency_ratio is None else "spring-damper")
+    if kind == "restitution":
+        instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
+        _refuse({"damping_ratio": damping_ratio}, instead)
+        contact = {"frequency_ratio": frequency_ratio, "release": release}
+        _refuse(contact, "has no meaning for {model} restitution, which has no contact")
+        return rigid(restitution=losses[loss])
+    if frequency_ratio is None:
+        raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
+    ball = spring_damper(
+        frequency_ratio=frequency_ratio, release=release or "displacement", **losses
+    )
+    return corrected(ball) if kind == "corrected" else ball
+
+
+def _ball_of_law(
+    law: str,
+    model: str | None,
+    linear: dict[str, float | None],
+    release: ReleaseName | None,
+    of_law: dict[str, Any],
+) -> Ball:
+    if any(linear[name] is not None for name in LOSSES):
+        # At most one of them is allowed.
+        the_loss(*(linear[name] for name in LOSSES))
+    of_this_law = law_named(law).parameter_names()
+    if model in ("restitution", "spring-damper"):
+        instead = "give corrected, or no {model} for the law itself"
+        raise ParameterError(f"{{model}} {model} has no {{law}}: {instead}")
+    restitution = linear.pop("restitution")
+    instead = "give {parameters}, or {restitution} and {duration}"
+    _refuse(linear, f"is not allowed with {{law}} {law}: {instead}")
+    by_name = of_law.pop("parameters") or {}
+    named = {name.replace("-", "_"): value for name, value in by_name.items()}
+
+    def shown(name: str) -> str:
+        """The option for an argument of the call; the parameters of the law are set by name."""
+        by_name = name in of_this_law or name in named
+        return f"{option('parameters')} {name.replace('_', '-')}" if by_name else option(name)
+
+    try:
+        ball = contact_law(law, restitution=restitution, release=release, **of_law, **named)
+    except ParameterError as error:
+        raise ModelError(error.shown(shown)) from None
+    return corrected(ball) if model == "corrected" else ball
+
+
+def _refuse(options: dict[str, Any], why: str) -> None:
+    """Raise :class:`ParameterError` for the first of these options that is given."""
+    for name, value in options.items():
+        if value is not None:
+            raise ParameterError(f"{{{name}}} {why}")

@@ -1,0 +1,89 @@
+"""The options of subcommands that the root's commands do not have."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from bouncing_ball.cli import options
+from bouncing_ball.cli.options import Parser
+from bouncing_ball.errors import Range
+
+NAMES = {"parameters": "set", "amplitudes": "amplitude"}
+"""The options that are not called as their parameters."""
+
+
+def option(name: str) -> str:
+    """The option for a parameter.
+
+    Examples
+    --------
+    >>> option("damping_ratio"), option("parameters")
+    ('--damping-ratio', '--set')
+    """
+    return options.option(NAMES.get(name, name))
+
+
+def add_file(parser: Parser, name: str, text: str) -> None:
+    """Add an option for a file that is written."""
+    parser.add_argument(option(name), dest=name, type=_path, metavar="FILE", help=_help(text))
+
+
+def _path(text: str) -> Path:
+    """The path of a file."""
+    # An empty text would be the path of the current folder.
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty")
+    return Path(text)
+
+
+def add_interval(parser: Parser, name: str, allowed: Range, text: str) -> None:
+    """Add a required option for two numbers in a range."""
+    parser.add_argument(
+        option(name),
+        dest=name,
+        type=options._within(allowed),
+        nargs=2,
+        metavar=("FROM", "TO"),
+        required=True,
+        help=_help(text),
+    )
+
+
+def add_assignments(parser: Parser, name: str, text: str) -> None:
+    """Add an option for assignments such as stiffness=1000, which may be repeated."""
+    parser.add_argument(
+        option(name),
+        dest=name,
+        type=_assignment,
+        action=_Assignments,
+        metavar="NAME=NUMBER",
+        help=_help(text),
+    )
+
+
+def _assignment(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    number = options._number(value)
+    if not name.strip() or number not in Range():
+        why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
+        if "=" in value:
+            why += ": repeat the option for each parameter"
+        elif "=" in text:
+            why += options._plain(value, Range())
+        raise argparse.ArgumentTypeError(why)
+    return name.strip(), number
+
+
+class _Assignments(argparse.Action):
+    """Collects assignments to different names in a dictionary."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        found = getattr(namespace, self.dest) or {}
+        if values[0] in found:
+            parser.error(f"argument {option_string}: {values[0]} is given twice")
+        setattr(namespace, self.dest, found | {values[0]: values[1]})
+
+
+def _help(text: str) -> str:
+    # argparse fills in what follows a percent sign.
+    return text.replace("%", "%%")

@@ -1,0 +1,79 @@
+"""The contact laws by their names.
+
+A law is registered in one place, :data:`LAWS`. A house above this one that has further laws makes a
+registry of both, by :func:`by_name`, and hands it to :func:`law_named`.
+"""
+
+from collections.abc import Mapping
+
+from bouncing_ball.errors import one_of
+from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
+from bouncing_ball_beyond.models.laws.hertzian import (
+    HuntCrossley,
+    KuwabaraKono,
+    LinearHuntCrossley,
+    Tsuji,
+)
+from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
+
+def by_name(*laws: type[ContactLaw]) -> dict[str, type[ContactLaw]]:
+    """Laws by their names.
+
+    Raises
+    ------
+    ModelError
+        If a law does not declare the units of all its parameters.
+    """
+    for law in laws:
+        law.require_units()
+    return {law.name: law for law in laws}
+
+
+_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
+LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash)
+"""The laws by their names on the command line and in calls."""
+
+
+_MODELS = {Tsuji.name: "hertz"}
+_IN_WORDS = {Tsuji.name: "Hertz contact with Tsuji's damping"}
+
+
+def model_name(law: ContactLaw) -> str:
+    """The name of the exact model of a law among the models of a contact.
+
+    Examples
+    --------
+    >>> model_name(Tsuji(1.0, 0.1)), model_name(HuntCrossley(1.0, 0.1))
+    ('hertz', 'hunt-crossley')
+    """
+    return _MODELS.get(law.name, law.name)
+
+
+def contact_in_words(law: ContactLaw) -> str:
+    """The contact of a law as a sentence names it.
+
+    Examples
+    --------
+    >>> contact_in_words(HuntCrossley(1.0, 0.1))
+    'hunt-crossley contact'
+    """
+    return _IN_WORDS.get(law.name, f"{law.name} contact")
+
+
+def law_named(name: str, laws: Mapping[str, type[ContactLaw]] = LAWS) -> type[ContactLaw]:
+    """The class of the contact law with this name in a registry, by default that of this house.
+
+    Raises
+    ------
+    ModelError
+        If there is no such law.
+
+    Examples
+    --------
+    >>> law_named("tsuji").__name__
+    'Tsuji'
+    """
+    return one_of("contact law", name, laws)

@@ -1,0 +1,220 @@
+"""Quantities of orbits, and of branches with their special orbits and ends, as datasets have them.
+
+The variables of a branch are the observables along it, over the dimension ``point``, and the place
+of each special orbit, over ``special``: its bifurcations, and the grazing orbits, at which the
+orbits become inadmissible.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import Variable
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.periodic.branches.following import Followed, unrolled
+from bouncing_ball_beyond.periodic.orbits.balls import Balls
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.saved import columns_of
+from bouncing_ball_beyond.periodic.orbits.special import Special
+
+VARIABLES = {
+    "special": Variable("special point of the branch, in order of arclength"),
+    "special_kind": Variable("kind of special point"),
+    "special_amplitude": Variable("excitation amplitude at the special point", symbol="Λ"),
+    "special_phase": Variable(
+        "phase at the special point", symbol="φ", units="rad", equation="Eq. 21"
+    ),
+    "special_contact_duration": Variable(
+        "contact duration at the special point", symbol="τ_b", equation="Eq. 23", budget=1e-12
+    ),
+    "special_arclength": Variable(
+        "arclength of the branch up to the special point, over that of the whole branch",
+        budget=1e-4,
+        scale="1",
+    ),
+    "special_point": Variable("number of the last point of the branch before the special orbit"),
+    "special_residual": Variable(
+        "residual of the extended system at the special point", budget=1e-12, scale="1"
+    ),
+    "multiplier": Variable("Floquet multiplier, the larger modulus first", symbol="μ"),
+    "multiplier_real": Variable("real part of the Floquet multiplier", symbol="Re μ"),
+    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
+    "residual": Variable(
+        "largest defect of the orbit equations", equation="Eqs. 21-26", budget=1e-12, scale="1"
+    ),
+    "digits_left": Variable(
+        "certain decimal digits of the states, see Orbit.digits_left", budget=math.inf
+    ),
+    "end": Variable("end of the branch"),
+    "end_reason": Variable("why the branch ends there"),
+}
+
+OBSERVED = (
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+)
+"""The quantities of orbits along a branch or along ϖ."""
+
+PLACE = ("amplitude", "phase", "contact_duration")
+"""The quantities of special orbits that the datasets contain."""
+
+
+def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
+    """The named quantities of orbits, with the stability and the admissibility of the orbits.
+
+    Every array has the shape of the orbits.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
+    >>> found = columns(Orbit.of(RestitutionModel(1.0), 1, 0.5, np.pi / 2), "phase")
+    >>> found
+    {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
+    """
+    judged = {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
+    return {name: getattr(orbit, name) for name in names} | judged
+
+
+def branch_variables(found: Followed) -> dict[str, Any]:
+    """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends,
+    as the variables and the coordinates of a dataset.
+
+    Over ``point``, they have each parameter that varies, ``stable``, ``admissible``, ``residual``
+    and ``digits_left``, and over (point, impact) the observables of the orbits, with phases that
+    pass ±π continuously. The multipliers are over (point, multiplier), ``special_…`` over
+    ``special``, of which phases and durations are over (special, impact) too, and ``end_reason``
+    over ``end``. ``special_point`` is the number of the last point before a special orbit. The
+    variables of :mod:`~bouncing_ball_beyond.periodic.orbits.saved` are among them, so that the
+    orbits come back.
+    """
+    special = _special_places(found)
+    orbits = found.with_special
+    if np.any(np.diff(special.order) < 0):
+        count = len(found)
+        orbits = orbits[np.concatenate([np.arange(count), count + special.order])]
+    points = np.concatenate([found.branch.points, special.points])
+    ends = [str(found.branch.start), str(found.branch.end)]
+    return _in_columns(orbits, unrolled(found.problem, points, orbits), special, ends)
+
+
+class _Special(NamedTuple):
+    """The special points of a branch in the order along it: the grazing orbits are located one kind
+    after another. ``order`` are their numbers among :attr:`.Followed.special_points`. ``before``
+    and ``arclength`` are those of :func:`_places`.
+    """
+
+    order: np.ndarray
+    points: np.ndarray
+    kinds: list[str]
+    before: np.ndarray
+    arclength: np.ndarray
+
+
+def _special_places(found: Followed) -> _Special:
+    y = found.branch.points
+    special = np.array([each.point for each in found.special_points]).reshape(-1, y.shape[-1])
+    before, arclength = _places(special, y)
+    order = np.argsort(arclength, kind="stable")
+    kinds = [str(found.special_points[k].name) for k in order]
+    return _Special(order, special[order], kinds, before[order], arclength[order])
+
+
+def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The number of the last point of a branch before each special point, and the arclength up to
+    the special point over that of the whole branch.
+
+    A special point lies between the two neighbours to which it makes the smallest detour.
+
+    Examples
+    --------
+    >>> y = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    >>> before, share = _places(np.array([[0.5, 0.0], [1.0, 1.0]]), y)
+    >>> before.tolist(), share.tolist()
+    ([0, 1], [0.25, 1.0])
+    """
+    if len(y) < 2:
+        return np.zeros(len(special), dtype=int), np.zeros(len(special))
+    distance = np.linalg.norm(special[:, np.newaxis] - y, axis=-1)
+    step = np.linalg.norm(np.diff(y, axis=0), axis=-1)
+    before = np.argmin(distance[:, :-1] + distance[:, 1:] - step, axis=-1)
+    row = np.arange(len(special))
+    behind = distance[row, before]
+    ahead = distance[row, before + 1]
+    passed = np.concatenate([[0.0], np.cumsum(step)])
+    return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
+
+
+def _in_columns(orbits: Orbit, ahead: Orbit, special: _Special, ends: list[str]) -> dict[str, Any]:
+    """The variables of :func:`branch_variables`, from the orbits along a branch with its special
+    orbits after them, with phases in [-π, π] and, ``ahead``, with phases that pass ±π.
+    """
+    count = orbits.size - len(special.kinds)
+    data: dict[str, Any] = {}
+    for name in ahead.along:
+        values = np.broadcast_to(Balls(ahead.model, ahead.amplitude).values[name], ahead.shape)
+        data[name] = "point", values[:count]
+        data[f"special_{name}"] = "special", values[count:]
+    observed = {
+        name: np.reshape(getattr(ahead, name), (ahead.size, ahead.impacts)) for name in OBSERVED
+    }
+    data |= {name: (("point", "impact"), values[:count]) for name, values in observed.items()}
+    for name in ("phase", "contact_duration"):
+        data[f"special_{name}"] = ("special", "impact"), observed[name][count:]
+    data["stable"] = "point", ahead.is_stable()[:count]
+    data["admissible"] = "point", ahead.is_admissible()[:count]
+    defect = ahead.defect()
+    data["residual"] = "point", defect[:count]
+    data["digits_left"] = "point", ahead.digits_left()[:count]
+    floquet = ahead.multipliers()[:count]
+    data["multiplier_real"] = ("point", "multiplier"), floquet.real
+    data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
+    kinds = np.array(special.kinds, dtype=str)
+    data["special_kind"] = "special", kinds
+    # Where a release is lost, which is a double zero, rounding decides which release is found.
+    lost = kinds == Special.RELEASE_LOST
+    data["special_residual"] = "special", np.where(lost, np.nan, defect[count:])
+    data["end_reason"] = "end", ends
+    # Numbers, so that branches with different numbers of special points are aligned.
+    data["special"] = "special", np.arange(len(kinds))
+    data["end"] = "end", ["start", "end"]
+    data["special_arclength"] = "special", special.arclength
+    data["special_point"] = "special", special.before
+    along = columns_of(orbits[:count], "point")
+    there = columns_of(orbits[count:], "special", "special_")
+    # No special orbit has parameters of its own if there is none.
+    over_points = (name for name, (dims, _) in along.items() if dims == ("point",))
+    none = {f"special_{name}": ("special", np.empty(0)) for name in over_points}
+    # The observables come first, and their phases pass ±π.
+    return data | ({} if len(kinds) else none) | there | along | data
+
+
+def n_t_columns(found: Followed) -> xr.Dataset:
+    """:func:`branch_variables` of orbits with one impact, from the unstable to the stable side,
+    without an axis of the impacts.
+    """
+    return _of_one_impact(branch_variables(found))
+
+
+def _of_one_impact(columns: dict[str, Any]) -> xr.Dataset:
+    one = xr.Dataset(columns).isel(impact=0, drop=True)
+    kinds = one.special_kind.astype(object)
+    return one.assign(special_kind=kinds).assign_coords(end=["unstable side", "stable side"])
+
+
+def no_branch(count: int, error: Exception) -> xr.Dataset:
+    """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
+    none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
+    nowhere = _Special(np.empty(0, int), np.empty((0, 0)), [], np.empty(0, int), np.empty(0))
+    return _of_one_impact(_in_columns(none, none, nowhere, [str(error)] * 2))
+
+
+def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:
+    """Branches along a new dimension; those with fewer special orbits are filled with NaN."""
+    whole = xr.concat(branches, dim, join="outer")
+    return whole.assign(special_kind=whole.special_kind.fillna("").astype(str))

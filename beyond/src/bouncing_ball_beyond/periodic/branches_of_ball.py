@@ -1,0 +1,117 @@
+"""The whole branches of n-T orbits of a ball over Λ, on both sides of their saddle-nodes."""
+
+from functools import partial
+
+import xarray as xr
+
+from bouncing_ball.datasets.arguments import (
+    FAMILY,
+    POINTS,
+    POSITIVE,
+    FamilyAxis,
+    Points,
+    Positive,
+    checked,
+    checked_number,
+    require_memory,
+)
+from bouncing_ball.datasets.labelled import Grid
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.numerics.branch import ContinuationError
+from bouncing_ball_beyond.models.ball import Ball, a_ball
+from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.periodic.branches.following import Followed
+from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
+from bouncing_ball_beyond.periodic.branches.observables import (
+    VARIABLES,
+    joined,
+    n_t_columns,
+    no_branch,
+)
+from bouncing_ball_beyond.periodic.one_impact.whole_branch import LARGEST_STEP, whole_branch
+from bouncing_ball_beyond.periodic.orbits.saved import KEPT
+from bouncing_ball_beyond.periodic.places import by_place
+
+# The longest step along a branch is this fraction of the largest Λ, if that is large: a branch has
+# some thousand points at most.
+_STRIDE = 2e-3
+
+
+@suggesting
+def branch(
+    ball: Ball, n: FamilyAxis = 1, *, amplitude_max: Positive | None = None, points: Points = 300
+) -> FollowedBranch:
+    """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
+
+    Parameters
+    ----------
+    ball : Ball
+    n : int or array of int
+        Index n of the family.
+    amplitude_max : float, optional
+        Largest Λ of the branch; by default 1.4 times that of the period doubling.
+    points : int
+        Number of points along the branch, at equal steps of arclength.
+
+    Returns
+    -------
+    FollowedBranch
+        ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
+        orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
+        saddle-nodes, period doublings and grazing orbits. A single branch has the orbits
+        themselves as well, as that of :func:`bouncing_ball_beyond.follow`. Where one of several
+        branches does not exist it is NaN, and ``end_reason`` says why.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no branch up to this Λ, or if it cannot be followed.
+    ModelError
+        If a parameter is of a wrong type or shape, or out of range.
+
+    Examples
+    --------
+    >>> import math
+    >>> from bouncing_ball import rigid
+    >>> found = branch(rigid(restitution=0.85), points=50)
+    >>> found.special_kind.values.tolist()
+    ['saddle-node', 'period doubling']
+    >>> round(float(found.special_amplitude[0]) / math.pi * 1.85 / 0.15, 12)
+    1.0
+    >>> found.first("saddle-node").amplitude == float(found.special_amplitude[0])
+    True
+    """
+    family = checked("n", n, FAMILY)
+    count = checked_number("points", points, POINTS)
+    top = None
+    if amplitude_max is not None:
+        top = checked_number("amplitude_max", amplitude_max, POSITIVE)
+
+    def found(one: Ball, n: int) -> xr.Dataset:
+        return n_t_columns(_branch_of(one.at_limits(n), n, top, count))
+
+    grid = Grid(n=family, **a_ball(ball).parameters)
+    require_memory(count * grid.size, "points", "points or branches")
+    whole = by_place(grid, ball, ("n",), found, partial(no_branch, count), joined)
+    data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude", impacts=1)
+    if "n" in data.attrs:
+        data = data.assign_attrs(periods=data.attrs["n"])
+    if top is not None:
+        data = data.assign_attrs(amplitude_max=top)
+    return FollowedBranch.of(data, "branch")
+
+
+def _branch_of(model: Model, n: int, amplitude_max: float | None, points: int) -> Followed:
+    """The branch of n-T orbits of a single model up to some Λ, with this number of points.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch begins above this Λ, or if it cannot be followed.
+    """
+    longest = max(LARGEST_STEP, _STRIDE * (amplitude_max or 0.0))
+    try:
+        return whole_branch(model, n, amplitude_max, longest).resampled(points)
+    except ContinuationError as error:
+        raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None

@@ -1,0 +1,150 @@
+"""The equations of n-T orbits in the unknowns of the paper (Eqs. 21-26).
+
+Of the paper's six unknowns φ, z′_i, τ_b, z′_b, A and B, three are eliminated, all linearly: A and B
+by the start of contact (Eqs. 21-22) and z′_b by the periodicity (Eq. 27). The remaining ones are
+scaled to order one, ``y = (φ, z′_i, ϖ τ_b, Λ)``; an impact that is an instant has no τ_b. The
+equations are those of :mod:`~bouncing_ball_beyond.periodic.orbits.problem` with one impact, whose
+unknowns are ``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this
+choice.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.corrector import Condition
+from bouncing_ball.numerics.events import Event
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+
+
+@dataclass(frozen=True)
+class PaperUnknowns:
+    """The equations as a :class:`~bouncing_ball.numerics.corrector.Problem`, with Λ as the last
+    entry of y.
+
+    With the height Z in contact (Eqs. 12-13) and z in flight (Eqs. 14-15), the contact from τ_i to
+    τ_b and the next impact at τ_2, the paper has ::
+
+        Z(τ_i, φ, A, B) = Λ sin(τ_i + φ)            (21)  the contact begins on the table
+        Z′(τ_i, φ, A, B) = z′_i                     (22)  with the velocity of the impact,
+        Z(τ_b, φ, A, B) = Λ sin(τ_b + φ)            (23)  and it ends there
+        Z′(τ_b, φ, A, B) = z′_b                     (24)  with the velocity of the bounce;
+        z(τ_b, z′_b, φ, τ_2) = Λ sin(τ_2 + φ)       (25)  the flight ends on the table
+        z′(τ_b, z′_b, φ, τ_2) = z′_2                (26)  with the velocity of the next impact,
+
+    where τ_i = 0, τ_2 = 2πn and z′_2 = z′_i, because the motion repeats (Eqs. 18-20).
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+        The equations with one impact, along Λ.
+    clock : float or array
+        ϖ of contacts whose durations are unknowns, which are of the order of 1/ϖ, otherwise 1.
+
+    Examples
+    --------
+    The elastic orbit with φ = π/2, whose velocity after the impact is π:
+
+    >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
+    >>> problem = PaperUnknowns.of(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.pi / 2))
+    >>> defects = problem.residual(np.array([np.pi / 2, -np.pi, 1.0]))
+    >>> [abs(round(float(x), 12)) for x in defects]
+    [0.0, 0.0]
+    """
+
+    equations: OrbitEquations
+    clock: Any = 1.0
+
+    @classmethod
+    def of(cls, orbit: Orbit) -> "PaperUnknowns":
+        """The equations of given n-T orbits."""
+        equations = orbit.problem(LAMBDA)
+        dynamics = orbit.model.dynamics(1.0)
+        oscillates = equations.selects and dynamics.contact is not None
+        return cls(equations, dynamics.law.frequency_ratio if oscillates else 1.0)
+
+    def take(self, which: Any) -> Self:
+        """The equations of some orbits of a row."""
+        return replace(self, equations=self.equations.take(which), clock=pick(self.clock, which))
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns (φ, δ′, D, arsinh Λ) of y."""
+        inner = np.array(y, dtype=float)
+        lam = y[..., -1]
+        inner[..., 1] -= lam * np.cos(y[..., 0])
+        inner[..., 2:-1] /= self._clock
+        inner[..., -1] = np.arcsinh(lam)
+        return inner
+
+    def _slopes(self, y: np.ndarray) -> np.ndarray:
+        """Derivatives of :meth:`inner` by y, shape (..., N + 1, N + 1)."""
+        lam = y[..., -1]
+        size = y.shape[-1]
+        slopes = np.zeros((*y.shape, size))
+        slopes[..., 0, 0] = 1
+        slopes[..., 1, 0] = lam * np.sin(y[..., 0])
+        slopes[..., 1, 1] = 1
+        slopes[..., 1, -1] = -np.cos(y[..., 0])
+        for k in range(2, size - 1):
+            slopes[..., k, k] = 1 / np.asarray(self.clock)
+        slopes[..., -1, -1] = 1 / np.hypot(1, lam)
+        return slopes
+
+    def point(self, orbit: Orbit) -> np.ndarray:
+        """y of n-T orbits, shape (..., N + 1)."""
+        return self.outer(orbit.point(self.equations))
+
+    def outer(self, inner: np.ndarray) -> np.ndarray:
+        """y at the unknowns (φ, δ′, D, arsinh Λ)."""
+        lam = np.sinh(inner[..., -1])
+        y = inner.copy()
+        y[..., 1] += lam * np.cos(inner[..., 0])
+        y[..., 2:-1] *= self._clock
+        y[..., -1] = lam
+        return y
+
+    @cached_property
+    def _clock(self) -> np.ndarray:
+        """ϖ with an axis for the unknowns."""
+        return np.asarray(self.clock)[..., np.newaxis]
+
+    @cached_property
+    def _weights(self) -> np.ndarray:
+        """The factors of the equations; that of the duration is of the order of a velocity."""
+        weights = np.ones((*np.shape(self.clock), self.equations.size))
+        weights[..., 2:] = self._clock
+        return weights
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """The defects of the equations, shape (..., N)."""
+        return self._weights * self.equations.residual(self.inner(y))
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """The Jacobian of the residual, shape (..., N, N + 1)."""
+        # The duration of a contact that touches its release has infinite derivatives.
+        with np.errstate(invalid="ignore"):
+            matrix = self.equations.jacobian(self.inner(y)) @ self._slopes(y)
+        return self._weights[..., np.newaxis] * matrix
+
+    def event(self, event: Event) -> Event:
+        """An event of the equations as a function of these unknowns."""
+        known = event.condition
+        return replace(
+            event,
+            function=lambda y: event.function(self.inner(y)),
+            condition=None if known is None else self.condition(known),
+        )
+
+    def condition(self, known: Condition) -> Condition:
+        """A condition of the equations as a function of these unknowns."""
+
+        def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            value, gradient = known(self.inner(y))
+            return value, (gradient[..., np.newaxis, :] @ self._slopes(y))[..., 0, :]
+
+        return condition

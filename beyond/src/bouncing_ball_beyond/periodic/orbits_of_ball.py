@@ -1,0 +1,256 @@
+"""The n-T orbits of a ball: an orbit, all orbits at an amplitude, and the limits of a family."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+
+import numpy as np
+
+from bouncing_ball.datasets.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    AmplitudeOfOrbit,
+    AmplitudeOfOrbitAxis,
+    FamilyAxis,
+    SideName,
+    checked,
+    checked_number,
+    chosen,
+    is_array,
+)
+from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball_beyond.models.ball import Ball, a_ball, a_known_ball, a_single_ball
+from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
+
+if TYPE_CHECKING:
+    from bouncing_ball.drawing.result import Result
+
+
+class TwoLimits(NamedTuple):
+    """The two orbits that bound the stable range of a family; their numbers are NaN where the
+    bifurcation does not exist.
+    """
+
+    saddle_node: Orbit
+    period_doubling: Orbit
+
+    def __repr__(self) -> str:
+        return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
+
+
+@suggesting
+def orbit(
+    ball: Ball, n: FamilyAxis = 1, *, amplitude: AmplitudeOfOrbitAxis, side: SideName = "stable"
+) -> Orbit | Result:
+    """The n-T orbit at the excitation amplitude Λ.
+
+    Parameters
+    ----------
+    ball : Ball
+    n : int or array of int
+        Index n of the family.
+    amplitude : float or array
+        Excitation amplitude Λ > 0.
+    side : str
+        Side of the branch next to the saddle-node: "stable" or "unstable".
+
+    Returns
+    -------
+    Orbit or Result
+        One orbit, with Python floats. If a parameter is an array, a dataset of the observables
+        of all orbits with an axis named after each array; NaN where there is no orbit.
+
+    Raises
+    ------
+    NoOrbitError
+        If the single orbit does not exist; the message gives the reason.
+    ModelError
+        If a parameter is of a wrong type or shape, or out of range.
+
+    Examples
+    --------
+    >>> from bouncing_ball import spring_damper
+    >>> orbit(spring_damper(restitution=0.85, frequency_ratio=10.0), amplitude=1.0)
+    Orbit
+      n                     1
+      law                   SpringDamper(frequency_ratio=10, damping_ratio=0.0516623, \
+release='displacement')
+      amplitude             1
+      phase                 1.16848
+      contact_duration      0.314782
+      impact_velocity       -2.99694
+      bounce_velocity       2.97147
+      apparent_restitution  0.851132
+      max_height            5.41098
+    """
+    family = checked("n", n, FAMILY)
+    lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    branch_side = Side(chosen("side", side, list(Side)))
+    if _is_grid(a_ball(ball), family, lam):
+        # Imported here, because a single orbit needs no labels, and importing xarray takes longer
+        # than computing the orbit.
+        from bouncing_ball_beyond.periodic.places import dataset_of_places
+
+        def found(one: Ball, n: Any, amplitude: Any) -> dict[str, Any]:
+            model = one.at_orbit(n, amplitude, branch_side)
+            return _observables(n_t.orbit(model, n, amplitude, branch_side))
+
+        none = _observables(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan))
+        return dataset_of_places("orbit", ball, {"n": family, "amplitude": lam}, found, none)
+    model = ball.at_orbit(family, lam, branch_side)
+    return n_t.require_orbit(model, family, lam, branch_side)
+
+
+@suggesting
+def orbits(
+    ball: Ball, n: Annotated[int, FAMILY] = 1, *, amplitude: AmplitudeOfOrbit
+) -> list[Orbit]:
+    """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
+
+    They are all of them if a closed form of the branch is known, as for ``spring_damper``. For a
+    contact law they are those on the branch that comes from large Λ.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    n : int
+        Index n of the family.
+    amplitude : float
+        Excitation amplitude Λ > 0.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none.
+    ModelError
+        If a parameter is an array, of a wrong type, or out of range.
+
+    Examples
+    --------
+    A compliant contact has a second stable orbit, of long contact:
+
+    >>> from bouncing_ball import spring_damper
+    >>> found = orbits(spring_damper(restitution=0.85, frequency_ratio=2.0), amplitude=0.9)
+    >>> [(round(each.contact_duration, 3), each.is_stable()) for each in found]
+    [(1.602, True), (2.249, False), (5.182, True)]
+    """
+    family = checked_number("n", n, FAMILY)
+    lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    model = a_single_ball(a_ball(ball).at_orbit(family, lam))
+    found = n_t.orbits(model, family, lam)
+    if not found.size:
+        raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
+    return [found[k] for k in range(found.size)]
+
+
+@suggesting
+def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
+    """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
+
+    Parameters
+    ----------
+    ball : Ball
+    n : int or array of int
+        Index n of the family.
+
+    Returns
+    -------
+    TwoLimits or Result
+        Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
+        axis named after each array.
+
+    Raises
+    ------
+    ModelError
+        If n is no whole number in its range.
+
+    Examples
+    --------
+    >>> from bouncing_ball import rigid
+    >>> found = limits(rigid(restitution=0.85))
+    >>> round(found.saddle_node.amplitude, 6), round(found.period_doubling.amplitude, 6)
+    (0.254724, 1.038304)
+    >>> found.saddle_node.kind
+    'saddle-node'
+    """
+    family = checked("n", n, FAMILY)
+    if _is_grid(a_ball(ball), family):
+        from bouncing_ball_beyond.periodic.places import dataset_of_places
+
+        return dataset_of_places("limits", ball, {"n": family}, _both_limits)
+    model = ball.at_limits(family)
+    fold = n_t.saddle_node(model, family)
+    doubling = n_t.period_doubling(model, family)
+    return TwoLimits(
+        saddle_node=replace(fold, kind=str(Bifurcation.SADDLE_NODE)),
+        period_doubling=replace(doubling, kind=str(Bifurcation.PERIOD_DOUBLING)),
+    )
+
+
+@suggesting
+def permanent_contact(ball: Ball) -> float | Result:
+    """The Λ up to which a ball at rest stays on the table.
+
+    Parameters
+    ----------
+    ball : Ball
+        The threshold is 1 for a rigid ball (Eq. 9), and Λ_SD for a contact with a spring and a
+        damper (Eq. 33).
+
+    Returns
+    -------
+    float or Result
+        If a parameter of the ball is an array, a dataset with an axis named after each array.
+
+    Raises
+    ------
+    ModelError
+        If a contact law depends on a speed that is not given.
+
+    Examples
+    --------
+    >>> from bouncing_ball import spring_damper
+    >>> permanent_contact(spring_damper(frequency_ratio=2.0, damping_ratio=0.0))
+    0.75
+    """
+    known = a_known_ball(ball)
+    if _is_grid(known):
+        from bouncing_ball_beyond.periodic.places import dataset_of_places
+
+        return dataset_of_places("permanent-contact", known, {}, _threshold)
+    return float(known.permanent_contact_threshold())
+
+
+def _is_grid(ball: Ball, *arguments: Any) -> bool:
+    """Whether an argument or a parameter of the ball is an array."""
+    return any(is_array(value) for value in (*arguments, *ball.parameters.values()))
+
+
+def _observables(orbit: Orbit) -> dict[str, Any]:
+    """The observables of orbits except Λ, and whether they are stable and admissible."""
+    values = {name: getattr(orbit, name) for name in OBSERVABLES if name != "amplitude"}
+    return values | {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
+
+
+def _both_limits(ball: Ball, n: Any) -> dict[str, Any]:
+    """Amplitude and phase of the saddle-node and of the period doubling."""
+    model = ball.at_limits(n)
+    ends = {
+        "saddle_node": n_t.saddle_node(model, n),
+        "period_doubling": n_t.period_doubling(model, n),
+    }
+    return {
+        f"{name}_{quantity}": getattr(end, quantity)
+        for name, end in ends.items()
+        for quantity in ("amplitude", "phase")
+    }
+
+
+def _threshold(model: Model) -> dict[str, Any]:
+    return {"threshold_amplitude": model.permanent_contact_threshold()}

@@ -1,0 +1,88 @@
+"""Results that were saved, with their figures and with their orbits, for a user."""
+
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.drawing.result import MADE_BY, Result
+from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesting
+from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.saved import has_orbits
+
+_RESULTS: dict[str, Any] = {
+    "follow": FollowedBranch,
+    "branch": FollowedBranch,
+    "curve": SpecialCurve,
+}
+
+
+@suggesting
+def open(path: str | Path) -> Result:
+    """The dataset in a netCDF file, such as that of an artifact of a run.
+
+    ``bouncing_ball_beyond.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure
+    from it. A branch or a curve has its orbits, as from :func:`bouncing_ball_beyond.read_orbits`.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, or if it is damaged.
+    """
+    if not isinstance(path, str | Path):
+        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
+    return _result_of(read_dataset(path))
+
+
+def _result_of(data: xr.Dataset) -> Result:
+    """The dataset as the result of the call that made it."""
+    kind = _RESULTS.get(str(data.attrs.get(MADE_BY, "")), Result)
+    return (kind if has_orbits(data) else Result)(data.data_vars, data.coords, data.attrs)
+
+
+@suggesting
+def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | SpecialCurve:
+    """Orbits, a branch or a curve from a netCDF file or a dataset, with the same bits.
+
+    Every result of :func:`bouncing_ball_beyond.follow` and :func:`bouncing_ball_beyond.branch` is
+    such a dataset, and so is that of ``orbit.to_dataset()``; ``to_netcdf(path)`` writes it to a
+    file.
+
+    Parameters
+    ----------
+    source : str, Path or Dataset
+        The file, or the dataset. If the orbits obey a law of your own, its class must be defined.
+
+    Returns
+    -------
+    Orbit, FollowedBranch or SpecialCurve
+        What was saved.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, if it contains no orbits, or if a law is not known.
+
+    Examples
+    --------
+    >>> import bouncing_ball_beyond as bb
+    >>> one = bb.orbit(bb.rigid(restitution=0.85), amplitude=0.9)
+    >>> branch = bb.follow(one, to=1.2)
+    >>> part = bb.read_orbits(branch.isel(point=slice(2, 5)))
+    >>> part.first("period doubling") == branch.first("period doubling")
+    True
+    >>> list(part.states()) == list(branch.states())[2:5]
+    True
+    """
+    if not isinstance(source, str | Path | xr.Dataset):
+        raise ParameterError("{source} = {} is neither a path nor a dataset", shortened(source))
+    where = "the dataset" if isinstance(source, xr.Dataset) else str(source)
+    data = source if isinstance(source, xr.Dataset) else read_dataset(source)
+    if not has_orbits(data):
+        raise ModelError(
+            f"{where} contains no orbits: it is no result of follow, branch or orbit.to_dataset()"
+        )
+    result = _result_of(data)
+    return result if isinstance(result, FollowedBranch | SpecialCurve) else Orbit.of_dataset(data)

@@ -1,0 +1,82 @@
+"""Whole branches of n-T orbits, one at a time and several side by side."""
+
+import bouncing_ball_beyond
+import numpy as np
+import pytest
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.branches.following import Followed
+from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch, whole_branches
+from bouncing_ball_beyond.periodic.orbits import ends
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.branch import ContinuationError
+
+CASES = [(1, 1e4), (2, 10.0), (1, 2.0), (3, 2.0), (1, 1.0), (2, 0.9)]
+TOP = 1.4
+
+
+@pytest.mark.parametrize(
+    "release", [Release.DISPLACEMENT, pytest.param(Release.FORCE, marks=pytest.mark.long)]
+)
+def test_a_branch_is_the_same_alone_and_beside_others(release):
+    n, ratios = (np.array(column) for column in zip(*CASES, strict=True))
+    contacts = SpringDamper.from_restitution(0.7, ratios, release)
+    together = whole_branches(ContactModel(contacts), n, TOP)
+    assert whole_branches(ContactModel(contacts[0]), [], TOP) == []
+    for k, beside in enumerate(together):
+        alone = ContactModel(contacts[k])
+        if not isinstance(beside, Followed):
+            with pytest.raises((NoOrbitError, ContinuationError)) as error:
+                whole_branch(alone, int(n[k]), TOP)
+            assert str(error.value) == str(beside)
+            continue
+        found = whole_branch(alone, int(n[k]), TOP)
+        assert np.array_equal(beside.branch.points, found.branch.points)
+        assert np.array_equal(beside.branch.tangents, found.branch.tangents)
+        pairs = zip(beside.branch.special, found.branch.special, strict=True)
+        assert all(one.name == other.name for one, other in pairs)
+        pairs = zip(beside.branch.special, found.branch.special, strict=True)
+        assert all(np.array_equal(one.point, other.point) for one, other in pairs)
+        assert (beside.branch.start, beside.branch.end) == (found.branch.start, found.branch.end)
+    assert any(isinstance(each, Followed) for each in together)
+    assert not all(isinstance(each, Followed) for each in together)
+
+
+def test_a_branch_is_kept_where_a_doubling_is_announced_next_to_its_end():
+    """Without damping all multipliers tend to -1 at permanent contact, at Λ = |ϖ² - 1|/ϖ² = 3, and
+    rounding errors decide whether a doubling is announced, which cannot be located. Λ - 3 is
+    3 T²/8 for a flight of T.
+    """
+    ball = bouncing_ball_beyond.spring_damper(restitution=1.0, frequency_ratio=0.5)
+    found = bouncing_ball_beyond.branch(ball, n=1, points=30)
+    lost, reached = (str(reason) for reason in found.end_reason.values)
+    merges = "the flight vanishes: the orbit merges with permanent contact"
+    assert lost == merges or (
+        lost.startswith(f"{merges}; ") and lost.endswith("could not be located")
+    )
+    assert reached == "amplitude = 4.2 is reached"
+    assert found.special_kind.size == 0
+    flight = 2 * np.pi - float(found.contact_duration[0])
+    assert flight < ends.CLOSE
+    assert float(found.amplitude[0]) - 3.0 == pytest.approx(3 * flight**2 / 8, rel=ends.CLOSE)
+    assert float(found.residual.max()) < 1e-11
+
+
+@pytest.mark.parametrize("points", [30, 300])
+def test_a_branch_that_merges_with_a_ringing_contact_is_resampled(points):
+    """At ϖ = 1/2 without damping the contact rings with the period 4π. The 2-T branch merges with
+    such a motion at Λ = 1; the speed of its impact is the cube of the flight time there, and
+    rounding errors move its points by 1e-10 along the branch.
+    """
+    ball = bouncing_ball_beyond.spring_damper(restitution=1.0, frequency_ratio=0.5)
+    found = bouncing_ball_beyond.branch(ball, n=2, points=points)
+    why = str(found.end_reason.values[0])
+    assert why == "the flight vanishes: the orbit merges with permanent contact"
+    aloft = 4 * np.pi - found.contact_duration.values[:4]
+    closing = found.impact_velocity.values - found.amplitude.values * np.cos(found.phase.values)
+    slopes = np.diff(np.log(-closing[:4])) / np.diff(np.log(aloft))
+    assert slopes == pytest.approx(np.full(3, 3.0), abs=0.1)
+    assert 1 < float(found.amplitude[0]) < 1 + aloft[0] ** 2
+    assert float(found.residual.max()) < 1e-11

@@ -1,0 +1,117 @@
+"""What was probably meant by an argument that ``design`` or ``fit`` does not know.
+
+What all commands have in common is in :mod:`bouncing_ball.cli.advice`, which is asked next.
+"""
+
+import re
+from collections.abc import Collection, Iterable, Sequence
+
+# Other words for options, and the symbols of textbooks.
+_WORDS = {
+    "k": "stiffness",
+    "spring": "stiffness",
+    "spring-constant": "stiffness",
+    "c": "damping",
+    "dashpot": "damping",
+    "m": "mass",
+    "weight": "mass",
+    "f": "frequency",
+    "omega": "angular-frequency",
+    "t": "period",
+    "v": "speed",
+    "impact-speed": "speed",
+    "g": "gravity",
+    "dt": "time-step",
+    "all-families": "all",
+}
+# Dashes that an editor puts in place of two hyphens.
+_DASHES = "-—–−"
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_WITHOUT_VALUE = ("--all", "--intervals")
+
+
+def advice_of_design(unknown: str, arguments: Sequence[str], known: Iterable[str]) -> str:
+    """A clause on the first argument that ``design`` does not know; empty if nothing is known.
+
+    Parameters
+    ----------
+    unknown : str
+        The argument.
+    arguments : sequence of str
+        All arguments of the command.
+    known : iterable of str
+        The options of the command.
+
+    Examples
+    --------
+    >>> advice_of_design("--k", ["--k", "100"], ["--stiffness"])
+    '; did you mean --stiffness?'
+    >>> advice_of_design("--kn", ["--kn", "100"], ["--stiffness"])
+    ': it is a parameter of lammps: --from lammps --set kn=NUMBER'
+    """
+    name = unknown.partition("=")[0]
+    found = advice_of_fit(unknown, arguments, known)
+    if found and _is_option(name):
+        return found
+    parameter = name.removeprefix("--")
+    if engine := _engine_with(parameter):
+        return f": it is a parameter of {engine}: --from {engine} --set {parameter}=NUMBER"
+    return found
+
+
+def advice_of_fit(unknown: str, arguments: Sequence[str], known: Iterable[str]) -> str:
+    """A clause on the first argument that ``fit`` does not know; empty if nothing is known.
+
+    The parameters are those of :func:`advice_of_design`.
+
+    Examples
+    --------
+    >>> advice_of_fit("g", ["croquet", "--mass", "454", "g"], ["--mass"])
+    ': a value with a space is one argument in quotes, such as "20 g"'
+    """
+    options = list(known)
+    name = unknown.partition("=")[0]
+    if not _is_option(name):
+        return _of_value(name, arguments, options)
+    word = name.lstrip(_DASHES).replace("_", "-")
+    # The radius is half of it, so that the option is not just another name.
+    if word == "diameter" and "--radius" in options:
+        return "; did you mean --radius, half of it?"
+    meant = _WORDS.get(word, "")
+    return f"; did you mean --{meant}?" if f"--{meant}" in options else ""
+
+
+def _is_option(name: str) -> bool:
+    """Whether an argument is no value; a negative number is a value."""
+    return name[:1] in tuple(_DASHES) and not _NUMBER.match(name)
+
+
+def _of_value(value: str, arguments: Sequence[str], known: Collection[str]) -> str:
+    """A clause on an argument that follows a number; empty elsewhere."""
+    if f"--{value}" in known:
+        return ""
+    place = list(arguments).index(value) if value in arguments else 0
+    options = [each for each in arguments[:place] if each.partition("=")[0] in known]
+    if not options or options[-1] in _WITHOUT_VALUE:
+        return ""
+    before = arguments[place - 1].partition("=")[2 if "=" in options[-1] else 0]
+    if not _NUMBER.fullmatch(before):
+        return ""
+    return ': a value with a space is one argument in quotes, such as "20 g"'
+
+
+def _engine_with(parameter: str) -> str:
+    """The first engine that has a parameter of this name; empty if none has.
+
+    Examples
+    --------
+    >>> _engine_with("kn"), _engine_with("mass")
+    ('lammps', '')
+    """
+    # Imported here, because the import needs numpy, which the help does not need.
+    from bouncing_ball_contacts.engines.choice import ENGINES
+
+    plain = ("stiffness", "damping", "solref", "solimp")
+    name = parameter.partition("=")[0]
+    known = (one.name for one in ENGINES.values() if name in one.names)
+    return "" if name in plain else next(known, "")

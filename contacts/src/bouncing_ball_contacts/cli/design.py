@@ -1,0 +1,217 @@
+"""``bouncing-ball design``: a contact is assessed or chosen, and written for an engine.
+
+A contact without a table is described. The answer is printed as JSON, as a page, or as text
+(:mod:`bouncing_ball_contacts.cli.design_text`).
+"""
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from bouncing_ball_beyond.cli.options import add_file
+
+from bouncing_ball.cli.options import Parser
+from bouncing_ball.datasets.files import PICTURES, require_writable
+from bouncing_ball.errors import NoOrbitError, ParameterError, extra
+from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
+from bouncing_ball_contacts.cli.design_text import contact_numbers
+from bouncing_ball_contacts.cli.options import add_optional, option
+from bouncing_ball_contacts.contact import rows
+from bouncing_ball_contacts.contact.assess import Assessment, LargestTimeStep, assess
+from bouncing_ball_contacts.contact.choose import choose
+from bouncing_ball_contacts.contact.contact import Contact
+from bouncing_ball_contacts.contact.describe import Description, describe_contact
+from bouncing_ball_contacts.contact.drops import drop_at_rest
+from bouncing_ball_contacts.contact.quantities import quantities
+from bouncing_ball_contacts.contact.question import EngineSetup, Question
+from bouncing_ball_contacts.contact.resolve import resolve
+from bouncing_ball_contacts.contact.table import Table
+from bouncing_ball_contacts.contact.units import doubts, in_si
+from bouncing_ball_contacts.contact.write import (
+    at_given_step,
+    at_own_step,
+    describe_for,
+    dropped_at_step,
+    looser,
+    settings_for,
+    softer_contact,
+)
+from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
+
+# Parameters of which each implies that there is a table.
+_OF_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
+_OF_STIFFNESS_AND_LOSS = tuple(name for name in quantities(Contact) if name != "mass")
+# The options in their order, in which the answer repeats them.
+_OPTIONS = (
+    (Contact, ("mass",)),
+    (Table, (*_OF_TABLE, "gravity")),
+    (Contact, _OF_STIFFNESS_AND_LOSS),
+    (drop_at_rest, ("speed",)),
+    (Question, ("n",)),
+    (Contact, ("release", "law")),
+    (Question, ("quantity", "tolerance")),
+    (EngineSetup, ("engine", "restitution_error", "time_step")),
+    (Contact, ("from_engine", "solref", "solimp", "parameters")),
+)
+
+
+def add_options(parser: Parser) -> None:
+    """Add the options of :func:`design`."""
+    add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
+    each = "By default each family has one line, unless n is given."
+    parser.add_argument(
+        option("all_families"),
+        dest="all_families",
+        action="store_true",
+        help=f"Print all results for every family. {each}",
+    )
+    for kind, names in _OPTIONS:
+        add_optional(parser, kind, names)
+
+
+def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnswer:
+    """The answer about a contact; with ``plot`` the page to print is written as well.
+
+    Raises
+    ------
+    ModelError
+        If the page has another name or cannot be written, or if a parameter is missing, out of
+        range or contradicts another.
+    NoOrbitError
+        If no model has the orbit.
+    """
+    require_writable(plot, PICTURES)
+    found = answer_design(given)
+    if plot is not None:
+        _draw(found, plot)
+    return found._replace(whole=all_families or given.get("n") is not None)
+
+
+def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
+    """The answer for options by name; an option that is missing or None is not given.
+
+    Raises
+    ------
+    ModelError, NoOrbitError
+        See :func:`design`.
+    """
+    contact = Contact(**_of(Contact, given))
+    question = Question(**_of(Question, given))
+    # These are needed without a table or an engine, too.
+    si = {
+        name: in_si(name, given[name], KINDS[name])
+        for name in ("gravity", "speed", "restitution_error", "time_step")
+        if given.get(name) is not None
+    }
+    read = {**given, **si}
+    speed = si.get("speed")
+    setup = None if given.get("engine") is None else EngineSetup(**_of(EngineSetup, read))
+    has_table = any(given.get(name) is not None for name in ("n", *_OF_TABLE))
+    # With a speed an impact is meant, whose stiffness may be missing.
+    if has_table or not (setup or contact.is_stiff or speed is not None):
+        table = Table(**_of(Table, read))
+        read |= _quantities_of(table)
+        found = _on_table(contact, table, question, None if setup is None else setup.engine)
+    elif setup is None:
+        found = describe_contact(contact, si.get("gravity"), speed)
+    else:
+        found = describe_for(contact, setup, si.get("gravity"), speed)
+    engine = None if setup is None else settings_for(found, setup)
+    if engine is not None and isinstance(found, Assessment):
+        found = replace(found, time_step=_step_of(engine))
+    error = si.get("restitution_error", ERROR)
+    if error != ERROR and setup is None and contact.from_engine is None:
+        raise ParameterError(
+            "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
+            "as generic"
+        )
+    softer = None
+    if engine is not None:
+        at_step = engine.at_step
+        softer = softer_contact(found.case, engine, question, speed)
+    elif "time_step" in si:
+        at_step = at_given_step(contact, si["time_step"], error, _impact_speed(found, speed))
+    else:
+        at_step = at_own_step(contact, error, _impact_speed(found, speed))
+    read |= _quantities_of(contact) | _quantities_of(question)
+    return DesignAnswer(
+        found=found,
+        dropped=None if speed is None else drop_at_rest(found.case, speed),
+        engine=engine,
+        at_step=at_step,
+        question=read,
+        dropped_at_step=dropped_at_step(found.case, engine, speed),
+        softer=softer,
+        looser=looser(found.case, at_step),
+        doubts=doubts(given, KINDS),
+    )
+
+
+def _impact_speed(found: Assessment | Description, speed: float | None) -> float | None:
+    """The speed in m/s of the impacts in question: that of the orbit, or of a drop."""
+    if isinstance(found, Description):
+        return speed
+    return found.judged.impact_speed
+
+
+def _of(kind: Any, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The options that are fields of a class."""
+    return {each.name: given[each.name] for each in fields(kind) if each.name in given}
+
+
+def _quantities_of(data: Any) -> dict[str, Any]:
+    """The quantities of a dataclass in SI units, by name."""
+    return {name: getattr(data, name) for name in quantities(type(data))}
+
+
+def _on_table(
+    contact: Contact, table: Table, question: Question, written: str | None
+) -> Assessment:
+    """The assessment of the contact that is given, or of the one that is chosen."""
+    with table.hinting():
+        if contact.is_stiff:
+            case = resolve(contact, table.motion, question.families, written)
+            found = assess(case, question)
+        else:
+            choice = choose(contact, table.motion, question, written)
+            found = assess(choice.case, question, choice)
+    return replace(found, hint=table.hint)
+
+
+def _step_of(engine: EngineSettings) -> LargestTimeStep:
+    """The time step of an engine, which is the only one of the answer, and what r it has."""
+    at = engine.at_step
+    within = f"within {engine.error:g}" if at is None or at.is_within else at.span
+    return LargestTimeStep(engine.time_step, f"r of a free impact in {engine.name} is {within}")
+
+
+def _draw(given: DesignAnswer, path: Path) -> None:
+    found = given.found
+    if isinstance(found, Description):
+        raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
+    if not any(each.exists for each in found.judged.standing.values()):
+        raise NoOrbitError(f"without an orbit there is no page to print: {found.reason}")
+    from bouncing_ball_contacts.contact.page_data import chart_and_motion
+
+    with extra("plot"):
+        from bouncing_ball.drawing.files import write
+        from bouncing_ball.drawing.style import style
+        from bouncing_ball_contacts.contact.page_figures import draw
+    with style():
+        listed = contact_numbers(given) + rows.texts(found.judged)
+        figure = draw(rows.document(found), chart_and_motion(found), listed)
+        write(figure, path, "bouncing-ball design")
+
+
+def design_document(given: DesignAnswer) -> dict[str, Any]:
+    """The answer as plain values for JSON, with the options."""
+    found = rows.document(given.found)
+    # What was not asked for has no key.
+    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer", "looser"):
+        more = getattr(given, name)
+        if more is not None:
+            found[name] = rows.document(more)
+    if given.doubts:
+        found["doubts"] = list(given.doubts)
+    return found | {"question": given.question}

@@ -1,0 +1,47 @@
+"""The answer of ``bouncing-ball design`` about a contact."""
+
+from typing import Any, NamedTuple
+
+from bouncing_ball_contacts.contact.assess import Assessment
+from bouncing_ball_contacts.contact.contact import Contact
+from bouncing_ball_contacts.contact.describe import Description
+from bouncing_ball_contacts.contact.drops import Dropped, drop_at_rest
+from bouncing_ball_contacts.contact.quantities import quantities
+from bouncing_ball_contacts.contact.question import EngineSetup, Question
+from bouncing_ball_contacts.contact.table import Table
+from bouncing_ball_contacts.contact.write import Looser, Softer
+from bouncing_ball_contacts.engines.drop_in_steps import ReboundHeights
+from bouncing_ball_contacts.engines.engine import EngineSettings
+from bouncing_ball_contacts.engines.given_step import AtStep
+
+KINDS = (
+    quantities(Contact)
+    | quantities(Table)
+    | quantities(Question)
+    | quantities(EngineSetup)
+    | quantities(drop_at_rest)
+)
+"""The options with a unit."""
+
+
+class DesignAnswer(NamedTuple):
+    """The contact with all that was asked about it, and the options with quantities in SI units.
+
+    ``found`` is the assessment of a contact on a table, or the description of one without a table.
+    ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them, and so are the
+    rises of a drop at the engine's time step, and the softer contact that this step resolves if it
+    does not resolve the one asked for, also for a larger error. ``doubts`` are sentences on numbers
+    that may have been meant in another unit. ``whole`` tells whether all numbers of
+    each family are printed.
+    """
+
+    found: Assessment | Description
+    dropped: Dropped | None
+    engine: EngineSettings | None
+    at_step: AtStep | None
+    question: dict[str, Any]
+    whole: bool = True
+    dropped_at_step: ReboundHeights | None = None
+    softer: Softer | None = None
+    looser: Looser | None = None
+    doubts: tuple[str, ...] = ()

@@ -1,0 +1,313 @@
+"""``bouncing-ball fit``: the contact laws that are fitted to a file of measured impacts."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
+from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball_contacts.contact.quantities import Speed, quantities
+from bouncing_ball_contacts.contact.table import Table
+from bouncing_ball_contacts.contact.units import doubts, in_si
+from bouncing_ball_contacts.measured.experiment import (
+    QUANTITIES,
+    Experiment,
+    experiment,
+    experiment_names,
+    read,
+)
+from bouncing_ball_contacts.measured.fit import ContactFit
+from bouncing_ball_contacts.measured.law_fit import LawFit
+from bouncing_ball_contacts.measured.verdicts import JudgedLaw, error_size, judge
+
+# In SI units the unit of time is a second, and ϖ is a natural frequency.
+_SHOWN = {"frequency_ratio": "natural frequency"}
+
+
+class _At:
+    """The quantity of the option ``speed``."""
+
+    speed: Speed
+
+
+def fit(
+    file: str,
+    /,
+    *,
+    intervals: bool = False,
+    mass: str | None = None,
+    diameter: str | None = None,
+    contact_time: str | None = None,
+    contact_time_uncertainty: str | None = None,
+    resolution: str | None = None,
+    speed: str | None = None,
+    frequency: str | None = None,
+) -> dict[str, Any]:
+    """The laws fitted to a file, ranked, with verdicts, as values for JSON.
+
+    Parameters
+    ----------
+    file
+        File of measured impacts, or the name of an experiment of the package.
+    intervals
+        The file has the intervals between the impacts of one bouncing ball, one on each line.
+    mass
+        Mass of the ball, such as "20 g".
+    diameter
+        Diameter of the ball; with the mass, the drag of the air is removed.
+    contact_time
+        Duration of a contact; without one no stiffness is identified.
+    contact_time_uncertainty
+        Standard deviation of the contact time.
+    resolution
+        Standard deviation of the times of impacts, for intervals.
+    speed
+        Impact speed of the contact for "design"; by default the middle of the measured speeds.
+    frequency
+        Frequency of a table, in place of the speed: that of its 1-T orbit.
+
+    Raises
+    ------
+    ModelError
+        If the file or an option is not understood.
+    """
+    if speed is not None and frequency is not None:
+        raise ParameterError("{speed} and {frequency} each give the impact speed: give one")
+    options = {
+        "mass": mass,
+        "diameter": diameter,
+        "contact_time": contact_time,
+        "contact_time_uncertainty": contact_time_uncertainty,
+        "resolution": resolution,
+    }
+    found = _experiment(file, intervals=intervals, **options)
+    fitted = found.fit()
+    judged = judge(fitted)
+    best = fitted.best
+    if frequency is not None:
+        # The impact speed of an orbit is the same at every amplitude.
+        v = best.speed_on(Table(frequency=frequency, acceleration="1 g"))
+    elif speed is not None:
+        v = in_si("speed", speed, quantities(_At)["speed"])
+    else:
+        v = best.speed
+    return {
+        "experiment": found.title,
+        "points": fitted.points.size,
+        "slowest": float(fitted.points.speeds.min()),
+        "fastest": float(fitted.points.speeds.max()),
+        "reference_speed": best.speed,
+        "speed": v,
+        "impacts": _impacts(found),
+        "errors_given": fitted.points.is_known,
+        "errors_size": _number(error_size(fitted.points)),
+        "laws": [_law(each, judged[each.law]) for each in fitted.laws],
+        "notes": [*fitted.notes, *_notes(found, fitted, v), *_doubts(options | {"speed": speed})],
+        "design": _design(best, v),
+        "design_of_law": _design_of_law(best, v),
+    }
+
+
+def _experiment(file: str, *, intervals: bool, **options: str | None) -> Experiment:
+    known = file in experiment_names() and not Path(file).exists()
+    if known and not intervals and not any(options.values()):
+        return experiment(file)
+    from bouncing_ball_contacts.measured.experiment import DATA
+
+    if not known and not Path(file).exists():
+        of = ", ".join(experiment_names())
+        said = f"is neither a file nor an experiment of the package: {of}"
+        raise ModelError(f"{file} {said}{did_you_mean(file, experiment_names())}")
+    return read(DATA / f"{file}.csv" if known else file, intervals=intervals, **options)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _impacts(found: Experiment) -> list[dict[str, float]]:
+    """The impacts of a bouncing ball with the biases that were removed; empty for other files."""
+    heard = found.heard
+    if heard is None:
+        return []
+    columns = {
+        "speed": heard.speeds,
+        "restitution": heard.restitutions,
+        "ratio_of_intervals": heard.ratios,
+        "drag_bias": heard.drag_bias,
+        "resolution_bias": heard.resolution_bias,
+    }
+    return [
+        dict(zip(columns, map(float, row), strict=True))
+        for row in zip(*columns.values(), strict=True)
+    ]
+
+
+def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
+    return {
+        "law": fitted.law,
+        "verdict": str(judgement.verdict),
+        "errors_needed": _number(judgement.needed),
+        "restitution": fitted.restitution,
+        "restitution_interval": [_number(x) for x in fitted.interval],
+        "rms": fitted.rms,
+        "left_out_rms": _number(fitted.left_out),
+        "extrapolation_rms": _number(judgement.extrapolation),
+        "chi_square_probability": _number(fitted.p_value),
+        "left_out_probability": _number(judgement.left_out),
+        "extrapolation_probability": _number(judgement.extrapolated),
+        "akaike": _number(fitted.criterion),
+        "contact_time": _number(fitted.contact_time),
+        "contact_time_interval": [_number(x) for x in fitted.time_interval],
+        "parameters": fitted.parameters() if fitted.has_stiffness else None,
+        "units": fitted.units,
+    }
+
+
+def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
+    notes = []
+    if found.drag_bias:
+        notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
+    elif found.is_of_flights:
+        notes += ["The drag of the air was not removed: give the mass and the diameter."]
+    speeds = fitted.points.speeds
+    if not speeds.min() <= speed <= speeds.max():
+        notes += [f"The impact speed {speed:.3g} m/s is outside the measured ones."]
+    if fitted.best.has_stiffness and fitted.best.mass is None:
+        notes += ["Without the mass, stiffness and damping are per kilogram."]
+    return notes
+
+
+def _doubts(options: dict[str, str | None]) -> list[str]:
+    """Sentences on options without a unit that are unusually large in SI units."""
+    kinds = {key.replace(" ", "_"): kind for key, kind in QUANTITIES.items()} | quantities(_At)
+    return [f"{text[0].upper()}{text[1:]}." for text in doubts(options, kinds)]
+
+
+def _design(best: LawFit, speed: float) -> str:
+    """The command for the linear contact with the r and the contact time of the law at an impact
+    speed; what is not known stands there in capitals.
+    """
+    mass = "MASS" if best.mass is None else f'"{best.mass:.6g} kg"'
+    time = f'"{float(best.duration_at(speed)):.6g} s"' if best.has_stiffness else "TIME"
+    restitution = float(best.restitution_at(speed))
+    return (
+        f"bouncing-ball design --mass {mass} --contact-time {time} "
+        f"--measured-restitution {restitution:.6g}"
+    )
+
+
+def _design_of_law(best: LawFit, speed: float) -> str | None:
+    """The command for the contact of the law itself; None if the law is linear."""
+    if best.law == SpringDamper.name:
+        return None
+    return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
+
+
+def fit_lines(answer: dict[str, Any]) -> list[str]:
+    """The answer as text: the impacts that were heard, the laws, notes and the next command."""
+    found = [
+        f"{answer['experiment']}: {_speeds(answer)} m/s",
+        *_errors(answer),
+        "",
+    ]
+    if answer["impacts"]:
+        found += _table(
+            ("v in m/s", "e", "ratio", "by drag", "by resolution"),
+            [_impact(row) for row in answer["impacts"]],
+        )
+        found += [""]
+    found += _table(
+        (
+            "law",
+            f"e at {answer['reference_speed']:.3g} m/s",
+            "95 %",
+            "rms",
+            "left out",
+            "errors needed",
+            "verdict",
+        ),
+        [
+            [
+                law["law"],
+                f"{law['restitution']:.4f}",
+                _interval(law["restitution_interval"], 1, "{:.4f}"),
+                f"{law['rms']:.4f}",
+                _shown(law["left_out_rms"]),
+                _shown(law["errors_needed"]),
+                law["verdict"],
+            ]
+            for law in answer["laws"]
+        ],
+    )
+    timed = [law for law in answer["laws"] if law["contact_time"] is not None]
+    if timed:
+        found += ["", *_timed(timed)]
+    found += ["", *answer["notes"], ""]
+    at = f"at {answer['speed']:.3g} m/s"
+    if answer["design_of_law"] is not None:
+        found += [f"{_best(answer)} as a contact {at}:", f"  {answer['design_of_law']}"]
+        found += ["For engines, the linear contact with the same impact at this speed:"]
+    else:
+        found += [f"{_best(answer)} as a contact {at}:"]
+    return [*found, f"  {answer['design']}"]
+
+
+def _speeds(answer: dict[str, Any]) -> str:
+    """The number of impacts, and their range of speeds."""
+    slowest = f"{answer['slowest']:.3g}"
+    fastest = f"{answer['fastest']:.3g}"
+    count = "1 impact" if answer["points"] == 1 else f"{answer['points']} impacts"
+    return f"{count} at {slowest}" + ("" if fastest == slowest else f" to {fastest}")
+
+
+def _impact(row: dict[str, float]) -> list[str]:
+    """An impact that was heard; what was removed from its e may be small, and has two digits."""
+    biases = [f"{row[name]:.2g}" for name in ("drag_bias", "resolution_bias")]
+    kept = [f"{row[name]:.5f}" for name in ("speed", "restitution", "ratio_of_intervals")]
+    return [*kept, *biases]
+
+
+def _errors(answer: dict[str, Any]) -> list[str]:
+    """The size of the errors of e, and where it is from; nothing if it is not known."""
+    if answer["errors_size"] is None:
+        return []
+    source = "given" if answer["errors_given"] else "by the scatter about a smooth curve"
+    return [f"Errors of e, root mean square: {answer['errors_size']:.2g}, {source}"]
+
+
+def _shown(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
+
+
+def _best(answer: dict[str, Any]) -> str:
+    return next(law["law"] for law in answer["laws"] if law["law"] != "restitution")
+
+
+def _timed(laws: list[dict[str, Any]]) -> list[str]:
+    rows = []
+    for law in laws:
+        numbers = ", ".join(
+            f"{_SHOWN.get(name, name)} {value:.6g} {law['units'][name]}".rstrip()
+            for name, value in law["parameters"].items()
+        )
+        time = f"{law['contact_time'] * 1e3:.4g}"
+        interval = _interval(law["contact_time_interval"], 1e3, "{:.3g}")
+        rows += [[law["law"], time, interval, numbers.replace("_", " ")]]
+    return _table(("law", "contact time in ms", "95 %", "parameters"), rows)
+
+
+def _interval(ends: list[float | None], unit: float, digits: str) -> str:
+    if None in ends:
+        return "-"
+    return " to ".join(digits.format(unit * end) for end in ends if end is not None)
+
+
+def _table(head: tuple[str, ...], rows: list[list[str]]) -> list[str]:
+    """Columns of equal width, two spaces apart."""
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in (head, *rows)
+    ]

@@ -1,0 +1,110 @@
+"""The frequency ratio ϖ that a tolerance needs, from a root of the exact deviation over ϖ."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from bouncing_ball_beyond.accuracy.error_law import law_thresholds
+from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, Quantity, as_deviation
+from bouncing_ball_beyond.accuracy.simple_models import search
+from bouncing_ball_beyond.accuracy.thresholds import RATIOS
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+
+from bouncing_ball.errors import NoOrbitError
+
+
+@dataclass(frozen=True)
+class Needed:
+    """The frequency ratio above which the error of a quantity stays within a tolerance ε.
+
+    The error is the deviation (q - q_SD)/q_SD from the value q_SD on the contact
+    (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`).
+
+    ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
+    tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
+    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact; to this order it does not matter
+    against which of both values the error is taken. A value that does not exist is None,
+    and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
+    """
+
+    quantity: str
+    tolerance: float
+    frequency_ratio: float | None
+    by_law: float | None
+    corrected: float | None
+    status: str
+    corrected_status: str
+
+
+def finite(value: float | np.ndarray) -> float | None:
+    """The value as a Python float; None if it is NaN or infinite."""
+    return float(value) if math.isfinite(value) else None
+
+
+NO_ORBIT = "no orbit"
+"""A status in addition to :class:`~bouncing_ball_beyond.accuracy.thresholds.ThresholdStatus`."""
+
+
+def needed(
+    quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
+) -> Needed:
+    """The ϖ that a tolerance needs, for contacts with the ζ and the release of a given contact.
+
+    Parameters
+    ----------
+    quantity : str
+        One of :class:`~bouncing_ball_beyond.accuracy.errors.Quantity`.
+    tolerance : float
+        Largest modulus of the deviation from the contact that is allowed.
+    contact : SpringDamper
+    n : int
+    amplitude : float
+        Λ.
+
+    Examples
+    --------
+    Without damping the threshold is Λ_SD = 1 - 1/ϖ², for which the restitution model has 1, so
+    that it deviates by 1/(ϖ² - 1):
+
+    >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
+    >>> round(found.frequency_ratio**2, 9), round(found.by_law, 12)
+    (101.0, 10.0)
+    """
+    zeta = contact.damping_ratio
+    rule = contact.release
+    # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
+    # replaced by nπ, which is above the saddle-node.
+    there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
+    try:
+        by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
+    except NoOrbitError:
+        return Needed(
+            quantity=quantity,
+            tolerance=tolerance,
+            frequency_ratio=None,
+            by_law=None,
+            corrected=None,
+            status=NO_ORBIT,
+            corrected_status=NO_ORBIT,
+        )
+    found = search(
+        zeta,
+        rule,
+        n=n,
+        amplitude=amplitude,
+        ratios=RATIOS,
+        tolerance=tolerance,
+        quantities=(quantity,),
+        measure=as_deviation,
+    )
+    simple, corrected = found.threshold[:, 0, 0]
+    status, corrected_status = found.status[:, 0, 0]
+    return Needed(
+        quantity=quantity,
+        tolerance=tolerance,
+        frequency_ratio=finite(simple),
+        by_law=by_law,
+        corrected=finite(corrected),
+        status=str(status),
+        corrected_status=str(corrected_status),
+    )

@@ -1,0 +1,99 @@
+"""What is asked of a contact: how accurate the restitution model must be, and in which engine."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+from bouncing_ball_beyond.accuracy.errors import QUANTITIES, Quantity
+
+from bouncing_ball.errors import (
+    FAMILY,
+    ModelError,
+    one_of,
+    shortened,
+    suggesting,
+)
+from bouncing_ball_contacts.contact.quantities import RestitutionError, TimeStep, Tolerance, convert
+from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.engine import ERROR
+
+# The families of which one is judged by default: those that the paper shows, and some more.
+_FAMILIES = range(1, 9)
+
+
+@suggesting
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """What is asked of a contact on a table.
+
+    Parameters
+    ----------
+    n
+        Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
+    quantity
+        Name of the quantity that must be accurate.
+    tolerance
+        Largest error of the restitution model's quantity against the contact's, relative to that of
+        the contact, such as "5 %" or 0.05.
+
+    Raises
+    ------
+    ModelError
+        If there is no such quantity, or a number is out of range.
+
+    Examples
+    --------
+    >>> Question(tolerance="5 %").tolerance, list(Question(n=2).families)
+    (0.05, [2])
+    """
+
+    n: Annotated[int, FAMILY] | None = None
+    quantity: Annotated[str, Quantity] = "max_height"
+    tolerance: Tolerance = 0.01
+
+    def __post_init__(self) -> None:
+        convert(self)
+        one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
+        if self.n is not None and (isinstance(self.n, bool) or self.n not in FAMILY):
+            raise ModelError(f"index of the family n = {shortened(self.n)} is not {FAMILY}")
+
+    @property
+    def families(self) -> Sequence[int]:
+        """The families n among which the orbit of the answer is."""
+        return _FAMILIES if self.n is None else [int(self.n)]
+
+
+@suggesting
+@dataclass(frozen=True, kw_only=True)
+class EngineSetup:
+    """A physics engine for which a contact is written, and how exactly it must step.
+
+    Parameters
+    ----------
+    engine
+        Name of the physics engine for which the contact is written, such as mujoco or lammps; the
+        contact then ends as in this engine. A wrong name is answered with the list of all.
+    restitution_error
+        Largest error of the restitution coefficient that the engine's time step may cause.
+    time_step
+        The engine's time step, if it is given. The answer then says what the contact does at this
+        step, and which is the stiffest contact with the same r within the error.
+
+    Raises
+    ------
+    ModelError
+        If there is no such engine, or a number is out of range.
+
+    Examples
+    --------
+    >>> EngineSetup(engine="mujoco", time_step="2 ms").time_step
+    0.002
+    """
+
+    engine: str
+    restitution_error: RestitutionError = ERROR
+    time_step: TimeStep = None
+
+    def __post_init__(self) -> None:
+        convert(self)
+        engine_named(self.engine)

@@ -1,0 +1,85 @@
+r"""The time stepping of an engine for a ball in contact with a spring and a damper.
+
+In a free impact p″ = -p - 2ζ p′, where time is in units of 1/ω, ω = √(k/m). The height x = -p
+of the ball above the wall and its velocity v are advanced by a step h in one of two ways
+(:mod:`bouncing_ball_contacts.engines.steps`). Engines implement their contacts differently, but
+each contact is equivalent to one of these maps:
+
+* *semi-implicit Euler*: ``v⁺ = v - h(x + 2ζv)``, ``x⁺ = x + h v⁺``. MuJoCo's Euler integrator
+  with its constraint force; also LAMMPS, LIGGGHTS and MercuryDPM, whose velocity Verlet takes
+  the damper's speed from the last half step: v is then that of the half steps.
+* *implicit Euler*: ``v⁺ = v - h(x⁺ + 2ζv⁺)``, ``x⁺ = x + h v⁺``. Drake's discrete contact.
+* *compensated implicit Euler*: the same with parameters that take back the damping of the step, in
+  place of 1 and 2ζ. Drake's linear contact (SAP), and Bullet's springs, which are constraints with
+  ``cfm`` and ``erp``.
+
+A ball is in contact during a step if x < 0 before this step. A contact with the force release only
+pushes, and a damper that acts on approach only is left out of the steps that begin with v ≥ 0.
+
+The compensation follows from the rates μ of a contact ``x″ = -c x′ - k x``, ``μ² + c μ + k = 0``:
+its motion is a sum of ``exp(μt)``. Implicit Euler with a step h multiplies each part by
+``1/(1 - hμ)`` in place of ``exp(hμ)``, which damps the motion to first order. With the rates ::
+
+    μ′ = (1 - exp(-hμ))/h,   μ = -ln(1 - hμ′)/h
+
+both are equal, so that the computed positions are those of the exact contact with the rates μ. The
+two rates are conjugate or real, so that k′ = μ′₁μ′₂ and c′ = -μ′₁ - μ′₂ are real. Here all k and c
+are per unit of mass.
+
+The compensated positions are those of an exact contact, which begins in the middle of the step
+before the first one in contact: up to half a step before or after the ball meets the wall. The
+damper therefore acts for up to half a step more or less, so that r has the errors ``±ζhr``, and a
+mean error of second order in h. The force release, where v is greatest, adds a second order only.
+"""
+
+from collections.abc import Callable
+from enum import StrEnum
+
+import numpy as np
+
+
+def _with_rates(
+    stiffness: float, damping: float, rates: Callable[[np.ndarray], np.ndarray]
+) -> tuple[float, float]:
+    """k and c of the contact whose rates are a function of the rates of this one."""
+    # Real if ζ ≥ 1; the rate of the smaller amount from the product, because the sum would cancel.
+    larger = -damping / 2 - np.emath.sqrt(damping * damping / 4 - stiffness)
+    found = rates(np.array([larger, stiffness / larger]))
+    return float(np.prod(found).real), float(-np.sum(found).real)
+
+
+def compensated(stiffness: float, damping: float, step: float) -> tuple[float, float]:
+    """k′ and c′ with which implicit Euler has the positions of the exact contact.
+
+    If the step alone damps more than the contact, about from h√k = 2ζ on, c′ is 0, because engines
+    have no negative damping.
+
+    Examples
+    --------
+    >>> k, c = compensated(100.0, 2.0, 0.01)
+    >>> bool(np.allclose(represented(k, c, 0.01), (100.0, 2.0), rtol=1e-12))
+    True
+    """
+    k, c = _with_rates(stiffness, damping, lambda rate: -np.expm1(-step * rate) / step)
+    return k, max(0.0, c)
+
+
+def represented(stiffness: float, damping: float, step: float) -> tuple[float, float]:
+    """k and c of the exact contact that implicit Euler computes with k′ and c′.
+
+    Examples
+    --------
+    Without a damper the step damps like c = kh, to first order:
+
+    >>> [round(value, 3) for value in represented(100.0, 0.0, 1e-3)]
+    [99.996, 0.1]
+    """
+    return _with_rates(stiffness, damping, lambda rate: -np.log1p(-step * rate) / step)
+
+
+class Scheme(StrEnum):
+    """The time-stepping scheme of an engine for a ball in contact, and the choice of parameters."""
+
+    SEMI_IMPLICIT = "semi-implicit Euler"
+    IMPLICIT = "implicit Euler"
+    COMPENSATED = "compensated implicit Euler"

@@ -1,0 +1,186 @@
+r"""One time step of an engine for a ball in contact, and balls that are followed by such steps.
+
+An engine adds gravity to the velocity v of a ball, ``v - gh`` with its step h, then the contact
+acts, if the ball is at x < 0 before the step, and moves the ball with the velocity v⁺ that results,
+``x⁺ = x + h v⁺``. A contact is therefore one function, which gives v⁺. All stiffnesses and dampings
+are per unit of mass, in units of any time and length.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Protocol, Self
+
+import numpy as np
+from bouncing_ball_beyond.models.damping import Release
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.engines.scheme import Scheme, compensated
+
+# A ball that has not left after so many steps, and as many times the duration of a contact, stays.
+_FEW = 200
+_LONG = 20
+
+
+class Step(Protocol):
+    """A time step of the size h of balls in contact."""
+
+    @property
+    def size(self) -> float: ...
+
+    def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """v⁺ of balls at x < 0 with the velocity v ``before``, and ``free`` v - gh without contact.
+
+        All arrays have the same shape.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class LinearStep:
+    """A step with a spring and a damper: ``v⁺ = free - hk y`` with ``y = x + (c/k) v``, where x and
+    v are those before the step, or after it in implicit steps.
+
+    A contact with the force release acts only where y < 0.
+
+    Examples
+    --------
+    >>> step = LinearStep.of(Scheme.IMPLICIT, 1.0, 0.2, Release.FORCE, 0.5)
+    >>> step.matrix.round(3).tolist()
+    [[0.815, 0.37], [-0.37, 0.741]]
+    """
+
+    scheme: Scheme
+    stiffness: float
+    damping: float
+    release: Release
+    size: float
+
+    @classmethod
+    def of(
+        cls, scheme: Scheme, stiffness: float, damping: float, release: Release, size: float
+    ) -> Self:
+        """The step for a contact, with other parameters than its k and c if they compensate h.
+
+        Raises
+        ------
+        ModelError
+            If no engine with this scheme has the release.
+        """
+        if not release.is_linear and scheme is not Scheme.SEMI_IMPLICIT:
+            raise ModelError(f"no scheme is known for {scheme} with the release {release}")
+        if scheme is Scheme.COMPENSATED:
+            stiffness, damping = compensated(stiffness, damping, size)
+        return cls(scheme, stiffness, damping, release, size)
+
+    @property
+    def is_implicit(self) -> bool:
+        """Whether the force is that at the end of the step."""
+        return self.scheme is not Scheme.SEMI_IMPLICIT
+
+    def grip(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """y at the start of a step, or in implicit steps that after a step without contact."""
+        lag = self.damping / self.stiffness
+        if self.is_implicit:
+            return place + (self.size + lag) * free
+        rate = before if self.release.is_linear else np.minimum(before, 0.0)
+        return place + lag * rate
+
+    def _held(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """v⁺ of balls on which the contact acts, also where it pulls."""
+        h = self.size
+        if self.is_implicit:
+            slowing = 1 + h * self.damping + h * h * self.stiffness
+            return (free - h * self.stiffness * place) / slowing
+        return free - h * self.stiffness * self.grip(place, before, free)
+
+    def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        held = self._held(place, before, free)
+        if self.release.at_surface:
+            return held
+        return np.where(self.grip(place, before, free) < 0, held, free)
+
+    @cached_property
+    def matrix(self) -> np.ndarray:
+        """The matrix of (x, v) of a step in contact without gravity, also where the force pulls."""
+        place, before = np.eye(2)
+        held = replace(self, release=Release.DISPLACEMENT)._held(place, before, before)
+        return np.stack([place + self.size * held, held])
+
+    @cached_property
+    def ending(self) -> np.ndarray:
+        """The numbers by which (x, v) is multiplied for what ends a contact where it is ≥ 0: y for
+        the force release, otherwise x.
+        """
+        place, before = np.eye(2)
+        return place if self.release.at_surface else self.grip(place, before, before)
+
+    @cached_property
+    def elastic(self) -> Self:
+        """The step without the damper."""
+        return replace(self, damping=0.0)
+
+
+@dataclass(frozen=True)
+class HuntCrossleyStep:
+    """A step of Drake with the damping d of Hunt and Crossley.
+
+    The force of a step is that of its end, ``f = k (p - h v⁺)(1 - d v⁺)`` with both factors not
+    below 0, where p = -x is the penetration at its start, so that ::
+
+        v⁺ = free + hk (p - h v⁺)(1 - d v⁺)
+
+    is a quadratic equation for v⁺. Without damping the step is one of implicit Euler. As a linear
+    damper of the parameters could, this one cannot take back the damping of the step, because it
+    grows with the penetration.
+
+    Source: Drake's documentation of its discrete contact approximations, "lagged" and "similar".
+    """
+
+    stiffness: float
+    damping: float
+    size: float
+
+    def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        p = np.maximum(-place, 0.0)
+        pull = self.size * self.stiffness
+        linear = 1 + pull * (p * self.damping + self.size)
+        square = pull * self.size * self.damping
+        start = pull * p + free
+        root = np.sqrt(np.maximum(linear * linear - 4 * square * start, 0.0))
+        held = 2 * start / (linear + root)
+        # A ball that separates faster leaves the wall within the step, or its damper takes off all.
+        fast = p / self.size
+        if self.damping > 0:
+            fast = np.minimum(fast, 1 / self.damping)
+        return np.where(free < fast, held, free)
+
+
+def patience(steps: float) -> int:
+    """The number of steps after which a ball in a contact of so many steps is taken to stay."""
+    return _FEW + int(_LONG * steps)
+
+
+def until_outside(
+    step: Step, place: np.ndarray, velocity: np.ndarray, most: int, gravity: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """x and v of balls at the first step that begins outside of the contact, or after ``most``.
+
+    Examples
+    --------
+    An elastic ball returns with the speed with which it came, and nearly at the same place:
+
+    >>> step = LinearStep.of(Scheme.SEMI_IMPLICIT, 1.0, 0.0, Release.FORCE, 0.001)
+    >>> x, v = until_outside(step, np.array([-1e-9]), np.array([-1.0]), 5000)
+    >>> bool(0 <= x[0] < 0.001), round(float(v[0]), 5)
+    (True, 1.0)
+    """
+    x = place
+    v = velocity
+    for _ in range(most):
+        inside = x < 0
+        if not inside.any():
+            break
+        after = step.velocity(x, v, v - step.size * gravity)
+        v = np.where(inside, after, v)
+        x = np.where(inside, x + step.size * v, x)
+    return x, v

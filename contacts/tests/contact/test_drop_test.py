@@ -1,0 +1,162 @@
+"""Drop tests and orbits of designs against an integration by scipy, which shares no code."""
+
+import math
+
+import numpy as np
+import pytest
+from asked_contacts import answered, assessed, described
+from bouncing_ball_beyond.models.damping import LINEAR, Release
+from bouncing_ball_beyond.models.laws.hertzian import KuwabaraKono, Tsuji
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_contacts.contact.drop_test import rebound
+from bouncing_ball_contacts.contact.rebounds import rises, slowed
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import ModelError
+
+G = 9.80665
+PRECISE = {"rtol": 1e-11, "atol": 1e-15, "method": "DOP853"}
+
+
+def ended(event):
+    event.terminal = True
+    event.direction = -1
+    return event
+
+
+def one_contact(m, k, c, release, table, start, speed):
+    """Time, height and velocity of the ball at the end of a contact with a moving table."""
+    amplitude, omega = table
+
+    def grip(t, y):
+        depth = amplitude * math.sin(omega * t) - y[0]
+        rate = amplitude * omega * math.cos(omega * t) - y[1]
+        return depth, rate
+
+    def motion(t, y):
+        depth, rate = grip(t, y)
+        return y[1], (k * depth + c * rate) / m - G
+
+    def holds(t, y):
+        depth, rate = grip(t, y)
+        return k * depth + c * rate if release == "force" else depth
+
+    # A first small part, because the penetration is zero at the start, too.
+    length = math.sqrt(m / k)
+    y = [amplitude * math.sin(omega * start), speed]
+    first = solve_ivp(motion, [start, start + 1e-4 * length], y, **PRECISE)
+    time = first.t[-1]
+    y = first.y[:, -1]
+    run = solve_ivp(motion, [time, time + 40 * length], y, events=ended(holds), **PRECISE)
+    assert len(run.t_events[0]) == 1
+    return run.t_events[0][0], *run.y_events[0][0]
+
+
+def rise(found, mass, drop):
+    """The height to which the ball of a design rises after a drop onto a table at rest."""
+    release = str(found.case.equivalent.release)
+    speed = -math.sqrt(2 * G * drop)
+    numbers = (mass, found.stiffness, found.damping)
+    _, height, velocity = one_contact(*numbers, release, (0.0, 1.0), 0.0, speed)
+    return height + velocity**2 / (2 * G)
+
+
+DROP = {"mass": 0.02, "drop_height": "20 cm", "rebound_height": "4 cm"}
+SHAKEN = {"frequency": "20 Hz", "acceleration": "1.5 g"}
+
+
+@pytest.mark.parametrize(
+    ("given", "drop", "height"),
+    [
+        (DROP | {"contact_time": "50 ms"}, 0.2, 0.04),
+        (DROP | {"contact_time": "50 ms", "release": "force"}, 0.2, 0.04),
+        (DROP | {"contact_time": "50 ms", "engine": "mujoco"}, 0.2, 0.04),
+        (
+            DROP | {"contact_time": 0.05, "drop_height": 0.1, "rebound_height": "9 mm"}
+            | {"engine": "lammps"}, 0.1, 0.009,
+        ),
+        (DROP | {"stiffness": "90 N/m", "release": "force"}, 0.2, 0.04),
+        (DROP | SHAKEN | {"stiffness": "2 kN/m", "n": 1, "rebound_height": "10 cm"}, 0.2, 0.1),
+        # A stiffness that is chosen for a tolerance.
+        (
+            DROP | SHAKEN | {"rebound_height": "10 cm", "n": 1, "tolerance": "20 %"}, 0.2, 0.1,
+        ),
+    ],
+)  # fmt: skip
+def test_a_ball_that_is_dropped_with_gravity_rises_as_measured(given, drop, height, short_runs):
+    found = answered(**given).found
+    assert rise(found, 0.02, drop) == pytest.approx(height, rel=1e-7)
+    if "contact_time" in given:
+        assert found.contact_time == pytest.approx(0.05, rel=1e-9)
+    (note,) = [x for x in found.notes if x.startswith("dropped from")]
+    assert f"r = {found.measured_restitution:.4g} without gravity" in note
+
+
+def test_a_drop_on_a_damper_that_acts_on_approach_alone_is_read_with_gravity_as_well():
+    given = DROP | {"contact_time": "50 ms", "rebound_height": "10 cm", "release": "approach"}
+    found = answered(**given).found
+    (note,) = [x for x in found.notes if x.startswith("dropped from")]
+    assert f"r = {found.measured_restitution:.4g} without gravity" in note
+    assert found.measured_restitution > math.sqrt(0.5) + 0.01
+
+
+@pytest.mark.parametrize("release", LINEAR)
+def test_gravity_lowers_the_restitution_by_one_percent_at_the_speed_that_is_given(release):
+    found = described(mass=0.02, stiffness=2000.0, measured_restitution=0.7, release=release)
+    drop = found.slowed_speed**2 / (2 * G)
+    assert math.sqrt(rise(found, 0.02, drop) / drop) == pytest.approx(0.99 * 0.7, rel=1e-7)
+    elastic = described(mass=0.02, stiffness=2000.0, restitution=1.0, release=release)
+    assert elastic.slowed_speed is None
+
+
+def test_a_drop_that_no_contact_has_is_refused_in_one_line():
+    low = DROP | {"stiffness": 1e6, "release": "force", "rebound_height": "1 mm"}
+    with pytest.raises(ModelError, match=r"no contact rebounds from drop_height 0\.2 m to reb"):
+        described(**low)
+    # It is the rebound of the strongest damping: e⁻⁴ of the height, for a very stiff contact.
+    least = rebound(math.sqrt(1e10 / 0.02), 1 - 1e-9, 0.2, G, Release.FORCE)
+    assert least == pytest.approx(0.2 * math.exp(-4), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "restitution", "acceleration", "release"),
+    [
+        (2e3, 0.65, "1 g", "displacement"),
+        (2e4, 0.65, "1 g", "force"),
+        (5e3, 0.8, "0.9 g", "displacement"),
+    ],
+)
+def test_the_orbit_of_a_design_is_that_of_an_integration(
+    stiffness, restitution, acceleration, release, short_runs
+):
+    found = assessed(
+        mass=0.02, frequency="20 Hz", acceleration=acceleration, n=1, stiffness=stiffness,
+        restitution=restitution, release=release,
+    )  # fmt: skip
+    one = found.judged
+    assert one.is_stable
+    table = (found.case.table.table_amplitude, found.case.table.angular_frequency)
+    orbit = n_t.orbit(found.case.models["spring-damper"], 1, found.amplitude)
+    start = float(orbit.phase) / table[1]
+    speed = float(orbit.impact_velocity) * G / table[1]
+    numbers = (0.02, found.stiffness, found.damping)
+    end, height, velocity = one_contact(*numbers, release, table, start, speed)
+    top = height + velocity**2 / (2 * G)
+    assert top == pytest.approx(one.max_height, rel=1e-8)
+    assert end - start == pytest.approx(one.contact_duration, rel=1e-7)
+    # After a period the ball meets the table again, with the same velocity.
+    flight = start + 0.05 - end
+    back = height + velocity * flight - G * flight**2 / 2
+    assert back == pytest.approx(table[0] * math.sin(table[1] * start), abs=1e-9)
+    assert velocity - G * flight == pytest.approx(speed, rel=1e-7)
+    simple = n_t.orbit(found.case.models["restitution"], 1, found.amplitude).max_height
+    predicted = float(simple) * found.case.table.length
+    assert one.errors["max_height"] == pytest.approx(predicted / top - 1, abs=1e-7)
+    assert np.sign(one.errors["max_height"]) == np.sign(predicted - top)
+
+
+@pytest.mark.parametrize("law", [Tsuji(100.0, 0.3), KuwabaraKono(100.0, 0.01)])
+def test_at_the_speed_at_which_gravity_is_felt_r_is_lowered_by_one_percent_for_a_law(law):
+    speed = np.array([slowed(law, 1e5)])
+    share = np.sqrt(2 * rises(law, speed)) / speed / law.signature(speed).restitution
+    assert share == pytest.approx(0.99, rel=1e-9)

@@ -1,0 +1,64 @@
+"""One step of an engine's ball in contact, and impacts and drops as uses of it."""
+
+import math
+
+import numpy as np
+import pytest
+from bouncing_ball_beyond.models.damping import LINEAR, Release
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.engines.drop_in_steps import drop_in_steps
+from bouncing_ball_contacts.engines.impacts import restitution_in_steps
+from bouncing_ball_contacts.engines.scheme import Scheme
+from bouncing_ball_contacts.engines.steps import (
+    HuntCrossleyStep,
+    LinearStep,
+    patience,
+    until_outside,
+)
+
+CASES = [(scheme, rule) for scheme in Scheme for rule in LINEAR]
+
+
+@pytest.mark.parametrize(("scheme", "release"), [*CASES, (Scheme.SEMI_IMPLICIT, Release.APPROACH)])
+@pytest.mark.parametrize("zeta", [0.0, 0.2, 0.7])
+def test_powers_are_the_steps_one_by_one(scheme, release, zeta):
+    fraction = np.linspace(0.013, 0.987, 40)
+    found = restitution_in_steps(scheme, zeta, release, 300, fraction)
+    h = float(SpringDamper(1.0, zeta, release).free_duration) / 300
+    step = LinearStep.of(scheme, 1.0, 2 * zeta, release, h)
+    x, v = until_outside(step, -h * fraction, np.full(40, -1.0), patience(300))
+    # Rounding errors of 300 steps.
+    assert np.all(x >= 0) and found == pytest.approx(v, rel=300 * 1e-15)
+
+
+@pytest.mark.parametrize("h", [0.01, 0.3, 2.0])
+def test_without_damping_a_hunt_crossley_step_is_one_of_implicit_euler(h):
+    rng = np.random.default_rng(2)
+    x = -rng.uniform(0.0, 2.0, 200)
+    v = rng.uniform(-2.0, 2.0, 200)
+    linear = LinearStep.of(Scheme.IMPLICIT, 3.0, 0.0, Release.FORCE, h)
+    found = HuntCrossleyStep(3.0, 0.0, h).velocity(x, v, v - 0.1)
+    assert found == pytest.approx(linear.velocity(x, v, v - 0.1), rel=1e-13, abs=1e-14)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.4])
+def test_the_force_of_a_hunt_crossley_step_is_that_of_its_end(damping):
+    rng = np.random.default_rng(4)
+    x = -rng.uniform(0.0, 2.0, 500)
+    free = rng.uniform(-4.0, 8.0, 500)
+    h, k = 0.2, 5.0
+    after = HuntCrossleyStep(k, damping, h).velocity(x, free, free)
+    force = k * np.maximum(-x - h * after, 0.0) * np.maximum(1 - damping * after, 0.0)
+    assert after == pytest.approx(free + h * force, rel=1e-13, abs=1e-13)
+
+
+def test_a_drop_on_a_hunt_crossley_contact_in_small_steps_rises_as_the_work_of_its_damper_allows():
+    # A stiff contact hardly feels gravity: (1 - rD) exp(D (1 + r)) = 1 + D at its impact speed.
+    speed, damping, omega, g = 2.0, 0.25, 2e4, 9.81
+    step = HuntCrossleyStep(omega**2, damping, 1e-7)
+    rise = drop_in_steps(step, speed, g, 2 * math.pi / omega)
+    d = damping * speed
+    for height in (rise.least, rise.most):
+        r = math.sqrt(2 * g * height) / speed
+        # Errors of first order in ωΔt = 2e-3, and of the weight over the force, g/(ωV).
+        assert (1 - r * d) * math.exp(d * (1 + r)) == pytest.approx(1 + d, abs=2e-3)

@@ -1,0 +1,225 @@
+"""Files of measured impacts: those of the package, and hostile ones."""
+
+import re
+import sys
+
+import numpy as np
+import pytest
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.measured.experiment import DATA, experiment, experiment_names, read
+
+from bouncing_ball.errors import ModelError
+
+
+def test_every_experiment_says_where_its_numbers_come_from():
+    assert len(experiment_names()) >= 5
+    for name in experiment_names():
+        found = experiment(name)
+        for text in ("title", "ball", "measured by", "published", "source", "read"):
+            assert found.texts[text], (name, text)
+        assert found.texts["source"].startswith("http")
+        assert np.all((found.restitutions > 0) & (found.restitutions <= 1))
+
+
+def test_the_experiments_of_the_package_need_no_other_units(monkeypatch):
+    # A job of the workflow may not import pint.
+    monkeypatch.setitem(sys.modules, "pint", None)
+    for name in experiment_names():
+        assert experiment(name).speeds.size
+
+
+def test_the_table_of_gugan():
+    croquet = experiment("croquet")
+    assert croquet.speeds.tolist() == [0.5, 1, 1.64, 2.04, 2, 2.83, 3.51, 4.43, 5.47, 6.01]
+    assert croquet.restitutions[:3].tolist() == [0.857, 0.842, 0.829]
+    times = [0.75, 0.75, 0.50, 0.75, 0.75, 0.87, 0.75]
+    assert croquet.durations == pytest.approx(np.mean(times) * 1e-3, rel=1e-4)
+
+
+def test_the_spans_of_ten_bounces_give_the_numbers_in_the_file():
+    """The speeds and e of metallic glass again, from the spans that its head quotes."""
+    found = experiment("metallic_glass")
+    quoted = found.texts["read"].partition("digits:")[2]
+    spans = np.array(re.findall(r"(\d+\.\d{3}) (\d+\.\d{3})", quoted), dtype=float)
+    assert spans.shape == (9, 2)
+    mean = (spans[:, 1] - spans[:, 0]) / 10
+    start = spans.mean(axis=1) - mean / 2
+    e = 1 - (mean[:-1] - mean[1:]) / (start[1:] - start[:-1])
+    np.testing.assert_allclose(found.restitutions, e, atol=6e-7)
+    speeds = STANDARD_GRAVITY * (mean[:-1] + mean[1:]) / 4
+    np.testing.assert_allclose(found.speeds, speeds, atol=6e-6)
+
+
+def test_that_rule_is_exact_for_a_constant_restitution():
+    intervals = 0.25 * 0.99 ** np.arange(200)
+    times = np.concatenate([[0.0], np.cumsum(intervals)])
+    spans = np.array([[times[k], times[k + 10]] for k in (0, 30, 70)])
+    mean = (spans[:, 1] - spans[:, 0]) / 10
+    starts = np.array([times[k : k + 10].mean() for k in (0, 30, 70)])
+    np.testing.assert_allclose((mean[:-1] - mean[1:]) / np.diff(starts), 0.01, rtol=1e-12)
+    # The middle of a span less half an interval is earlier than the mean start by (n² - 1)/12 steps
+    # of the interval, n = 10. By its difference 1 - e is wrong by 8.25 (1 - e)² of its value.
+    early = starts - (spans.mean(axis=1) - mean / 2)
+    np.testing.assert_allclose(early, 99 / 12 * 0.01 * mean, rtol=0.05)
+
+
+def test_the_drag_is_removed_where_the_ball_is_known():
+    plastic = experiment("plastic_ball")
+    heights = np.array([0.10, 0.46])
+    back = np.array([0.015, 0.060])
+    plain = np.sqrt(back / heights)
+    found = plastic.restitutions[[0, -1]]
+    # To first order e grows by (h + h′)/(2ℓ) of its value, ℓ = 69 m.
+    np.testing.assert_allclose(found / plain - 1, (heights + back) / 2 / 69.35, rtol=0.01)
+    assert plastic.drag_bias == pytest.approx(found[-1] - plain[-1], rel=1e-6)
+
+
+def test_errors_by_a_height_are_those_of_a_difference():
+    plain = experiment("bouncy_ball")
+    heights = np.array([[0.10, 0.05], [1.70, 0.96]])
+    places = [0, -3]
+    higher = np.sqrt((heights[:, 1] + 1e-7) / heights[:, 0])
+    slope = (higher - np.sqrt(heights[:, 1] / heights[:, 0])) / 1e-7
+    np.testing.assert_allclose(plain.relative_errors[places], slope, rtol=1e-5)
+    # Errors that are given, or speeds in the file, leave none to be taken by their ratios.
+    assert experiment("croquet").relative_errors is None
+    assert experiment("membrane_light").relative_errors is None
+
+
+def write(tmp_path, text, name="drops.csv"):
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_units_are_those_of_the_heading(tmp_path):
+    path = write(tmp_path, "speed [km/h], restitution [%], duration [us]\n3.6, 80, 250\n7.2, 70,\n")
+    found = read(path)
+    assert found.speeds.tolist() == [1.0, 2.0]
+    assert found.restitutions.tolist() == [0.8, 0.7]
+    assert found.durations[0] == 250e-6 and np.isnan(found.durations[1])
+
+
+def test_a_list_of_intervals_needs_no_heading(tmp_path):
+    path = write(tmp_path, "0.8\n0.4\n0.2\n")
+    assert read(path, intervals=True).restitutions.tolist() == [0.5, 0.5]
+    times = write(tmp_path, "time [ms]\n-100\n700\n1100\n1300\n", "times.csv")
+    np.testing.assert_allclose(read(times).restitutions, 0.5, rtol=1e-12)
+
+
+def test_recordings_are_read_apart(tmp_path):
+    head = "# resolution: 1 ms\n"
+    one = "0.8\n0.4\n0.2\n"
+    other = "0.9\n0.3\n"
+    both = "recording,interval [s]\n7,0.8\n7,0.4\n7,0.2\n1,0.9\n1,0.3\n"
+    parts = [read(write(tmp_path, head + text), intervals=True) for text in (one, other)]
+    found = read(write(tmp_path, head + both))
+    for name in ("speeds", "restitutions"):
+        wanted = np.concatenate([getattr(part, name) for part in parts])
+        np.testing.assert_array_equal(getattr(found, name), wanted)
+    # Errors within a recording are correlated, those of two recordings are not.
+    np.testing.assert_array_equal(found.uncertainties[:2, :2], parts[0].uncertainties)
+    assert found.uncertainties[0, 1] < 0
+    assert np.all(found.uncertainties[:2, 2] == 0)
+    times = "recording,time [s]\n7,5.0\n7,5.8\n7,6.2\n1,0\n1,0.9\n1,1.2\n"
+    apart = read(write(tmp_path, times))
+    np.testing.assert_allclose(apart.restitutions, [0.5, 1 / 3], rtol=1e-12)
+
+
+def test_a_golf_ball_that_was_heard_loses_a_tenth_of_its_speed():
+    golf = experiment("golf_ball")
+    assert golf.speeds.size == 5 * 7 and golf.uncertainties is None
+    # The first fall has 845.25 and 759.90 ms. By the series of T and v in s = u/w, e is the ratio
+    # of the intervals times 1 + (s₁² + s₂²)/4, s = gT/(2w) and w² = gℓ, up to terms in s⁴.
+    intervals = np.array([0.84525, 0.75990])
+    first = golf.heard.ratios[0]
+    assert first == pytest.approx(intervals[1] / intervals[0], rel=1e-5)
+    length = 2 * 0.0415 / (1.2 * 0.47 * np.pi * 0.042**2 / 4)
+    squares = STANDARD_GRAVITY * intervals**2 / (4 * length)
+    assert golf.restitutions[0] / first - 1 == pytest.approx(squares.sum() / 4, rel=0.01)
+
+
+@pytest.mark.parametrize(("name", "density"), [("membrane_heavy", 7930), ("membrane_light", 3250)])
+def test_the_balls_on_a_membrane_have_the_mass_of_their_density(name, density):
+    found = experiment(name)
+    assert found.mass == pytest.approx(density * np.pi / 6 * found.diameter**3, rel=1e-3)
+    assert found.durations.shape == found.duration_uncertainties.shape == found.speeds.shape
+
+
+def test_options_stand_in_place_of_the_head(tmp_path):
+    path = write(tmp_path, "# mass: 10 g\n# resolution: 1 ms\ninterval [s]\n0.8\n0.4\n0.2\n")
+    found = read(path, mass="20 g", contact_time="1 ms")
+    assert found.mass == 0.02 and found.durations == 1e-3
+    assert found.uncertainties.shape == (2, 2)
+
+
+HEAD = "speed [m/s],restitution\n"
+HOSTILE = {
+    "": "no line with the names of the columns",
+    HEAD: "no line of numbers",
+    "recording,interval\n1,0.8\n1,0.4\n2,0.7\n": "recording 2 has fewer than two intervals",
+    "recording,interval\nA,0.8\nA,0.4\n": "line 2: recording = 'A' does not begin with a number",
+    "recording,speed\n1,0.8\n": "line 1: the columns must be",
+    "recording,speed,restitution\n1,1,0.8\n": "line 1: a column recording needs a column interval",
+    "speed,drop_height,restitution\n1,2,0.8\n": "line 1: the columns must be",
+    "interval,time\n0.8,0\n": "line 1: the columns must be",
+    "interval,uncertainty\n0.8,0.1\n": "line 1: intervals and times have no column uncertainty",
+    "time,duration\n0.8,0.1\n": "line 1: intervals and times have no column duration",
+    "speed,restitution,duration_uncertainty\n1,0.8,0.1\n": "needs a column duration",
+    "# resolution: 1 ms\n" + HEAD + "1,0.8\n": "a resolution needs intervals or times",
+    "# contact time uncertainty: 1 ms\n" + HEAD + "1,0.8\n": "needs the contact time",
+    "interval\n0,8\n": "line 2: 2 values for one column",
+    HEAD + "1.0,nan\n": "line 2: restitution = 'nan' does not begin with a number",
+    HEAD + "1.0,1.2\n": "line 2: restitution = 1.2 is not a number in (0, 1]",
+    HEAD + "1.0,85\n": "line 2: restitution = 85 is not a number in (0, 1]",
+    HEAD + "1.0,0.8,0.1\n": "line 2: 3 values for 2 columns",
+    HEAD + "1.0\n": "line 2: 1 values for 2 columns",
+    HEAD + "0,50,0,857\n": "line 2: 4 values for 2 columns; numbers have a decimal point",
+    HEAD + '"0,50","0,857"\n': "line 2: speed = 0,50 has a comma: write '0.50'",
+    HEAD + "0,8;0,9\n": "line 2: 3 values for 2 columns",
+    HEAD + "0.8;0.9\n": "line 2: 1 values for 2 columns",
+    HEAD + "1.0,\n": "line 2: restitution = ",
+    HEAD + "-1.0,0.8\n": "line 2: speed = -1",
+    HEAD + "1 m/s,0.8 m\n": "line 2: restitution = 0.8 m",
+    "speed [kg],restitution\n1,0.8\n": "line 1: speed = 1 kg is in",
+    "speed,velocity\n1,0.8\n": "line 1: unknown column 'velocity': one of speed",
+    "speed,speed\n1,0.8\n": "line 1: the columns must be",
+    "speed\n1\n": "line 1: the columns must be speed and restitution",
+    "# weight: 3 N\n" + HEAD: "line 1: unknown key 'weight': one of title",
+    "# mass: 3 s\n" + HEAD: "line 1: mass = 3 s is in second, not in kg",
+}
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+def test_hostile_files_get_one_line(tmp_path, refusal, text):
+    path = write(tmp_path, text)
+    with refusal(ModelError, HOSTILE[text]):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["interval\n0.8\n0.9\n", "time\n0\n1\n0.5\n", "drop_height,rebound_height\n1,2\n"],
+)
+def test_numbers_that_no_ball_has_are_those_of_a_file(tmp_path, refusal, text):
+    path = write(tmp_path, text)
+    with refusal(ModelError, str(path)):
+        read(path)
+
+
+def test_the_uncertainty_of_a_contact_time_may_belong_to_a_column(tmp_path):
+    head = "# contact time uncertainty: 0.1 ms\nspeed,restitution,duration [ms]\n"
+    assert read(write(tmp_path, head + "1,0.8,1\n")).duration_uncertainties == 1e-4
+
+
+def test_files_that_are_none_get_one_line(tmp_path, refusal):
+    with refusal(ModelError, "cannot be read", "No such file"):
+        read(tmp_path / "none.csv")
+    path = tmp_path / "picture.csv"
+    path.write_bytes(b"\xff\xfe\x00\x01")
+    with refusal(ModelError, "it is not a text in UTF-8"):
+        read(path)
+    with refusal(ModelError, "no column interval or time"):
+        read(DATA / "croquet.csv", intervals=True)
+    with refusal(ModelError, "unknown experiment 'none': one of"):
+        experiment("none")

@@ -1,28 +1,15 @@
-"""Models of the impact, and the simulation of balls from impact to impact (Eqs. 1-5, 9, 12-15).
+"""The ball and the table: the flight, two models of the impact, permanent contact, simulation.
 
-The modules in reading order:
+============================ ==========================================================
+:mod:`.flight`               the table w = Λ sin τ, and the flight under gravity
+:mod:`.damping`              damping from restitution (Eq. 16), the two release rules
+:mod:`.model`                what both models share: what an impact does to a ball
+:mod:`.restitution`          impacts with a restitution coefficient (Eqs. 2, 9)
+:mod:`.spring_damper`        contacts with a spring and a damper (Eqs. 10-13, 17, 23)
+:mod:`.permanent_contact`    the thresholds Λ_CR and Λ_SD (Eqs. 9, 28-36)
+:mod:`.history`              balls over time, from impact to impact
+============================ ==========================================================
 
-``flight``                    free flight and the landing that ends it
-``waveform``, ``suspension``  tables of several harmonics, drag and springs
-``linear_flight``, ``setting``     flights over them, and where a ball bounces
-``contact``, ``deviations``   the interface of a contact, and how small deviations of a ball grow
-``contacts_and_flights``      what a model says of them, for simulations and for periodic orbits
-``sequence``, ``dynamics``    simulated impacts, and the simulation by contacts and flights
-``restitution``, ``sticking``      impacts with a restitution coefficient, and rest on the table
-``damping``, ``oscillator``, ``linear_flow``   the formulas of a linear contact and of its motion
-``resumption``                flight below the table's level, after a contact
-``laws``                      contact laws, of which the linear one is a case
-``linear_contact``            linear contacts to their release
-``held_contact``              the same on any table, and beside a drag or a further spring
-``permanent_contact``, ``approach_threshold``   the Λ up to which a ball stays on the table
-``instant``                   a contact seen from outside, as an impact at an instant
-``ball``, ``model``           what all balls share, and the interface of every model
-``rigid``, ``restitution_by_speed``   models with instantaneous impacts
-``spring_damper``             the paper's contact
-``contact_model``             balls on a contact of any law
-``makers``                    balls by their parameters, which a user calls
-``history``                   the motion of a ball over time
-``as_text``                   models as text, from which they come back exactly
-
-The package ``corrected`` has the corrected model.
+All quantities are dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, phases in radians. The
+displacement of the ball relative to the table is δ = z - w.
 """

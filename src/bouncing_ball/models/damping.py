@@ -1,32 +1,22 @@
-"""Damping, restitution and the release rule of a linear contact (Eqs. 16, 23).
+"""Damping, restitution and the release rule of a contact with a spring and a damper (Eqs. 16, 23).
 
-A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the
-table's level; with κ = 2ζ/ϖ the contact force vanishes. Formulas
-contain the condition as ``sin α = κϖ/2``, which is 0 or ζ, so that both releases have the same
-formulas; a free contact ends at the angle π - 2α.
+A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the table's level; with
+κ = 2ζ/ϖ the contact force vanishes. Formulas contain the condition as ``sin α = κϖ/2``, which is 0
+or ζ, so that both releases have the same formulas; a free contact ends at the angle π - 2α.
 
-During half a period of a free damped oscillator, without gravity, the speed is
-multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instead the
-contact ends where its force vanishes, at the angle π - 2 arcsin ζ, the
-speed is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
-Pöschel, Granular Matter 9, 2007).
-
-A damper that acts on approach only is one of these contacts up to the greatest penetration, at the
-angle arccos ζ, and then the spring alone, for a quarter of its period. The first part multiplies
-the speed ω p by ``exp(-ζ arccos ζ / √(1 - ζ²))``, which is the root of the r of the force release,
-because π - 2 arcsin ζ = 2 arccos ζ; the second part conserves it.
+During half a period of a free damped oscillator, without gravity, the speed is multiplied by
+``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instead the contact ends where its force
+vanishes, at the angle π - 2 arcsin ζ, the speed is multiplied by
+``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and Pöschel, Granular Matter 9, 2007).
 """
 
-from collections.abc import Callable
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import RESTITUTION, one_of, require
 from bouncing_ball.numerics.arrays import as_numbers
-from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
 
 
 class Release(StrEnum):
@@ -36,8 +26,6 @@ class Release(StrEnum):
     """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
     FORCE = "force"
     """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0, so that it never pulls the ball."""
-    APPROACH = "approach"
-    """The damper acts while the ball approaches only: the force vanishes where δ = 0."""
 
     @classmethod
     def of(cls, rule: str) -> "Release":
@@ -55,30 +43,6 @@ class Release(StrEnum):
         """
         return one_of("release", rule, {str(each): each for each in cls})
 
-    @property
-    def at_surface(self) -> bool:
-        """Whether the contact ends at the table's level, κ = 0."""
-        return self is not Release.FORCE
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether the contact is linear from its start to its end."""
-        return self is not Release.APPROACH
-
-    @classmethod
-    def __get_pydantic_core_schema__(cls, source: Any, handler: Callable[[Any], Any]) -> Any:
-        # A parameter of a study is the release of a linear contact, of which it has closed forms.
-        schema = handler(source)
-        linear = schema | {"members": [rule for rule in schema["members"] if rule.is_linear]}
-        check = {"type": "no-info", "function": cls._linear}
-        return {"type": "function-after", "schema": linear, "function": check}
-
-    @staticmethod
-    def _linear(rule: "Release") -> "Release":
-        if not rule.is_linear:
-            raise ValueError(f"must be one of {', '.join(LINEAR)}")
-        return rule
-
     def sine(self, damping_ratio: ArrayLike) -> np.ndarray:
         """``sin α = κϖ/2``: ζ for the force release, 0 at the table's level.
 
@@ -88,77 +52,18 @@ class Release(StrEnum):
         (0.0, 0.3)
         """
         zeta = np.asarray(damping_ratio, dtype=float)
-        return np.zeros_like(zeta) if self.at_surface else zeta
-
-    def damped_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """The angle ϖ_d s during which the damper of a free contact with ζ < 1 acts.
-
-        It is π - 2α, and arccos ζ for a damper that acts on approach only.
-
-        Examples
-        --------
-        >>> angles = [float(rule.damped_angle(0.5)) for rule in Release]
-        >>> [round(angle / np.pi, 12) for angle in angles]
-        [1.0, 0.666666666667, 0.333333333333]
-        """
-        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
-        sine = self.sine(damping_ratio) if self.is_linear else np.asarray(damping_ratio, float)
-        half = arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
-        return 2 * half if self.is_linear else half
+        return zeta if self is Release.FORCE else np.zeros_like(zeta)
 
     def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """The angle ϖ_d s at which a free contact with ζ < 1 ends.
-
-        It is π - 2α. After a damped approach the spring alone takes a quarter of its period, to
-        the angle arccos ζ + (π/2)√(1 - ζ²).
+        """The angle ϖ_d s at which a free contact with ζ < 1 ends, π - 2α.
 
         Examples
         --------
-        >>> float(Release.DISPLACEMENT.free_angle(0.5)) == np.pi
-        True
+        >>> [round(float(rule.free_angle(0.5)) / np.pi, 12) for rule in Release]
+        [1.0, 0.666666666667]
         """
-        damped = self.damped_angle(damping_ratio)
-        if self.is_linear:
-            return damped
-        zeta = np.asarray(damping_ratio, dtype=float)
-        return damped + np.pi / 2 * np.sqrt((1 - zeta) * (1 + zeta))
-
-    def require_rebound(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """ζ as an array.
-
-        Raises
-        ------
-        ModelError
-            If any ζ is no number or negative, or not below 1 for the displacement release, under
-            which an overdamped ball does not come back to the table's level.
-        """
-        allowed = "a number ≥ 0"
-        if self is Release.DISPLACEMENT:
-            allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
-        zeta = as_numbers(damping_ratio, "damping ratio ζ", allowed)
-        below = 1.0 if self is Release.DISPLACEMENT else np.inf
-        require((zeta >= 0) & (zeta < below), zeta, "damping ratio ζ", allowed)
-        return zeta
-
-    def overdamped_duration(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """The time, in units of 1/ω, during which the damper of a free contact with ζ ≥ 1 acts.
-
-        With ζ = cosh β it is 2β/sinh β for the force release, which is 2 at ζ = 1, and half of that
-        for a damper that acts on approach only.
-
-        Examples
-        --------
-        >>> float(Release.FORCE.overdamped_duration(1.0))
-        2.0
-        """
-        zeta = np.asarray(damping_ratio, dtype=float)
-        sinh = np.sqrt((zeta - 1) * (zeta + 1))
-        half = np.where(sinh > 0, np.arcsinh(sinh) / np.where(sinh > 0, sinh, 1.0), 1.0)
-        return 2 * half if self.is_linear else half
-
-
-LINEAR = tuple(rule for rule in Release if rule.is_linear)
-"""The release rules of contacts that are linear from their start to their end."""
+        # This form keeps its digits as ζ → 1, where π - 2 arcsin ζ would lose them.
+        return 2 * np.arccos(self.sine(damping_ratio))
 
 
 def check_positive(value: ArrayLike, name: str) -> np.ndarray:
@@ -171,10 +76,10 @@ def check_positive(value: ArrayLike, name: str) -> np.ndarray:
 
     Examples
     --------
-    >>> check_positive(-1.0, "stiffness K")
+    >>> check_positive(-1.0, "frequency ratio ϖ")
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ModelError: stiffness K = -1.0 is not a finite number > 0
+    bouncing_ball.errors.ModelError: frequency ratio ϖ = -1.0 is not a finite number > 0
     """
     allowed = "a finite number > 0"
     x = as_numbers(value, name, allowed)
@@ -182,26 +87,25 @@ def check_positive(value: ArrayLike, name: str) -> np.ndarray:
     return x
 
 
-def check_damping(value: ArrayLike, name: str) -> np.ndarray:
-    """A parameter as an array.
+def check_damping(value: ArrayLike) -> np.ndarray:
+    """The damping ratio ζ of an oscillating contact as an array.
 
     Raises
     ------
     ModelError
-        Unless all its entries are finite numbers and not negative.
+        Unless 0 ≤ ζ < 1: an overdamped contact does not oscillate, and has no restitution
+        coefficient in the sense of Eq. 16.
 
     Examples
     --------
-    >>> float(check_damping(0.0, "damping C"))
-    0.0
+    >>> float(check_damping(0.25))
+    0.25
     """
-    allowed = "a finite number ≥ 0"
-    x = as_numbers(value, name, allowed)
-    require(np.isfinite(x) & (x >= 0), x, name, allowed)
-    return x
-
-
-_IN_RANGE = f"in {RESTITUTION.interval}"
+    name = "damping ratio ζ"
+    allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
+    zeta = as_numbers(value, name, allowed)
+    require((zeta >= 0) & (zeta < 1), zeta, name, allowed)
+    return zeta
 
 
 def check_restitution(value: ArrayLike) -> np.ndarray:
@@ -220,30 +124,22 @@ def check_restitution(value: ArrayLike) -> np.ndarray:
     bouncing_ball.errors.ModelError: restitution coefficient r = 'x' is not in (0, 1]
     """
     name = "restitution coefficient r"
-    r = as_numbers(value, name, _IN_RANGE)
-    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, _IN_RANGE)
+    allowed = f"in {RESTITUTION.interval}"
+    r = as_numbers(value, name, allowed)
+    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, allowed)
     return r
-
-
-# Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
-# step doubles the number of correct digits.
-_NEWTON_STEPS = 6
-# The difference between π/2 and the double nearest to it.
-_REST = 6.123233995736766e-17
 
 
 def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
-    ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the
-    force release ζ = cos β with ``2β cot β = -ln r``, and for a damper that acts on approach only
-    ``β cot β = -ln r``.
+    ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the force release
+    ζ = cos β with ``2β cot β = -ln r``.
 
     Parameters
     ----------
     restitution : array_like
-        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release and in
-        (e⁻¹, 1] for a damper that acts on approach only.
+        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release.
     release : Release or str
         The condition that ends the contact in which r is measured.
 
@@ -261,79 +157,58 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
     (0.1359, 0.1499)
     """
     r = check_restitution(restitution)
-    decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
-    rule = Release.of(release)
-    if rule is Release.DISPLACEMENT:
-        return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
-    # The decrement of the force release, of which half an impact on approach has half.
-    lowest = "e⁻²" if rule is Release.FORCE else "e⁻¹"
-    decrement = decrement if rule is Release.FORCE else 2 * decrement
-    allowed = f"in ({lowest}, 1], the range of the {rule} release with ζ < 1"
+    decrement = np.abs(np.log(r))
+    if Release.of(release) is Release.DISPLACEMENT:
+        return decrement / np.hypot(np.pi, decrement)
+    allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
-    # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
-    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)[()]
+    return _force_damping(decrement)
 
 
-def _cosine(beta: np.ndarray) -> np.ndarray:
-    """cos β, accurate near π/2 because the rounding error of π/2 is added."""
-    return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
+# Newton steps for ζ of the force release. The initial error is below 10 %, and each step doubles
+# the number of correct digits.
+_NEWTON_STEPS = 6
 
 
-def _half_angle(decrement: np.ndarray) -> np.ndarray:
-    """β in (0, π/2] with ``2β cot β = decrement`` < 2, by Newton's method.
+def _force_damping(decrement: np.ndarray) -> np.ndarray:
+    """ζ = sin α with ``(π - 2α) tan α = decrement`` < 2, by Newton's method for α in [0, π/2).
 
-    2β cot β falls from 2 to 0 and is concave, so that the steps converge from
-    the right without leaving the interval. The starting point replaces the curve by
-    the parabola 2 - 8 (β/π)², which agrees with it at β = 0 and β = π/2.
+    The left side rises from 0 to 2, and is concave as a function of α. The starting point replaces
+    it by the parabola 2 - 2(1 - 2α/π)², which agrees with it at both ends.
     """
-    start = np.pi / 2 * np.sqrt(1 - decrement / 2)
-    beta = np.maximum(start, np.finfo(float).tiny)
+    alpha = np.pi / 2 * (1 - np.sqrt(1 - decrement / 2))
     for _ in range(_NEWTON_STEPS):
-        sine = sine_and_versine(beta)[0]
-        cosine = _cosine(beta)
-        value = 2 * beta * cosine / sine - decrement
-        slope = 2 * (cosine * sine - beta) / (sine * sine)
-        beta = beta - value / slope
-    return beta
+        tangent = np.tan(alpha)
+        rest = np.pi - 2 * alpha
+        alpha = alpha - (rest * tangent - decrement) / (rest * (1 + tangent**2) - 2 * tangent)
+    return np.sin(alpha)
 
 
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
-    """Restitution coefficient of a free linear contact.
+    """Restitution coefficient of a free contact, ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``.
 
-    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`, with α = 0 for the
-    displacement release of Eq. 16. For the force release r is greater, because the contact ends
-    before its force pulls the ball. If the damper acts on approach only,
-    ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that. Both also rebound from an overdamped
-    contact, whose ζ = cosh β: ``r = exp(-2ζβ/sinh β)``, and its root.
+    The inverse of :func:`damping_ratio`, with α = 0 for the displacement release of Eq. 16. For the
+    force release r is greater, because the contact ends before its force pulls the ball.
 
     Parameters
     ----------
     damping : array_like
-        ζ in [0, 1) for the displacement release, and at least 0 for the others.
+        ζ in [0, 1).
     release : Release or str
         The condition that ends the contact.
 
     Raises
     ------
     ModelError
-        If any ζ lies outside this range.
+        If any ζ lies outside this range, or the release is unknown.
 
     Examples
     --------
     >>> float(restitution_coefficient(0.0))
     1.0
-    >>> [round(float(restitution_coefficient(z, "approach")), 4) for z in (0.1, 0.2, 0.3)]
-    [0.8626, 0.7561, 0.6715]
-    >>> bool(restitution_coefficient(1.0, "force") == np.exp(-2))
-    True
+    >>> [round(float(restitution_coefficient(0.2, rule)), 4) for rule in Release]
+    [0.5266, 0.5717]
     """
     rule = Release.of(release)
-    zeta = rule.require_rebound(damping)
-    over = zeta >= 1
-    under = np.where(over, 0.0, zeta)
-    angle = rule.damped_angle(under)
-    found = exponential(-angle * under / np.sqrt((1 - under) * (1 + under)))
-    if not over.any():
-        return found
-    large = np.where(over, zeta, 1.0)
-    return np.where(over, np.exp(-large * rule.overdamped_duration(large)), found)[()]
+    zeta = check_damping(damping)
+    return np.exp(-rule.free_angle(zeta) * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

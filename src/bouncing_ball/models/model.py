@@ -1,215 +1,193 @@
-"""The interface of every model of the impact.
+"""What both models of the impact share: what an impact does to the phase and velocity of a ball.
 
-Code that uses a model calls the methods of this interface. Its class is asked for where the closed
-form or the search for its orbits is chosen (:func:`.orbits_of`), and by calls for rigid balls
-alone. A model says how a ball comes into
-contact, leaves the table and flies, and how small deviations grow on the way
-(:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
-(:mod:`bouncing_ball.periodic`)::
+A subclass of :class:`Model` defines
 
-    model = ContactModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
-    model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
-    bouncing_ball.orbit(model, 1, amplitude=0.9)
+* :meth:`~Model.impact`, from the start of a contact to the release, with the first release found;
+* :meth:`~Model.released`, the state of the ball at the end of a contact of a given duration;
+* :meth:`~Model.derivative`, that of the phase and velocity at the release by those at the impact;
+* :meth:`~Model.contraction`, the determinant of that derivative with the flight that follows, on a
+  periodic orbit;
+* :meth:`~Model.in_contact`, the motion in between.
 
-A new model is a subclass of :class:`Model`. Models are arrays: the fields of their laws broadcast,
-and they can be indexed, ``model[3]``.
+The flight (:mod:`bouncing_ball.models.flight`) is the same for both. Models are arrays: their
+parameters broadcast, and an array of models is indexed, ``model[3]``.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import fields
+from enum import IntEnum
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, Range
-from bouncing_ball.models.ball import Ball
-from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.sequence import Cycle, ImpactSequence
-from bouncing_ball.models.setting import PAPER, PaperSetting, Setting
-from bouncing_ball.models.suspension import DRAG, SPRING_FREQUENCY
-from bouncing_ball.numerics.arrays import Batch, in_words
-
-RANGES: Mapping[str, Range] = {
-    "frequency_ratio": FREQUENCY_RATIO,
-    "restitution": RESTITUTION,
-    "damping_ratio": DAMPING_RATIO,
-    "damping": Range(0, np.inf, "[)"),
-    "drag": DRAG,
-    "spring_frequency": SPRING_FREQUENCY,
-    "spring_damping": DAMPING_RATIO,
-}
-"""The ranges of the parameters of models that have one; other parameters are finite numbers."""
+from bouncing_ball.datasets.arguments import is_array
+from bouncing_ball.errors import ParameterError, shortened
+from bouncing_ball.numerics.arrays import Batch
 
 
-class Model(Batch, Ball, ABC):
-    """A law of the impact, for one ball or for a row of balls.
+class Status(IntEnum):
+    """What a ball does after an impact."""
 
-    A subclass is a frozen dataclass whose first field holds the law; a field ``setting`` says where
-    its balls bounce, if this may be elsewhere than in the paper.
+    BOUNCING = 0
+    """It leaves the table, and another impact follows."""
+    PERMANENT_CONTACT = 1
+    """It stays on the table for ever."""
+    UNDECIDED = 2
+    """Its contact lasts for hundreds of oscillations, and was not followed to its end."""
+
+    @property
+    def words(self) -> str:
+        """The status as text, such as "permanent contact"."""
+        return self.name.lower().replace("_", " ")
+
+
+class Departure(NamedTuple):
+    """Ends of contacts: their duration, infinite for a contact that never ends, δ and δ′ of the
+    ball at the release, and the :class:`Status`.
     """
 
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """The name of the model in messages, which a subclass may define as a class variable."""
+    duration: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    status: np.ndarray
 
-    def __repr__(self) -> str:
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
-        # The setting of the paper is not shown.
-        shown = (name for name in values if not isinstance(values[name], PaperSetting))
-        text = ", ".join(f"{name}={in_words(values[name])}" for name in shown)
-        return f"{type(self).__name__}({text})"
 
-    @property
-    def impact_law(self) -> Any:
-        """The law of the impact, which is the first field of the model."""
-        return getattr(self, fields(self)[0].name)
+class Model(Batch, ABC):
+    """A ball whose impacts obey one law, or an array of balls.
 
-    @property
-    def place(self) -> Setting:
-        """How the table moves, and what moves the ball in flight: :data:`.PAPER` with its closed
-        forms for every ``setting`` with the values of the paper.
-        """
-        setting: Setting = getattr(self, "setting", PAPER)
-        return PAPER if setting.is_paper else setting
+    In the arguments of all methods, ``phase`` φ and ``velocity`` δ′ < 0 are those at the start of
+    the contact and ``amplitude`` is Λ. The velocities are relative to the table.
+    """
 
-    @property
-    def label(self) -> str:
-        """The parameters of a single model as text: the label of the law if it has one."""
-        return getattr(self.impact_law, "label", repr(self.impact_law))
-
-    @abstractmethod
-    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
-        """The contacts and flights of the model's balls on a table of amplitude Λ.
-
-        Raises
-        ------
-        ModelError
-            If Λ is not finite and ≥ 0.
-        """
-
-    @abstractmethod
-    def signature(self, speed: ArrayLike) -> Instant:
-        """The impact as an instant, at impact speeds v > 0.
-
-        Raises
-        ------
-        ModelError
-            If a contact does not release the ball.
-        """
-
-    def permanent_contact_threshold(self) -> Any:
-        """Λ up to which the ball stays on the table, of the model's shape.
-
-        By default it is that of instantaneous impacts: 1 in the paper (Eq. 9), and 0 for a spring
-        that does not press the mass on its stop.
-        """
-        return np.broadcast_to(self.place.threshold(), self.shape).astype(float)[()]
-
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts that follow a first impact at the phase φ, before which the ball has z′_i.
-
-        The arguments are those of :meth:`.Dynamics.simulate`.
-        """
-        return self.dynamics(amplitude).simulate(phase, velocity, impacts)
-
-    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The Poincaré map, from an impact (φ, δ′) to the next one.
-
-        The arguments are those of :meth:`.Dynamics.next_impact`.
-        """
-        return self.dynamics(amplitude).next_impact(phase, relative_velocity)
-
-    def numbers(self) -> dict[str, Any]:
-        """The numerical parameters of the law by name, each of which can vary along a branch.
-
-        Examples
-        --------
-        >>> from bouncing_ball.models.rigid import RestitutionModel
-        >>> RestitutionModel(0.5).numbers()
-        {'restitution': 0.5}
-        """
-        return dict(self._all_numbers)
+    name: ClassVar[str]
+    """The name of the model in messages and datasets."""
 
     @cached_property
-    def _all_numbers(self) -> dict[str, Any]:
-        # Cached, because each step along a branch asks for the names.
-        return _numbers(self)
+    def parameters(self) -> Mapping[str, Any]:
+        """The parameters by name, which become axes and attributes of results.
 
-    def range_of(self, name: str) -> Range:
-        """The range of a parameter along a branch; without another one it is any finite number."""
-        return RANGES.get(name, Range())
-
-    def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Parameters that follow from others, of which these values are given, as ζ from r."""
-        return _implied(self, values)
-
-    def varied(self, values: Mapping[str, Any]) -> Self:
-        """The model with other values of some parameters; arrays make a row of models.
-
-        Raises
-        ------
-        ModelError
-            If the model has no such parameter, or if no law has these values.
+        They are those of the call that made the ball, and otherwise the fields of the model.
 
         Examples
         --------
-        >>> from bouncing_ball.models.rigid import RestitutionModel
-        >>> RestitutionModel(0.5).varied({"restitution": 0.75})
-        RestitutionModel(restitution=0.75)
+        >>> from bouncing_ball.models.restitution import RestitutionModel
+        >>> dict(RestitutionModel(0.5).parameters)
+        {'restitution': 0.5}
         """
-        known = list(self.numbers())
-        for name in values:
-            chosen("parameter", name, known)
-        return _with_numbers(self, {**values, **self.implied(values)})
+        found: dict[str, Any] = {}
+        for each in fields(self):
+            value = getattr(self, each.name)
+            found[each.name] = str(value) if isinstance(value, str) else value
+        arrays = [name for name, value in found.items() if is_array(value)]
+        if len(arrays) > 1:
+            # Imported here, because a single ball needs no labels. These arrays have one value for
+            # each ball, and do not span a grid.
+            from xarray import DataArray
+
+            found |= {name: DataArray(found[name], dims="model") for name in arrays}
+        return found
+
+    def labelled(self, parameters: Mapping[str, Any]) -> Self:
+        """The same ball, whose parameters are called as a user gave them."""
+        ball = copy(self)
+        vars(ball)["parameters"] = parameters
+        return ball
+
+    def row(self, grid: Any) -> Self:
+        """The balls at the places of a :class:`~bouncing_ball.datasets.labelled.Grid` among whose
+        arguments the parameters are, one after another; a single ball stands for all of them.
+        """
+        return self.take(grid.numbers_of(self.parameters))
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """The parameters of a single model as text."""
+
+    @property
+    def lag(self) -> Any:
+        """κ: the contact ends where δ + κ δ′ = 0; 0 at the table's level."""
+        return 0.0
+
+    @abstractmethod
+    def impact(
+        self,
+        phase: np.ndarray,
+        velocity: np.ndarray,
+        amplitude: np.ndarray,
+        displacement: np.ndarray | float = 0.0,
+    ) -> Departure:
+        """The first release after each impact, for rows of one length.
+
+        ``displacement`` is δ at the start of the contact, which is 0 unless a contact resumes.
+        """
+
+    @abstractmethod
+    def released(
+        self, phase: Any, velocity: Any, amplitude: Any, duration: Any
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at the end of contacts of these durations."""
+
+    @abstractmethod
+    def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+        """The derivative of (φ_b, δ′_b) at the release by (φ, δ′) at the impact, at releases after
+        these durations, shape (..., 2, 2).
+        """
+
+    @abstractmethod
+    def contraction(self, duration: Any) -> Any:
+        """The factor by which contacts of these durations multiply areas of the phase plane.
+
+        Flights keep areas, so that this is the determinant of the monodromy of a periodic orbit.
+        """
+
+    @abstractmethod
+    def in_contact(
+        self, time: Any, phase: Any, velocity: Any, amplitude: Any, displacement: Any = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times since the starts of contacts that have not ended before."""
+
+    @abstractmethod
+    def permanent_contact_threshold(self) -> Any:
+        """The Λ up to which a ball at rest stays on the table."""
 
 
-def _is_number(value: Any) -> bool:
-    # A row of laws is a sequence, of which numpy would make an array of objects one by one.
-    return not is_dataclass(value) and np.asarray(value).dtype.kind in "iuf"
+def a_ball(ball: Any) -> Model:
+    """The first argument of a call, after a check of its type.
+
+    Raises
+    ------
+    ParameterError
+        If it is no ball.
+
+    Examples
+    --------
+    >>> a_ball(0.85)
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: the ball = 0.85 is not a ball: it is not made by rigid or \
+spring_damper
+    """
+    if not isinstance(ball, Model):
+        raise ParameterError(
+            "the ball = {} is not a ball: it is not made by rigid or spring_damper", shortened(ball)
+        )
+    return ball
 
 
-def _inner(law: Any) -> Iterator[Any]:
-    """The laws inside of a law."""
-    values = (getattr(law, field.name) for field in fields(law))
-    return (value for value in values if is_dataclass(value))
+def a_single_ball(ball: Any) -> Model:
+    """The first argument of a call that takes one ball.
 
-
-def _implied(model: Any, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters that follow from these values by the laws inside of a model, such as ζ from r."""
-    found: dict[str, Any] = {}
-    for law in _inner(model):
-        of_law = getattr(law, "implied", None)
-        found |= _implied(law, values) if of_law is None else of_law(values)
-    return found
-
-
-def _numbers(law: Any) -> dict[str, Any]:
-    """The numerical parameters of a law, or of the law inside of a law, by name."""
-    values = {field.name: getattr(law, field.name) for field in fields(law)}
-    found = {name: value for name, value in values.items() if _is_number(value)}
-    for inner in _inner(law):
-        found |= _numbers(inner)
-    found |= _implied(law, found)
-    return {name: x if np.ndim(x) else np.asarray(x).item() for name, x in found.items()}
-
-
-def _with_numbers(law: Any, values: Mapping[str, Any]) -> Any:
-    """The law with other values of its parameters."""
-    changed: dict[str, Any] = {}
-    for field in fields(law):
-        inner = getattr(law, field.name)
-        if is_dataclass(inner):
-            changed[field.name] = _with_numbers(inner, values)
-        elif field.name in values:
-            changed[field.name] = values[field.name]
-    return replace(law, **changed)
+    Raises
+    ------
+    ParameterError
+        If it is no ball, or a parameter is an array.
+    """
+    for name, value in a_ball(ball).parameters.items():
+        if is_array(value):
+            raise ParameterError(f"{{{name}}} must be a single number here")
+    return ball

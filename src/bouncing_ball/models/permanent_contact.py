@@ -4,9 +4,10 @@ A ball that rests on the table of the restitution model stays there as long as t
 acceleration does not exceed gravity, up to ``Λ_CR = 1`` (Eq. 9).
 
 In the spring-damper model, the displacement δ of a ball that never leaves oscillates about -1/ϖ²
-(Eq. 31). It stays below zero, where the contact would end, up to Λ_SD (Eqs. 32-33). For ζ < 1/√2,
-Λ_SD falls with ϖ from ∞ to its minimum 2ζ√(1 - ζ²) (Eq. 36) and then rises to 1. Each threshold
-between the minimum and 1 therefore belongs to two frequency ratios, ϖ₋ and ϖ₊ (Eqs. 34-35).
+(Eqs. 28-31). It stays below zero, where the contact would end, up to Λ_SD (Eqs. 32-33). For
+ζ < 1/√2, Λ_SD falls with ϖ from ∞ to its minimum 2ζ√(1 - ζ²) (Eq. 36) and then rises to 1. Each
+threshold between the minimum and 1 therefore belongs to two frequency ratios, ϖ₋ and ϖ₊
+(Eqs. 34-35).
 
 With the force release, a contact ends where δ + κ δ′ = 0, and δ + κ δ′ oscillates instead of δ. The
 threshold is then ``Λ_F = Λ_SD/√(1 + κ²)``, which is not in the paper.
@@ -14,13 +15,17 @@ threshold is then ``Λ_F = Λ_SD/√(1 + κ²)``, which is not in the paper.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
+from bouncing_ball.errors import require, suggesting
 from bouncing_ball.models.damping import Release, check_damping, check_positive
+
+if TYPE_CHECKING:
+    from bouncing_ball.drawing.result import Result
+    from bouncing_ball.models.model import Model
 
 RESTITUTION_THRESHOLD = 1.0
 """Λ_CR. A ball at rest stays on the table if ``|w″| = |Λ sin τ| ≤ 1`` at all times, that is for
@@ -42,7 +47,7 @@ def permanent_contact_threshold(
     Raises
     ------
     ModelError
-        If ϖ ≤ 0 or ζ < 0, or the release is unknown.
+        If ϖ ≤ 0 or ζ is not in [0, 1), or the release is unknown.
 
     Examples
     --------
@@ -50,10 +55,10 @@ def permanent_contact_threshold(
     0.5
     """
     omega = check_positive(frequency_ratio, "frequency ratio ϖ")
-    zeta = check_damping(damping_ratio, "damping ratio ζ")
-    loss = 2 * zeta / omega
+    zeta = check_damping(damping_ratio)
     lag = 2 * Release.of(release).sine(zeta) / omega
-    return np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / np.hypot(1, lag)
+    detuning = (1 - 1 / omega) * (1 + 1 / omega)
+    return np.hypot(detuning, 2 * zeta / omega) / np.hypot(1, lag)
 
 
 class FrequencyRatios(NamedTuple):
@@ -63,6 +68,7 @@ class FrequencyRatios(NamedTuple):
     upper: np.ndarray
 
 
+@np.errstate(divide="ignore", invalid="ignore")  # where there is no such ϖ
 def permanent_contact_frequency_ratios(
     threshold: ArrayLike, damping_ratio: ArrayLike
 ) -> FrequencyRatios:
@@ -77,12 +83,12 @@ def permanent_contact_frequency_ratios(
     Parameters
     ----------
     threshold, damping_ratio : array_like
-        Λ > 0 and ζ ≥ 0, which broadcast. The contact ends at the displacement release.
+        Λ > 0 and ζ, which broadcast. The contact ends at the displacement release.
 
     Raises
     ------
     ModelError
-        If Λ ≤ 0 or ζ < 0.
+        If Λ ≤ 0 or ζ is not in [0, 1).
 
     Examples
     --------
@@ -93,23 +99,20 @@ def permanent_contact_frequency_ratios(
     (0.722, 9.81)
     """
     lam = check_positive(threshold, "threshold Λ")
-    zeta = check_damping(damping_ratio, "damping ratio ζ")
+    zeta = check_damping(damping_ratio)
     centre = 1 - 2 * zeta * zeta
-    has_minimum = centre > 0
     divisor = (1 - lam) * (1 + lam)
     # (1 - 2ζ²)² + Λ² - 1, the square of Λ minus that of the minimum.
-    square = lam * lam - 4 * zeta * zeta * (1 - zeta) * (1 + zeta)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(square)
-        upper = np.where(has_minimum & (lam <= 1), (centre + root) / divisor, np.nan)
-        # ϖ₋² = 1/((1 - Λ²) ϖ₊²), where the difference in Eq. 35 would lose digits.
-        without_minimum = np.where(lam > 1, (centre - root) / divisor, np.nan)
-        lower = np.where(has_minimum, 1 / (centre + root), without_minimum)
-        return FrequencyRatios(np.sqrt(lower), np.sqrt(upper))
+    root = np.sqrt(lam * lam - 4 * zeta * zeta * (1 - zeta) * (1 + zeta))
+    upper = np.where((centre > 0) & (lam <= 1), (centre + root) / divisor, np.nan)
+    # ϖ₋² = 1/((1 - Λ²) ϖ₊²), where the difference in Eq. 35 would lose digits.
+    without_minimum = np.where(lam > 1, (centre - root) / divisor, np.nan)
+    lower = np.where(centre > 0, 1 / (centre + root), without_minimum)
+    return FrequencyRatios(np.sqrt(lower), np.sqrt(upper))
 
 
 class Minimum(NamedTuple):
-    """Lowest threshold over all frequency ratios, and the ϖ at which it is reached."""
+    """The lowest threshold of permanent contact, and the ϖ at which it is reached."""
 
     threshold: np.ndarray
     frequency_ratio: np.ndarray
@@ -127,19 +130,57 @@ def permanent_contact_minimum(
     Raises
     ------
     ModelError
-        If ζ < 0, or if ζ ≥ 1/√2 with the displacement release: Λ_SD then
-        decreases towards 1 as ϖ grows, and has no minimum.
+        If ζ is not in [0, 1), or if ζ ≥ 1/√2 with the displacement release: Λ_SD then decreases
+        towards 1 as ϖ grows, and has no minimum.
 
     Examples
     --------
     >>> round(float(permanent_contact_minimum(0.6).threshold), 15)
     0.96
     """
-    zeta = np.asarray(damping_ratio, dtype=float)
-    sine = Release.of(release).sine(damping_ratio)
+    zeta = check_damping(damping_ratio)
+    sine = Release.of(release).sine(zeta)
     centre = 1 - 2 * (zeta - sine) * (zeta + sine)
     allowed = "in [0, 1/√2): the permanent-contact threshold has no minimum over ϖ there"
-    require((zeta >= 0) & (centre > 0), zeta, "damping ratio ζ", allowed)
+    require(centre > 0, zeta, "damping ratio ζ", allowed)
     x = 2 * centre / (1 + np.sqrt(1 + 8 * sine * sine * centre))
     omega = 1 / np.sqrt(x)
     return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
+
+
+@suggesting
+def permanent_contact(ball: Model) -> float | Result:
+    """The Λ up to which a ball at rest stays on the table.
+
+    Parameters
+    ----------
+    ball : Model
+        The threshold is 1 for a rigid ball (Eq. 9), and Λ_SD for a contact with a spring and a
+        damper (Eq. 33).
+
+    Returns
+    -------
+    float or Result
+        If a parameter of the ball is an array, a dataset with an axis named after each array.
+
+    Raises
+    ------
+    ModelError
+        If the argument is no ball.
+
+    Examples
+    --------
+    >>> from bouncing_ball import spring_damper
+    >>> permanent_contact(spring_damper(frequency_ratio=2.0, damping_ratio=0.0))
+    0.75
+    """
+    from bouncing_ball.models.model import a_ball
+
+    threshold: Any = a_ball(ball).permanent_contact_threshold()
+    if not np.ndim(threshold):
+        return float(threshold)
+    from bouncing_ball.datasets.labelled import Grid
+    from bouncing_ball.drawing.result import Result
+
+    grid = Grid(**ball.parameters)
+    return Result.on_grid(grid, {"threshold_amplitude": threshold}, "permanent-contact")

@@ -1,15 +1,11 @@
-r"""Impacts with a restitution coefficient: impact, chattering, and the map from impact to impact.
+r"""The restitution model: impacts without duration, chattering, and rest on the table (Eqs. 2, 5, 9).
 
-Let v₀ be the ball's velocity just after an impact at the phase τ₀. The ball flies for a time s
-until it lands, and the impact turns its relative velocity δ′ into ``-r δ′`` (Eq. 2). With the
-flight of Eqs. 3 and 4, the map from (τ₀, v₀) to the phase τ₁ = τ₀ + s and the velocity v₁ just
-after the next impact is (Eq. 5) ::
+An impact turns the relative velocity δ′ of the ball into -r δ′. With v₀ just after an impact at the
+phase τ₀, the flight of Eqs. 3 and 4 for a time s, and the impact that follows, the map from one
+impact to the next is ::
 
-    Λ (sin τ₁ - sin τ₀) = s v₀ - s²/2
-    v₁ = -r (v₀ - s) + (1 + r) Λ cos τ₁
-
-Here the map is composed of the impact (:meth:`RestitutionDynamics.depart`) and of the flight up to
-the landing (:meth:`.Dynamics.fly`), and a state is (τ, δ′) just before an impact.
+    Λ (sin τ₁ - sin τ₀) = s v₀ - s²/2                        τ₁ = τ₀ + s
+    v₁ = -r (v₀ - s) + (1 + r) Λ cos τ₁                      (5)
 
 While the relative gravity g = 1 - Λ sin τ is positive, infinitely many ever smaller bounces take a
 finite time T: the ball *chatters*. Let v be δ′ after an impact, and ``g′ = -Λ cos τ`` the rate of
@@ -17,45 +13,53 @@ change of g. Then ::
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
-A drag l subtracts ``l T₀/6`` from the bracket. This sum replaces the bounces once Λ T₀ and T₀ are
-below 10⁻⁵ g, where the next term is below 10⁻¹⁵. The ball then rests on the table until it lifts
-off (:mod:`bouncing_ball.models.sticking`).
+This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the next term is below 10⁻¹⁵.
+The ball then rests on the table until Λ sin τ rises through 1, because the table's downward
+acceleration exceeds gravity from there on. For Λ ≤ Λ_CR = 1 it never leaves (Eq. 9).
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contacts_and_flights import Departure, DurationSlopes, Impact
-from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.sticking import lifted, pressed, stay
+from bouncing_ball.datasets.arguments import RESTITUTION, RestitutionAxis, checked
+from bouncing_ball.errors import suggesting
+from bouncing_ball.models.damping import check_restitution
+from bouncing_ball.models.flight import matrix_of, table
+from bouncing_ball.models.model import Departure, Model, Status
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.numerics.elementary import arctangent, reduce_angle
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
-# Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
+# Where g is tiny, with Λ near 1, chattering is also summed up if T₀ is below rounding.
 _INSTANT = np.finfo(float).eps
-# The window in which a ball is proved to come to rest, in units of T₀; the longer it is, the more
-# the relative gravity may change within it.
-_WINDOW = 1.25
-# The smallest speed of an impact for which r is asked, and 1, as arrays without an axis.
-_SLOW = np.array(np.finfo(float).tiny)
-_ONE = np.array(1.0)
+_TURN = 2 * np.pi
+# Rounding must not postpone a lift-off at the present phase by a full turn.
+_AT_ONCE = 1e-9
+
+
+def lift_off_phase(amplitude: np.ndarray) -> np.ndarray:
+    """The phase arcsin(1/Λ) at which Λ sin τ rises through 1 and a ball at rest leaves the table
+    (Eq. 9), for Λ ≥ 1.
+
+    Examples
+    --------
+    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
+    True
+    """
+    return arctangent(1.0, np.sqrt((amplitude - 1) * (amplitude + 1)))
 
 
 def chattering(
-    velocity: np.ndarray,
-    restitution: np.ndarray,
-    x: np.ndarray,
-    y: np.ndarray,
-    strength: np.ndarray,
+    velocity: np.ndarray, restitution: Any, x: np.ndarray, y: np.ndarray, amplitude: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Which balls come to rest on the table after an impact, and the time T of their chattering.
 
-    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are -g′ and 1 - g, in the paper
-    Λ cos τ and Λ sin τ; ``strength`` is that of :meth:`.Setting.strength`, in the paper Λ. T is 0
+    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are Λ cos τ and Λ sin τ there. T is 0
     for balls that do not come to rest, because their bounces are not summed up.
 
     Examples
@@ -67,171 +71,129 @@ def chattering(
     >>> sticks.tolist(), time.round(12).tolist()
     ([True, False, False], [4e-06, 0.0, 0.0])
     """
-    # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
-    load = _ONE + strength
-    if (velocity > _CHATTER * load * load).all():
-        return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
     gravity = 1 - y
-    down = pressed(x, y)
-    # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
+    pressed = (gravity > 0) | ((gravity == 0) & (x <= 0))
     loss = gravity * (1 - restitution)
-    usable = down & (loss > 0)
+    # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
+    usable = pressed & (loss > 0)
     first = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
-    limit = np.maximum(_CHATTER * gravity / np.maximum(strength, 1.0), _INSTANT)
+    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
     short = usable & (first <= limit)
-    sticks = short | (down & (velocity == 0))
-    if not sticks.any():
-        return sticks, np.zeros_like(x)
     correction = np.where(short, x * first, 0.0) / np.where(short, 3 * gravity, 1.0)
+    sticks = short | (pressed & (velocity == 0))
     return sticks, np.where(sticks, first * (1 + correction), 0.0)
 
 
 @dataclass(frozen=True, repr=False)
-class RestitutionDynamics(Dynamics):
-    """Impacts and flights of the restitution model; ``law`` holds numbers r in (0, 1], or what
-    :meth:`rebound` of a subclass needs.
+class RestitutionModel(Model):
+    """A ball whose impacts are instants at which δ′ becomes -r δ′ (Eqs. 1-9).
+
+    Parameters
+    ----------
+    restitution : float or array
+        r in (0, 1].
+
+    Raises
+    ------
+    ModelError
+        If a value of r lies outside (0, 1].
 
     Examples
     --------
-    The map satisfies both lines of Eq. 5, shown at the top of this module. The first impact, at
-    τ₀ = 0.3, turns δ′ = -2 into 1:
-
-    >>> r, amplitude, start = 0.5, 1.2, 0.3
-    >>> v = 1 + amplitude * np.cos(start)
-    >>> after = RestitutionDynamics.of(r, amplitude).next_impact(start, -2.0)
-    >>> s, end = after.time, start + after.time
-    >>> landing = amplitude * (np.sin(end) - np.sin(start)) - (s * v - s**2 / 2)
-    >>> bounced = -r * after.relative_velocity + amplitude * np.cos(end)
-    >>> expected = -r * (v - s) + (1 + r) * amplitude * np.cos(end)
-    >>> bool(abs(landing) < 1e-14), bool(abs(bounced - expected) < 1e-14)
-    (True, True)
+    >>> RestitutionModel([0.5, 0.9])[1]
+    RestitutionModel(restitution=0.9)
     """
 
-    forgets: ClassVar[bool] = True
-    continues: ClassVar[bool] = True
-    is_constant: ClassVar[bool] = True
-    """Whether r is the same at every speed."""
+    restitution: Any
 
-    def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r."""
-        return self.law, self.law
+    name: ClassVar[str] = "restitution"
 
-    def _rebound_of(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        # A ball that rests on the table has no impact speed; its r has no effect.
-        return self.rebound(np.maximum(-impact.velocity, _SLOW))
+    def __post_init__(self) -> None:
+        r = check_restitution(self.restitution)
+        object.__setattr__(self, "restitution", r if r.ndim else float(r))
 
-    def depart(
-        self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
+    @property
+    def label(self) -> str:
+        return f"r = {self.restitution:g}"
+
+    def impact(
+        self,
+        phase: np.ndarray,
+        velocity: np.ndarray,
+        amplitude: np.ndarray,
+        displacement: np.ndarray | float = 0.0,
     ) -> Departure:
-        """The flight after each impact, or the rest on the table after chattering.
+        """The flight after each impact, or the lift-off after chattering and rest on the table.
 
-        The impact turns δ′ into -r δ′, with δ′ = z′ - w′. In the paper, in metres and seconds, this
-        is ẏ⁺ - ẇ = -r (ẏ⁻ - ẇ) (Eq. 2).
+        With δ′ = z′ - w′, the impact turns δ′ into -r δ′; in metres and seconds this is
+        ``ẏ⁺ - ẇ = -r (ẏ⁻ - ẇ)`` (Eq. 2).
 
-        With ``near`` it is the rest where this duration is positive, and the flight elsewhere. The
-        bounces before the rest are left out then, also if they would last beyond the lift-off
-        (:meth:`comes_to_rest`): the state at the lift-off does not depend on them.
+        Examples
+        --------
+        >>> ball = RestitutionModel(0.5)
+        >>> ball.impact(np.zeros(1), np.full(1, -2.0), np.ones(1)).velocity.tolist()
+        [1.0]
         """
-        if near is not None:
-            return self._rested(impact, near > 0)
-        r, _ = self._rebound_of(impact)
-        velocity = -r * impact.velocity
-        level = self.table_at(impact)
-        setting = self.setting
-        x, y = setting.at_rest(impact.phase, level, self.amplitude)
-        sticks, settling = chattering(velocity, r, x, y, setting.strength(self.amplitude))
-        none = np.zeros(x.shape)
-        flight = setting.flight(none, velocity, impact.phase, level, self.amplitude)
-        departure = self._left(impact, flight, sticks, settling)
-        if departure.flight.may_miss:
-            going = np.flatnonzero(departure.status == Status.BOUNCING)
-            start = departure.flight.take(going).earliest_landing()
-            departure = departure.with_landings(going, start)
-        return lifted(departure, self.amplitude, setting) if differentiate else departure
-
-    def _rested(self, impact: Impact, rests: np.ndarray) -> Departure:
-        """The rest on the table up to the lift-off where ``rests`` says so, otherwise the flight.
-
-        A rest lasts until a fixed phase, so that the slope of its duration by φ is -1.
-        """
-        level = self.table_at(impact)
-        r, _ = self._rebound_of(impact)
-        none = np.zeros(impact.phase.shape)
-        velocity = -r * impact.velocity
-        flight = self.setting.flight(none, velocity, impact.phase, level, self.amplitude)
-        departure = lifted(self._left(impact, flight, rests, none), self.amplitude, self.setting)
-        return departure._replace(
-            slopes=DurationSlopes(np.where(departure.sticks, -1.0, 0.0), none)
+        x, y = table(phase, amplitude)
+        rebound = -self.restitution * velocity
+        sticks, settling = chattering(rebound, self.restitution, x, y, amplitude)
+        lift = lift_off_phase(np.maximum(amplitude, 1.0))
+        wait = np.mod(reduce_angle(lift - (phase + settling)), _TURN)
+        wait = np.where(wait > _TURN - _AT_ONCE, 0.0, wait)
+        forever = sticks & (amplitude <= RESTITUTION_THRESHOLD)
+        rest = np.where(forever, np.inf, settling + wait)
+        return Departure(
+            duration=np.where(sticks, rest, 0.0),
+            displacement=np.where(forever, np.nan, 0.0),
+            velocity=np.where(forever, np.nan, np.where(sticks, 0.0, rebound)),
+            status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
         )
 
-    def comes_to_rest(self, impact: Impact) -> np.ndarray:
-        """Whether the bounces after each impact end before the next lift-off.
+    def released(
+        self, phase: Any, velocity: Any, amplitude: Any, duration: Any
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ = 0 and -r δ′, because the impact is an instant."""
+        rebound = -self.restitution * np.asarray(velocity)
+        return np.zeros(rebound.shape), rebound
 
-        Next to the limit this takes the more bounces, the nearer r is to 1: some 300 for r = 0.9.
-        """
-        balls = np.arange(impact.phase.size)
-        settled = np.zeros(balls.shape, dtype=bool)
-        lift = self.setting.lift_off(impact.phase, self.amplitude)
-        left = np.where(lift.never, np.nan, np.mod(lift.phase - impact.phase, 2 * np.pi))
-        for leg in self.legs(impact, differentiate=True):
-            comes_to_rest = leg.departure.sticks | self.take(balls)._rests_within(leg.impact, left)
-            settled[balls[comes_to_rest]] = True
-            left, balls = leg.keep(np.flatnonzero(~comes_to_rest), left, balls)
-            _, passed = leg.fly()
-            left = left - passed
-            left, balls = leg.keep(np.flatnonzero(left > 0), left, balls)
-        return settled
+    def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+        """The phase stays, and the velocity is multiplied by -r."""
+        return matrix_of(1.0, 0.0, 0.0, -self.restitution + 0.0 * np.asarray(velocity))
 
-    def _rests_within(self, impact: Impact, left: np.ndarray) -> np.ndarray:
-        """Which balls certainly come to rest within these times, by a bound on all their bounces.
+    def contraction(self, duration: Any) -> Any:
+        """r²."""
+        return self.restitution**2 + 0.0 * np.asarray(duration)
 
-        While the relative gravity is between g and G, a flight that begins with v takes 2v/g at
-        most and lands with (2G/g - 1) v at most, so that all bounces together take 2v/(g (1 - q))
-        with q = r (2G/g - 1). Within a time W the relative gravity changes by Λ W at most. This
-        holds for free flights and a constant r.
-        """
-        if not self.setting.is_paper or not self.is_constant:
-            return np.zeros(left.shape, dtype=bool)
-        _, height = self.table_at(impact)
-        gravity = 1 - height
-        first = -2 * self.law * impact.velocity
-        # There is no bound without a loss, or where the table falls away.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            window = _WINDOW * first / (gravity * (1 - self.law))
-            change = self.amplitude * window
-            least = gravity - change
-            ratio = self.law * (2 * (gravity + change) / least - 1)
-            whole = first / (least * (1 - ratio))
-        return (least > 0) & (ratio < 1) & (whole <= window) & (window <= left)
+    def in_contact(
+        self, time: Any, phase: Any, velocity: Any, amplitude: Any, displacement: Any = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ = δ′ = 0: the ball rests on the table, apart from the bounces that are summed up."""
+        return np.zeros(np.shape(time)), np.zeros(np.shape(time))
 
-    def _left(
-        self, impact: Impact, flight: Any, sticks: np.ndarray, settling: np.ndarray
-    ) -> Departure:
-        """The flights after the impacts, or after the rest of the balls that stick."""
-        departure = Departure(
-            phase=impact.phase + settling,
-            duration=settling,
-            flight=flight,
-            status=np.zeros(settling.shape),
-            settling=settling,
-        )
-        return stay(departure, sticks, self.amplitude, self.setting)
+    def permanent_contact_threshold(self) -> Any:
+        """Λ_CR = 1 (Eq. 9)."""
+        return np.full(self.shape, RESTITUTION_THRESHOLD)[()]
 
-    def jacobian(
-        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
-    ) -> Jacobian:
-        """Derivative of the map over impact and flight.
 
-        It is zero if the ball sticks, because its later motion does not depend on the impact.
-        """
-        _, slope = self._rebound_of(impact)
-        none = np.zeros(passed.shape)
-        free = np.logical_not(departure.sticks).astype(float)
-        by_phase = Deviation(free, none, none)
-        by_velocity = Deviation(none, none, -slope * free)
-        return self.over_flight((by_phase, by_velocity), departure, after, passed)
+@suggesting
+def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
+    """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
-    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """r d(r v)/dv, which is r² for a constant r; 0 if the ball sticks."""
-        r, slope = self._rebound_of(impact)
-        return np.where(departure.sticks, 0.0, r * slope)
+    Parameters
+    ----------
+    restitution : float or array
+        Restitution coefficient r in (0, 1].
+
+    Raises
+    ------
+    ModelError
+        If r is no number in its range.
+
+    Examples
+    --------
+    >>> rigid(restitution=0.85)
+    RestitutionModel(restitution=0.85)
+    """
+    r = checked("restitution", restitution, RESTITUTION)
+    # An array with a named axis is a row here, and keeps its axis in the results.
+    return RestitutionModel(np.ravel(r) if np.ndim(r) else r).labelled({"restitution": r})

@@ -1,65 +1,189 @@
-"""The paper's contact: a linear spring and a damper (Eqs. 10-16).
+r"""The spring-damper model: contacts with a spring and a damper (Eqs. 10-13, 17, 23).
 
-Its force, its release and its motion have closed forms. For ζ ≥ 1, where that of the motion does
-not hold, its contacts are computed by collocation, as those of any other law. The impact seen from
-outside (:mod:`bouncing_ball.models.instant`) is the same at every speed, with κ as in
-:mod:`bouncing_ball.models.damping`::
+In the relative coordinate δ = z - w, the ball in contact obeys (Eqs. 10 and 11) ::
 
-    t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+    δ″ + 2ζϖ δ′ + ϖ² δ = -1 + Λ sin(s + φ)
 
-If the damper acts on approach only, the force has a kink where p′ = 0, and the contacts are also
-computed by collocation, which ends a panel there. A load a adds ``a (1 - 2ζr)/ϖ²`` to the greatest
-penetration P, because ``P = r v/ϖ`` and the load is balanced at a/ϖ², and takes a/ϖ from the speed
-ϖP on the way up. Together the ball leaves with 2ζ r a/ϖ less, so that ::
+where s is the time since the contact started and φ the phase of the table at that moment. The paper
+writes the solution, Eq. 12, with constants A and B, which the start of the contact determines. Here
+they are eliminated: the flow is affine in (δ₀, δ′₀, Λ cos φ, Λ sin φ), and regular at the resonance
+ζ = 0, ϖ = 1::
 
-    t_c = r D/(1 + r),    σ = (1 - r) D - 2ζ r/ϖ
+    δ(s) = δ₀ (g′ + 2ζϖ g) + δ′₀ g - G + Λ cos φ · P + Λ sin φ · Q
+
+g is the impulse response of the oscillator, G its response to a constant force, and Q + iP that to
+e^{is}. With its eigenvalues λ± = -ζϖ ± iϖ_d, ϖ_d = ϖ√(1 - ζ²), they are divided differences of the
+exponential function, of which the one with ν = 0 is G, and that with ν = i is Q + iP::
+
+    g = (e^{λ₊s} - e^{λ₋s})/(λ₊ - λ₋)
+    h = [(e^{νs} - e^{λ₊s})/(ν - λ₊) - g]/(ν - λ₋)
+
+The second denominator is never small, and the first quotient is regular where ν = λ₊.
+
+The contact ends at the first upward zero of y = δ + κ δ′, with κ = 0 for the displacement release
+(Eq. 23) and κ = 2ζ/ϖ for the force release, for which -ϖ² y is the force of the table over the
+weight. y moves as δ does, with the forcing Λ sin τ + κ Λ cos τ, of which the amplitude is
+F = Λ√(1 + κ²)::
+
+    y(s) = e^{-ζϖs} (A cos ϖ_d s + B sin ϖ_d s) - 1/ϖ² + ρ sin(s + ψ),      ρ = F/√γ
+    γ = (ϖ² - 1)² + (2ζϖ)²
+
+(Eq. 12 without the table). The derivative of order k of the first term is at most ``ϖ^k R e^{-ζϖs}``
+with R = √(A² + B²), and that of the last one at most ρ. The contact therefore never ends if at some
+time ``R e^{-ζϖs} + ρ ≤ 1/ϖ²``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models import linear_flow
-from bouncing_ball.models.approach_threshold import approach_threshold
-from bouncing_ball.models.contact import ContactSpan
-from bouncing_ball.models.damping import (
-    Release,
-    check_positive,
-    damping_ratio,
-    restitution_coefficient,
+from bouncing_ball.datasets.arguments import (
+    DAMPING_RATIO,
+    FREQUENCY_RATIO,
+    RESTITUTION,
+    Axis,
+    DampingRatioAxis,
+    FrequencyRatioAxis,
+    ReleaseName,
+    RestitutionAxis,
+    checked,
+    chosen,
+    is_array,
 )
-from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.held_contact import (
-    HeldContactDynamics,
-    gap_in_contact,
-    held_by,
-    held_threshold,
-)
-from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.contact_law import OscillatorLaw
-from bouncing_ball.models.linear_contact import LinearContactDynamics
-from bouncing_ball.models.linear_flow import ContactFlow
+from bouncing_ball.errors import ParameterError, suggesting
+from bouncing_ball.models.damping import Release, check_damping, check_positive, damping_ratio
+from bouncing_ball.models.flight import matrix_of, table
+from bouncing_ball.models.model import Departure, Model, Status
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
+
+# Below this √γ the steady motion, of the amplitude ρ, is no useful bound.
+_RESONANCE = 0.03
+# Number of steps of a search after which the time is skipped in which y is certainly negative.
+_PATIENCE = 12
+_TURN = 2 * np.pi
+# A bound of the rounding errors of the terms that decide whether a contact ends.
+_ROUNDING = 8 * np.finfo(float).eps
+
+
+class Responses(NamedTuple):
+    """The responses of the contact a time after its start: g and its rate of change g′, G, and the
+    parts Q and P of the response to the table.
+    """
+
+    impulse: np.ndarray
+    impulse_rate: np.ndarray
+    gravity: np.ndarray
+    in_phase: np.ndarray
+    quadrature: np.ndarray
+
+
+def _quotient(nu: complex, pole: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """(e^{νs} - e^{λs})/(ν - λ), which is s e^{νs} where ν = λ."""
+    difference = (pole - nu) * time
+    apart = difference != 0
+    quotient = np.where(apart, np.expm1(difference) / np.where(apart, difference, 1.0), 1.0)
+    return time * np.exp(nu * time) * quotient
+
+
+# What remains of an oscillation after a long time may be below the smallest number, and is then 0.
+@np.errstate(under="ignore")
+def responses(
+    time: ArrayLike,
+    frequency_ratio: ArrayLike,
+    damping_ratio: ArrayLike,
+    swing: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Responses:
+    """The responses of the contact a time s after its start, arrays of one shape.
+
+    Parameters
+    ----------
+    time, frequency_ratio, damping_ratio : array_like
+        s, ϖ > 0 and 0 ≤ ζ < 1, which broadcast.
+    swing : tuple of ndarray, optional
+        The sine and the cosine of ϖ_d s, where they are known with more digits than s has.
+
+    Examples
+    --------
+    Without damping ``g = sin(ϖs)/ϖ``, and a constant force displaces the ball by (1 - cos ϖs)/ϖ²:
+
+    >>> found = responses(np.pi / 2, 2.0, 0.0)
+    >>> round(float(found.impulse_rate), 12), round(float(found.gravity), 12)
+    (-1.0, 0.5)
+    """
+    s, omega, zeta = np.broadcast_arrays(*map(np.asarray, (time, frequency_ratio, damping_ratio)))
+    decay_rate = zeta * omega
+    damped = omega * np.sqrt((1 - zeta) * (1 + zeta))
+    sine, cosine = swing or (np.sin(damped * s), np.cos(damped * s))
+    decay = np.exp(-decay_rate * s)
+    g = decay * sine / damped
+    upper = -decay_rate + 1j * damped
+    gravity = (_quotient(0.0, upper, s) - g) / (decay_rate + 1j * damped)
+    of_table = (_quotient(1j, upper, s) - g) / (decay_rate + 1j * (1 + damped))
+    return Responses(
+        impulse=g,
+        impulse_rate=decay * cosine - decay_rate * g,
+        gravity=np.real(gravity),
+        in_phase=np.real(of_table),
+        quadrature=np.imag(of_table),
+    )
+
+
+class ContactState(NamedTuple):
+    """δ, δ′ and δ″ after a time in contact, arrays of one shape."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+
+def flow(
+    frequency_ratio: ArrayLike,
+    damping_ratio: ArrayLike,
+    time: ArrayLike,
+    displacement: ArrayLike,
+    velocity: ArrayLike,
+    phase: ArrayLike,
+    amplitude: ArrayLike,
+) -> ContactState:
+    """The state of a ball in contact a time s after (δ₀, δ′₀) at the phase φ (Eqs. 12 and 13).
+
+    Examples
+    --------
+    On a table at rest a ball without weight would come back after half a period of the contact; the
+    weight 1 displaces it by 2/ϖ²:
+
+    >>> state = flow(2.0, 0.0, np.pi / 2, 0.0, -3.0, 0.0, 0.0)
+    >>> round(float(state.displacement), 12), round(float(state.velocity), 12)
+    (-0.5, 3.0)
+    """
+    omega = np.asarray(frequency_ratio, dtype=float)
+    loss = 2 * np.asarray(damping_ratio) * omega
+    stiffness = omega * omega
+    g, rate, gravity, in_phase, quadrature = responses(time, frequency_ratio, damping_ratio)
+    x, y = table(np.asarray(phase, dtype=float), np.asarray(amplitude, dtype=float))
+    forced = x * quadrature + y * in_phase - gravity
+    # The responses obey Q′ = g - P, P′ = Q and G′ = g.
+    forced_rate = x * in_phase + y * (g - quadrature) - g
+    gap = displacement * (rate + loss * g) + velocity * g + forced
+    speed = velocity * rate - displacement * stiffness * g + forced_rate
+    _, height = table(np.asarray(phase) + time, np.asarray(amplitude, dtype=float))
+    return ContactState(gap, speed, height - 1 - loss * speed - stiffness * gap)
 
 
 @dataclass(frozen=True, repr=False)
-class SpringDamper(OscillatorLaw):
-    """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
-
-    Its motion has a closed form, see :meth:`flow`.
+class SpringDamper(Model):
+    """A ball on a table with a spring and a damper between them (Eqs. 10-27).
 
     Parameters
     ----------
     frequency_ratio, damping_ratio : float or array
-        ϖ > 0 and ζ ≥ 0, dimensionless.
+        ϖ > 0 and ζ in [0, 1).
     release : Release or str
         The condition that ends the contact; the paper's is the default.
 
@@ -72,83 +196,23 @@ class SpringDamper(OscillatorLaw):
     Examples
     --------
     >>> contact = SpringDamper.from_restitution(1.0, [5.0, 10.0], "force")
-    >>> contact[1].release, float(contact[1].frequency_ratio)
-    (<Release.FORCE: 'force'>, 10.0)
-    >>> contact[1].label
-    'ϖ = 10, ζ = 0'
+    >>> contact[1].release, contact[1].label
+    (<Release.FORCE: 'force'>, 'ϖ = 10, ζ = 0')
     """
 
+    frequency_ratio: Any
+    damping_ratio: Any
     release: Release = Release.DISPLACEMENT
 
-    name: ClassVar[str] = "linear"
+    name: ClassVar[str] = "spring-damper"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
+        omega = check_positive(self.frequency_ratio, "frequency ratio ϖ")
+        zeta = check_damping(self.damping_ratio)
+        object.__setattr__(self, "frequency_ratio", omega if omega.ndim else float(omega))
+        object.__setattr__(self, "damping_ratio", zeta if zeta.ndim else float(zeta))
         object.__setattr__(self, "release", Release.of(self.release))
-        super().__post_init__()
-
-    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """The force over the weight, ϖ² p + 2ζϖ p′; without p′ < 0 if the damper acts on approach.
-
-        The penetration is p = w - z, and z″ = f - 1 with this force f. In the paper ::
-
-            m ÿ + c (ẏ - ẇ) + k (y - w) = -m g              (10)
-            z″ + 2ζϖ (z′ - w′) + ϖ² (z - w) = -1            (11)
-
-        Examples
-        --------
-        >>> [float(SpringDamper(2.0, 0.25, rule).force(1.0, -3.0)) for rule in Release]
-        [1.0, 1.0, 4.0]
-        """
-        omega = self.frequency_ratio
-        if not self.release.is_linear:
-            rate = np.where(np.real(rate) > 0, rate, 0.0)
-        return omega * (omega * penetration + 2 * self.damping_ratio * rate)
-
-    @property
-    def label(self) -> str:
-        """The parameters of a single contact as text."""
-        return f"ϖ = {float(self.frequency_ratio):g}, ζ = {float(self.damping_ratio):.4g}"
-
-    @property
-    def has_kink(self) -> bool:
-        """Whether the damper acts on approach only, so that the force has a kink at p′ = 0."""
-        return not self.release.is_linear
-
-    def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """p′, or 1 without damping, because the force is then smooth."""
-        return np.where(np.equal(self.damping_ratio, 0), 1.0, rate)
-
-    @cached_property
-    def has_closed_form(self) -> bool:
-        """Whether the motion in contact has a closed form: see :class:`.OscillatorLaw`; a damper
-        that acts on approach only has none for the whole contact.
-        """
-        return self.release.is_linear and super().has_closed_form
-
-    @property
-    def is_linear_and_underdamped(self) -> bool:
-        """Whether all contacts have a linear release and ζ < 1: their motion has a closed form."""
-        return self.release.is_linear and bool(np.all(np.asarray(self.damping_ratio) < 1))
-
-    @property
-    def linear(self) -> SpringDamper:
-        """A linear contact with the r and the duration of this one's free impact: itself, unless
-        its damper acts on approach only.
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1.
-
-        Examples
-        --------
-        >>> contact = SpringDamper(2.0, 0.1, "approach").linear
-        >>> contact.release, round(float(contact.restitution), 4)
-        (<Release.DISPLACEMENT: 'displacement'>, 0.8626)
-        """
-        if self.release.is_linear:
-            return self
-        return SpringDamper.of_impact(self.restitution, self.free_duration)
+        self.check_shape()
 
     @classmethod
     def from_restitution(
@@ -156,20 +220,8 @@ class SpringDamper(OscillatorLaw):
         restitution: ArrayLike,
         frequency_ratio: ArrayLike,
         release: str = Release.DISPLACEMENT,
-        *,
-        measured: bool = False,
     ) -> SpringDamper:
-        """The contact whose damping follows from a restitution coefficient r.
-
-        Parameters
-        ----------
-        restitution, frequency_ratio : array_like
-            r in (0, 1] and ϖ.
-        release : Release or str
-            The condition that ends the contact.
-        measured : bool
-            Whether r is the restitution coefficient of a free impact with this release.
-            Otherwise r is that of the displacement release (Eq. 16).
+        """The contact whose damping follows from a restitution coefficient r by Eq. 16.
 
         Raises
         ------
@@ -178,293 +230,310 @@ class SpringDamper(OscillatorLaw):
 
         Examples
         --------
-        >>> float(SpringDamper.from_restitution(1.0, 10.0).damping_ratio)
+        >>> SpringDamper.from_restitution(1.0, 10.0).damping_ratio
         0.0
         """
-        rule = Release.of(release)
-        zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
-        return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
+        return cls(frequency_ratio, damping_ratio(restitution), Release.of(release))
 
-    @classmethod
-    def of_impact(
-        cls,
-        restitution: ArrayLike,
-        duration: ArrayLike,
-        release: str = Release.DISPLACEMENT,
-    ) -> SpringDamper:
-        """The contact whose free impacts, with this release, have r and the duration D.
-
-        Raises
-        ------
-        ModelError
-            If r or D is outside its range, or the release is unknown.
-
-        Examples
-        --------
-        >>> contact = SpringDamper.of_impact(1.0, np.pi)
-        >>> float(contact.frequency_ratio), float(contact.damping_ratio)
-        (1.0, 0.0)
-        """
-        rule = Release.of(release)
-        return cls.of_duration(duration, damping_ratio(restitution, rule), rule)
-
-    @classmethod
-    def of_duration(
-        cls,
-        duration: ArrayLike,
-        damping_ratio: float | np.ndarray,
-        release: str = Release.DISPLACEMENT,
-    ) -> SpringDamper:
-        """The contact with this ζ whose free impacts last D: their angle ϖD is that for ϖ = 1.
-
-        Raises
-        ------
-        ModelError
-            If D or ζ is outside its range, ζ ≥ 1 with the displacement release, or the release is
-            unknown.
-
-        Examples
-        --------
-        >>> float(SpringDamper.of_duration(0.5, 1.0, "force").frequency_ratio)
-        4.0
-        """
-        unit = cls(1.0, damping_ratio, Release.of(release))
-        time = check_positive(duration, "duration D")
-        return replace(unit, frequency_ratio=unit.free_duration / time)
-
-    def with_impact(self, restitution: float, duration: float, speed: float) -> SpringDamper:
-        """The contact with another ϖ and ζ, whose free impacts have these r and D.
-
-        Examples
-        --------
-        >>> contact = SpringDamper(2.0, 0.1, "approach").with_impact(0.5, 0.25, 1.0)
-        >>> np.allclose([contact.restitution, contact.free_duration], [0.5, 0.25], rtol=1e-14)
-        True
-        """
-        return SpringDamper.of_impact(restitution, duration, self.release)
-
-    def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given, or for ζ ≥ 1.
-
-        Examples
-        --------
-        >>> contact = SpringDamper(2.0, 0.1)
-        >>> float(contact.implied({"restitution": 1.0})["damping_ratio"])
-        0.0
-        """
-        if "restitution" in values:
-            return {"damping_ratio": damping_ratio(values["restitution"])}
-        if "damping_ratio" in values:
-            zeta = values["damping_ratio"]
-            if np.all(np.asarray(zeta) < 1):
-                return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
-        return {}
+    @property
+    def label(self) -> str:
+        return f"ϖ = {self.frequency_ratio:g}, ζ = {self.damping_ratio:.4g}"
 
     @cached_property
-    def release_sine(self) -> np.ndarray:
-        """sin α = κϖ/2: ζ for the force release, 0 at the table's level."""
-        return self.release.sine(self.damping_ratio)[()]
-
-    @cached_property
-    def lag(self) -> np.ndarray:
+    def lag(self) -> Any:
         """κ: the contact ends where δ + κ δ′ = 0."""
-        return 2 * self.release_sine / self.frequency_ratio
+        return 2 * self.release.sine(self.damping_ratio)[()] / self.frequency_ratio
 
-    @property
-    def restitution(self) -> np.ndarray:
-        """Restitution coefficient of a free impact with this release.
+    @cached_property
+    def free_angle(self) -> Any:
+        """The angle ϖ_d s at which a free contact ends."""
+        return self.release.free_angle(self.damping_ratio)[()]
 
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1 with the displacement release.
-        """
-        return restitution_coefficient(self.damping_ratio, self.release)
+    @cached_property
+    def damped_frequency(self) -> Any:
+        """ϖ_d = ϖ√(1 - ζ²)."""
+        return self.frequency_ratio * np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
 
-    @property
-    def free_angle(self) -> np.ndarray:
-        """The angle ϖ_d s at which a free contact, without load, ends: π - 2α if it is linear.
+    def force(self, penetration: ArrayLike, rate: ArrayLike) -> np.ndarray:
+        """The force over the weight, f = ϖ² p + 2ζϖ p′, of a penetration p = w - z.
 
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1: an overdamped contact does not oscillate.
-        """
-        self.require_underdamped()
-        return self.release.free_angle(self.damping_ratio)
+        With this force z″ = f - 1. In the paper ::
 
-    @property
-    def free_duration(self) -> np.ndarray:
-        """Duration of the free contact: (π - 2α)/ϖ_d if it is linear and ζ < 1; for ζ ≥ 1 see
-        ``Release.overdamped_duration``.
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1 with the displacement release.
+            m ÿ + c (ẏ - ẇ) + k (y - w) = -m g              (10)
+            z″ + 2ζϖ (z′ - w′) + ϖ² (z - w) = -1            (11)
 
         Examples
         --------
-        >>> float(SpringDamper(2.0, 1.0, "force").free_duration)
+        >>> float(SpringDamper(2.0, 0.25).force(1.0, -3.0))
         1.0
         """
-        zeta = self.release.require_rebound(self.damping_ratio)
-        over = zeta >= 1
-        under = np.where(over, 0.0, zeta)
-        root = np.sqrt((1 - under) * (1 + under))
-        found = self.release.free_angle(under) / (self.frequency_ratio * root)
-        if not over.any():
-            return found
-        alone = 0.0 if self.release.is_linear else np.pi / 2
-        large = self.release.overdamped_duration(np.where(over, zeta, 1.0)) + alone
-        return np.where(over, large / self.frequency_ratio, found)[()]
+        omega = self.frequency_ratio
+        return omega * (omega * np.asarray(penetration) + 2 * self.damping_ratio * np.asarray(rate))
 
     def flow(
-        self,
-        time: ArrayLike,
-        displacement: ArrayLike,
-        velocity: ArrayLike,
-        phase: ArrayLike,
-        amplitude: ArrayLike,
-    ) -> ContactFlow:
-        """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
+        self, time: Any, phase: Any, velocity: Any, amplitude: Any, displacement: Any = 0.0
+    ) -> ContactState:
+        """δ, δ′ and δ″ at times since the starts of contacts: see :func:`flow`."""
+        start = displacement, velocity, phase, amplitude
+        return flow(self.frequency_ratio, self.damping_ratio, time, *start)
 
-        If the damper acts on approach only, this is the motion up to the greatest penetration. The
-        paper has the absolute height and its derivative, from the start of the contact at τ = 0::
-
-            z = e^{-ζϖτ} (A cos ϖ_d τ + B sin ϖ_d τ) - 1/ϖ² + βΛ cos(τ + φ) + χΛ sin(τ + φ)    (12)
-            z′ = e^{-ζϖτ} [(ϖ_d B - ζϖA) cos ϖ_d τ - (ϖ_d A + ζϖB) sin ϖ_d τ]
-                 - βΛ sin(τ + φ) + χΛ cos(τ + φ)                                               (13)
-            ϖ_d = ϖ √(1 - ζ²),                    γ = (ϖ² - 1)² + (2ζϖ)²
-            χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ,          β = -2ζϖ/γ
-
-        Here τ = s and δ = z - Λ sin(s + φ); δ₀ and δ′₀ at s = 0 determine A and B, which do not
-        appear (:mod:`bouncing_ball.models.linear_flow`). The class ``ClosedFormMotion`` in
-        :mod:`bouncing_ball.models.linear_contact` has them.
-
-        Parameters
-        ----------
-        time, displacement, velocity, phase, amplitude : array_like
-            s, δ₀, δ′₀, the table's phase φ at the start, and Λ.
-
-        Returns
-        -------
-        ContactFlow
-            Its fields have the shape to which the arguments and the contact broadcast.
-
-        Examples
-        --------
-        On a table at rest and without damping, gravity and spring balance at δ = -1/ϖ²:
-
-        >>> flow = SpringDamper(2.0, 0.0).flow(3.0, -0.25, 0.0, 0.0, 0.0)
-        >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
-        (-0.25, 0.0)
-        """
-        numbers = self.frequency_ratio, self.damping_ratio
-        return linear_flow.flow(*numbers, time, displacement, velocity, phase, amplitude)
-
-    def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
-        if not self.release.is_linear:
-            return super().during(span, time)
-        if not span.setting.is_paper:
-            displacement, velocity, _, _ = gap_in_contact(
-                self, span.setting, span, span.amplitude
-            ).gap(time)
-            return displacement, velocity
-        start = span.displacement, span.velocity, span.phase
-        flow = self.flow(time, *start, span.amplitude)
-        return flow.displacement, flow.velocity
-
-    def over_contact(
-        self,
-        amplitude: np.ndarray | float,
-        duration: np.ndarray | float,
-        phase: np.ndarray,
-        gap: np.ndarray,
-        rate: np.ndarray,
+    def in_contact(
+        self, time: Any, phase: Any, velocity: Any, amplitude: Any, displacement: Any = 0.0
     ) -> tuple[np.ndarray, np.ndarray]:
-        """∫ z dτ and ∫ z′ w dτ over contacts, in closed form where the motion has one.
+        """δ and δ′ at times since the starts of contacts (Eqs. 12 and 13)."""
+        return self.flow(time, phase, velocity, amplitude, displacement)[:2]
 
-        The arguments are those of :meth:`.ContactLaw.over_contact`.
-        """
-        if not self.has_closed_form:
-            return super().over_contact(amplitude, duration, phase, gap, rate)
-        numbers = self.frequency_ratio, self.damping_ratio, amplitude
-        return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)
+    def released(
+        self, phase: Any, velocity: Any, amplitude: Any, duration: Any
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at the end of contacts of these durations, whether they are releases or not."""
+        return self.flow(duration, phase, velocity, amplitude)[:2]
 
-    def check_in(self, setting: Setting) -> None:
-        """Raise :class:`~bouncing_ball.errors.ModelError` if the contacts cannot be computed on
-        this table, or in this flight.
-        """
-        if not self.is_linear_and_underdamped:
-            super().check_in(setting)
-        elif not setting.is_paper:
-            held_by(self, setting).check(setting.waveform)
+    def impact(
+        self,
+        phase: np.ndarray,
+        velocity: np.ndarray,
+        amplitude: np.ndarray,
+        displacement: np.ndarray | float = 0.0,
+    ) -> Departure:
+        """The end of each contact, or permanent contact if it is proved never to end.
 
-    def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
-        """Contacts in closed form if all of them are linear and underdamped, otherwise by
-        collocation.
-        """
-        if not self.is_linear_and_underdamped:
-            return super().dynamics(amplitude, setting)
-        if setting.is_paper:
-            return LinearContactDynamics.of(self, amplitude)
-        return HeldContactDynamics.of(self, amplitude, setting)
-
-    @property
-    def constant_signature(self) -> Instant | None:
-        """The signature in closed form; None for overdamped contacts, for which it does not hold.
+        It is the first τ_b > 0 with z(τ_b) = Λ sin(τ_b + φ), that is δ = 0 (Eq. 23), and for the
+        force release with δ + κ δ′ = 0.
 
         Examples
         --------
-        The force of an elastic contact is symmetric in time, so that its centroid is in the middle:
+        Half a period of a stiff contact, on a table whose acceleration balances gravity:
 
-        >>> instant = SpringDamper(2.0, 0.0).signature(1.0)
-        >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
-        (True, 1.0, 0.0)
+        >>> ball = SpringDamper(1e6, 0.0)
+        >>> found = ball.impact(np.full(1, np.pi / 2), np.full(1, -3.0), np.ones(1))
+        >>> (1e6 * found.duration / np.pi).round(6).tolist(), found.velocity.round(6).tolist()
+        ([1.0], [3.0])
         """
-        if np.any(np.asarray(self.damping_ratio) >= 1):
-            return None
-        duration = self.free_duration
-        r = self.restitution
-        # The time at which the flight after the contact rises through δ = 0.
-        through = duration + self.lag
-        loss = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
-        slowed = (1 + r) if self.release.is_linear else r
-        return Instant(
-            delay=r * through / (1 + r),
-            restitution=r + 0 * duration,
-            load=(1 - r) * through - loss * slowed,
-            duration=duration,
+        motion = _Contact(self, phase, velocity, amplitude, displacement + 0.0 * phase)
+        end = first_zero(motion, np.zeros(phase.shape))
+        _, height = table(phase + end.time, amplitude)
+        # y′ = δ′ + κ δ″ with δ″ = Λ sin τ - 1, because the force vanishes at a release with κ > 0.
+        # If the ball just reaches the release, rounding may give it a downward velocity.
+        rate = np.maximum(end.rate, 0.0) - self.lag * (height - 1)
+        status = np.where(end.undecided, Status.UNDECIDED, Status.BOUNCING)
+        status = np.where(end.ended, Status.PERMANENT_CONTACT, status)
+        leaves = status == Status.BOUNCING
+        speed = np.where(leaves, rate, np.nan)
+        duration = np.where(leaves, end.time, np.inf)
+        return Departure(duration, -self.lag * speed, speed, status)
+
+    def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+        """The derivative of (φ_b, δ′_b) by (φ, δ′), with the release condition, shape (..., 2, 2).
+
+        At a fixed time ``∂δ/∂φ = XQ - YP``, ``∂δ′/∂φ = X(g - P) - YQ``, ``∂δ/∂δ′₀ = g`` and
+        ``∂δ′/∂δ′₀ = g′``. The release is later by ``dD = -(dδ + κ dδ′)/(δ′ + κ δ″)``.
+        """
+        state = self.flow(duration, phase, velocity, amplitude)
+        found = responses(duration, self.frequency_ratio, self.damping_ratio)
+        x, y = table(np.asarray(phase, dtype=float), amplitude)
+        by_phase = x * found.in_phase - y * found.quadrature
+        rate_by_phase = x * (found.impulse - found.quadrature) - y * found.in_phase
+        opening = state.velocity + self.lag * state.acceleration
+        later_by_phase = -(by_phase + self.lag * rate_by_phase) / opening
+        later_by_velocity = -(found.impulse + self.lag * found.impulse_rate) / opening
+        return matrix_of(
+            1 + later_by_phase,
+            later_by_velocity,
+            rate_by_phase + state.acceleration * later_by_phase,
+            found.impulse_rate + state.acceleration * later_by_velocity,
         )
 
-    @property
-    def permanent_contact(self) -> np.ndarray | None:
-        """Λ_SD or Λ_F, depending on the release (Eq. 33); for a damper that acts on approach only
-        see :mod:`.approach_threshold`, and None where that finds none.
-        """
-        if not self.release.is_linear:
-            each = np.vectorize(approach_threshold, otypes=[float])
-            found = each(self.frequency_ratio, self.damping_ratio)
-            return found[()] if np.all(np.isfinite(found)) else None
-        return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
+    def contraction(self, duration: Any) -> Any:
+        """exp(-2ζϖD), because areas contract in contact at the rate 2ζϖ."""
+        return np.exp(-2 * self.damping_ratio * self.frequency_ratio * np.asarray(duration))
 
-    def permanent_contact_in(self, setting: Setting) -> Any:
-        """The largest Λ of permanent contact: Λ_SD or Λ_F in the setting of the paper, and
-        :func:`.held_threshold` in another one, if the contacts are linear and ζ < 1.
-        """
-        if not self.is_linear_and_underdamped:
-            return super().permanent_contact_in(setting)
-        return self.permanent_contact if setting.is_paper else held_threshold(self, setting)
+    def permanent_contact_threshold(self) -> Any:
+        """Λ_SD(ϖ), or Λ_F(ϖ) for the force release (Eq. 33)."""
+        found = permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
+        return found[()]
 
-    @classmethod
-    def group_of(cls, restitution: float) -> float:
-        """ζ that gives r with the displacement release (Eq. 16).
 
-        Raises
-        ------
-        ModelError
-            If r is not in (0, 1].
+class _Contact(Motion):
+    """The motion y = δ + κ δ′ of balls in contact, whose first upward zero is the release."""
+
+    def __init__(
+        self,
+        contact: SpringDamper,
+        phase: np.ndarray,
+        velocity: np.ndarray,
+        amplitude: np.ndarray,
+        displacement: np.ndarray,
+    ) -> None:
+        omega = np.asarray(contact.frequency_ratio)
+        zeta = np.asarray(contact.damping_ratio)
+        lag = np.asarray(contact.lag)
+        self.omega = omega
+        self.zeta = zeta
+        self.stiffness = omega * omega
+        self.loss = 2 * zeta * omega
+        self.forcing = amplitude * np.sqrt(1 + lag * lag)
+        self.phase = phase + np.arctan(lag)
+        _, height = table(phase, amplitude)
+        acceleration = height - 1 - self.loss * velocity - self.stiffness * displacement
+        self.start = displacement + lag * velocity
+        self.start_rate = velocity + lag * acceleration
+        detuning = (omega - 1) * (omega + 1)
+        root = np.hypot(detuning, self.loss)
+        self.resonant = (root < _RESONANCE) & (self.forcing > 0)
+        # The steady part ρ sin(s + ψ), and the amplitude R of the transient.
+        self.steady = np.where(self.resonant, np.inf, self.forcing / np.where(root > 0, root, 1.0))
+        self.steady_phase = self.phase - np.arctan2(self.loss, detuning)
+        damped = omega * np.sqrt((1 - zeta) * (1 + zeta))
+        rho = np.where(self.resonant, 0.0, self.steady)
+        a = self.start + 1 / self.stiffness - rho * np.sin(self.steady_phase)
+        rate = self.start_rate - rho * np.cos(self.steady_phase)
+        self.envelope = np.hypot(a, (rate + zeta * omega * a) / damped)
+
+    def __call__(self, time: np.ndarray) -> Derivatives:
+        start = self.start, self.start_rate, self.phase, self.forcing
+        value, rate, second = flow(self.omega, self.zeta, time, *start)
+        jerk, _ = table(self.phase + time, self.forcing)
+        transient = self.envelope * np.exp(-self.zeta * self.omega * time)
+        bounds = [self.omega**k * transient + self.steady for k in (2, 3, 4)]
+        third = jerk - self.loss * second - self.stiffness * rate
+        if self.resonant.any():
+            near = self._near_resonance(value, rate, second)
+            bounds = [np.where(self.resonant, *pair) for pair in zip(near, bounds, strict=True)]
+        level = 1 / self.stiffness
+        return Derivatives(
+            value,
+            rate,
+            second,
+            third,
+            *bounds,
+            ended=transient + (self.steady - level) <= _ROUNDING * level,
+        )
+
+    def _near_resonance(
+        self, value: np.ndarray, rate: np.ndarray, second: np.ndarray
+    ) -> list[np.ndarray]:
+        """Bounds of y″, |y‴| and |y⁗| for a time 1, raised such that no step is longer.
+
+        Let e² = y′² + ϖ² (y + 1/ϖ²)². Damping only decreases it, and the forcing, at most F,
+        increases e by at most F in a time 1. Within this time |y′| ≤ e + F, and bounds of the
+        higher derivatives follow from the equation of motion.
         """
-        return float(damping_ratio(restitution))
+        fast = np.hypot(rate, self.omega * value + 1 / self.omega) + self.forcing
+        by_second = self.forcing + (self.loss + self.omega) * fast
+        by_third = self.forcing + self.loss * by_second + self.stiffness * fast
+        by_fourth = self.forcing + self.loss * by_third + self.stiffness * by_second
+        by_second = np.maximum(by_second, -2 * (value + rate))
+        return [
+            by_second,
+            np.maximum(by_third, 3 * np.abs(second)),
+            np.maximum(by_fourth, 12 * (by_second + np.abs(second))),
+        ]
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """A time up to which y is negative, because its bound by the transient's envelope is.
+
+        The bound is negative until the steady part rises through 1/ϖ² - R e^{-ζϖs}. Without it a
+        stiff, weakly damped contact would need steps over about ϖ oscillations.
+        """
+        if steps < _PATIENCE:
+            return time
+        transient = self.envelope * np.exp(-self.zeta * self.omega * time)
+        ratio = (1 / self.stiffness - transient) / np.maximum(self.steady, 1e-300)
+        inside = (np.abs(ratio) < 1) & ~self.resonant
+        rising = np.arcsin(np.where(inside, ratio, 0.0))
+        now = time + self.steady_phase
+        below = inside & (np.sin(now) < ratio)
+        # The result precedes the crossing by more than the rounding error of the crossing, which
+        # must not postpone a crossing at the present time by a full turn.
+        wait = np.mod(rising - now, _TURN) - 1e-9
+        wait = np.where(wait > _TURN - 1e-6, 0.0, wait)
+        return time + np.where(below, np.maximum(wait, 0.0), 0.0)
+
+
+LOSSES = ("restitution", "damping_ratio", "measured_restitution")
+"""The parameters that determine the loss of an impact; exactly one of them is needed."""
+
+
+def the_loss(
+    restitution: Axis | None, damping_ratio: Axis | None, measured_restitution: Axis | None
+) -> str:
+    """The name of the one of the :data:`LOSSES` that is given.
+
+    Raises
+    ------
+    ParameterError
+        If none of them is given, or several.
+    """
+    values = (restitution, damping_ratio, measured_restitution)
+    given = [name for name, value in zip(LOSSES, values, strict=True) if value is not None]
+    if not given:
+        names = " ".join(f"{{{name}}}" for name in LOSSES)
+        raise ParameterError(f"one of the arguments {names} is required")
+    if len(given) > 1:
+        raise ParameterError(f"argument {{{given[1]}}}: not allowed with argument {{{given[0]}}}")
+    return given[0]
+
+
+@suggesting
+def spring_damper(
+    *,
+    frequency_ratio: FrequencyRatioAxis,
+    restitution: RestitutionAxis | None = None,
+    damping_ratio: DampingRatioAxis | None = None,
+    measured_restitution: RestitutionAxis | None = None,
+    release: ReleaseName = "displacement",
+) -> SpringDamper:
+    """A ball on a contact with a spring and a damper (Eqs. 10-27).
+
+    Exactly one of the parameters restitution, damping_ratio and measured_restitution is needed.
+
+    Parameters
+    ----------
+    frequency_ratio : float or array
+        Frequency ratio ϖ of a spring-damper contact; the restitution model has none.
+    restitution : float or array, optional
+        Restitution coefficient r in (0, 1]. A spring-damper contact then has the damping ratio
+        ζ with r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
+    damping_ratio : float or array, optional
+        Damping ratio ζ in [0, 1) of the contact, in place of the restitution coefficient.
+    measured_restitution : float or array, optional
+        Restitution coefficient of a free impact under the given release, in place of the
+        parameter restitution, which always refers to the displacement release.
+    release : str
+        Where a contact ends: "displacement" at the table's level, as in the paper (default), or
+        "force" where the contact force vanishes.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, of a wrong type or shape, out of range or contradicts another.
+
+    Examples
+    --------
+    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1)
+    SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement')
+    """
+    rule = Release.of(chosen("release", release, [str(each) for each in Release]))
+    loss = the_loss(restitution, damping_ratio, measured_restitution)
+    values = dict(zip(LOSSES, (restitution, damping_ratio, measured_restitution), strict=True))
+    allowed = DAMPING_RATIO if loss == "damping_ratio" else RESTITUTION
+    parameters = {
+        loss: checked(loss, values[loss], allowed),
+        "frequency_ratio": checked("frequency_ratio", frequency_ratio, FREQUENCY_RATIO),
+    }
+    flat: Any = parameters
+    if any(is_array(value) for value in parameters.values()):
+        # Imported here, because a single ball needs no labels, and importing xarray takes longer
+        # than computing its orbit.
+        from bouncing_ball.datasets.labelled import Grid
+
+        flat = Grid(**parameters).flat
+    zeta = flat[loss] if loss == "damping_ratio" else _damping_of(flat[loss], loss, rule)
+    ball = SpringDamper(flat["frequency_ratio"], zeta, rule)
+    return ball.labelled({**parameters, "release": str(rule)})
+
+
+def _damping_of(restitution: ArrayLike, loss: str, rule: Release) -> np.ndarray:
+    """ζ of a restitution coefficient, of the displacement release unless it was measured."""
+    return damping_ratio(restitution, rule if loss == "measured_restitution" else "displacement")

@@ -1,4 +1,0 @@
-"""The studies that go past the paper: exhibits, motions, the atlas, proofs of the paper's numbers.
-
-Nothing in the library and nothing in :mod:`bouncing_ball.paper` imports it.
-"""

@@ -1,1 +1,0 @@
-"""The atlas: how stiff a contact must be, for all orbits; computed in shards."""

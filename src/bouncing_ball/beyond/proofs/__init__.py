@@ -1,9 +1,0 @@
-"""Proofs by ball arithmetic: bifurcations, orbits and thresholds with intervals that contain them.
-
-The closed branch (:mod:`bouncing_ball.periodic.one_impact.spring_damper_branch`) reduces an n-T
-orbit to one unknown. Here its equations are evaluated with balls, midpoints with an error bound, of
-the library Arb, and derivatives are the coefficients of truncated Taylor series with balls as
-coefficients. An interval Newton step that maps a ball into its own interior proves that the ball
-contains exactly one solution. The equations themselves, and how they were read from the paper, are
-not proved.
-"""

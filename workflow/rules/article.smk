@@ -46,7 +46,6 @@ rule paper:
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
             data=ACCEPTED,
         ),
-        atlas=here("config/atlas.nc"),
         citation=os.path.relpath(Path(ROOT, "CITATION.cff")),
         data=[each.dataset for each in ARTIFACTS.values() if each.dataset],
         tables=[f"results/{each.place}.md" for each in ARTIFACTS.values() if each.table],

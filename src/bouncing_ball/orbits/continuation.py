@@ -37,13 +37,14 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball import datasets
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.model import Model
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind, resample
 from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.orbits.explicit import SpringDamperBranch
+from bouncing_ball.orbits.explicit import SpringDamperBranch, explicit_branch
 from bouncing_ball.orbits.orbit import (
     Bifurcation,
     Orbit,
@@ -54,7 +55,7 @@ from bouncing_ball.orbits.orbit import (
 
 LARGEST_STEP = 0.1
 """Default of the largest step in arclength."""
-# The unknowns that determine the others, in which points have equal distances: φ, z′_i, ϖτ_b and Λ.
+# The places of φ, z′_i, ϖτ_b and Λ in y.
 _MEASURED = [0, 1, 2, 6]
 # A branch ends at this speed of the impact or this flight time, and not at 0. Where the orbit
 # merges with permanent contact both vanish together, and the equations are singular: rounding
@@ -109,6 +110,7 @@ class PaperEquations:
         return type(self)(self.contact.take(which), pick(np.asarray(self.n), which))
 
     @cached_property
+    @np.errstate(divide="ignore", invalid="ignore")  # at the undamped resonance
     def _steady(self) -> tuple[Any, Any]:
         """β and χ - 1 of Eq. 12: the steady part of δ is ``Λ [β cos τ + (χ - 1) sin τ]``."""
         omega = self.contact.frequency_ratio
@@ -308,34 +310,19 @@ class OrbitBranch:
         """The special orbits in order along the branch."""
         return [each for each in self.branch.special if each.name in list(Special)]
 
-    def at_equal_steps(self, count: int) -> Self:
-        """The same branch with so many points at equal steps of arclength in φ, z′_i, ϖτ_b and Λ.
+    def measured(self, y: np.ndarray) -> np.ndarray:
+        """φ, z′_i, ϖτ_b and Λ, which determine the other unknowns."""
+        return y[..., _MEASURED]
+
+    def at_equal_steps(self, count: int) -> np.ndarray:
+        """So many points at equal steps of arclength in φ, z′_i, ϖτ_b and Λ, shape (count, 7).
 
         Raises
         ------
         ContinuationError
             If the steps along the branch were too long for it.
         """
-        points = resample(self.equations, self.branch, count, lambda y: y[..., _MEASURED])
-        branch = Branch(
-            points, points, self.branch.special, self.branch.start, self.branch.end
-        )
-        return type(self)(self.equations, branch)
-
-    def arclength(self, points: np.ndarray) -> np.ndarray:
-        """The arclength up to points beside the branch over that of the whole branch.
-
-        A point lies between the two neighbours to which it makes the smallest detour.
-        """
-        along = self.branch.points[:, _MEASURED]
-        distance = np.linalg.norm(points[:, np.newaxis, _MEASURED] - along, axis=-1)
-        step = np.linalg.norm(np.diff(along, axis=0), axis=-1)
-        before = np.argmin(distance[:, :-1] + distance[:, 1:] - step, axis=-1)
-        row = np.arange(len(points))
-        behind = distance[row, before]
-        passed = np.concatenate([[0.0], np.cumsum(step)])
-        share = behind / (behind + distance[row, before + 1])
-        return (passed[before] + step[before] * share) / passed[-1]
+        return resample(self.equations, self.branch, count, self.measured)
 
 
 NoBranch = NoOrbitError | ContinuationError
@@ -446,11 +433,11 @@ def _explained(equations: PaperEquations, end: End, point: np.ndarray) -> End:
     return End(_MERGES, event="flight") if singular and flight < _SHORT_FLIGHT else end
 
 
-def default_top(contact: SpringDamper, n: int) -> float:
+def default_top(model: Model, n: int) -> float:
     """The largest Λ of a branch if none is given: 1.4 times that of its period doubling, or twice
     that of its saddle-node.
     """
-    branch = SpringDamperBranch(contact)
+    branch = explicit_branch(model)
     fold = float(branch.bifurcation(Bifurcation.SADDLE_NODE, n).amplitude)
     doubling = float(branch.bifurcation(Bifurcation.PERIOD_DOUBLING, n).amplitude)
     low = fold if fold > 0 else 0.0

@@ -77,10 +77,15 @@ from bouncing_ball.orbits.orbit import (
     Orbit,
     Side,
     check_index,
+    flight_margin,
     trace_and_determinant,
 )
 
 # The restitution model.
+
+# Each round of so many samples divides the bracket of a grazing orbit; the last one is a rounding.
+_GRAZING_SAMPLES = 401
+_GRAZING_ROUNDS = 7
 
 
 class ImpactMap(StrEnum):
@@ -316,6 +321,29 @@ class RestitutionBranch(Branch):
         end = np.sqrt((amplitude_max - level) * (amplitude_max + level))
         column = np.asarray(n)[..., np.newaxis]
         return self.at(column, end[..., np.newaxis] * np.linspace(-1.0, 1.0, points))
+
+    def grazing(self, n: int, amplitude_max: float) -> Orbit:
+        """The orbit of a single model on the unstable side that is nearest to the saddle-node among
+        those whose flight grazes the table: beyond it there is an earlier impact. NaN if there is
+        none up to ``amplitude_max``.
+
+        Examples
+        --------
+        >>> found = RestitutionBranch(RestitutionModel(0.2)).grazing(1, 4.0)
+        >>> float(found.amplitude) < 4, bool(found.admissible)
+        (True, True)
+        """
+        level = restitution_saddle_node(n, self.model.restitution)
+        end = np.sqrt(np.maximum((amplitude_max - level) * (amplitude_max + level), 0.0))
+        lifts = np.linspace(0.0, -end, _GRAZING_SAMPLES)
+        for _ in range(_GRAZING_ROUNDS):
+            inside = flight_margin(self.at(np.full(lifts.size, n), lifts)) > 0
+            first = int(np.argmin(inside))
+            if inside[first] or first == 0:
+                return self.at(n, np.nan)
+            # Between the last orbit without an earlier impact and the first one with it.
+            lifts = np.linspace(lifts[first - 1], lifts[first], _GRAZING_SAMPLES)
+        return self.at(n, lifts[0])
 
 
 # The spring-damper model.

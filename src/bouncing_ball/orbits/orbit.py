@@ -140,9 +140,9 @@ class Orbit(Batch):
     impact_velocity: Any
 
     def __repr__(self) -> str:
-        names = ("n", "model", *OBSERVABLES, "stable", "admissible")
-        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
-        return "\n".join(["Orbit", *values])
+        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in ("n", "model", *OBSERVABLES))
+        judged = (f"  {name:<22}{getattr(self, name)}" for name in ("stable", "admissible"))
+        return "\n".join(["Orbit", *values, *judged])
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -4,9 +4,6 @@ import functools
 from pathlib import Path
 
 import pytest
-from declared_artifacts import ARTIFACTS
-from jinja2 import BytecodeCache, Environment
-
 from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.beyond.exhibits import (
     certified_verdicts_figures,
@@ -17,6 +14,9 @@ from bouncing_ball.beyond.exhibits import (
     proofs_figures,
 )
 from bouncing_ball.beyond.exhibits.certified_verdicts import certified_verdicts
+from declared_artifacts import ARTIFACTS
+from jinja2 import BytecodeCache, Environment
+
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.claims import tables as rows

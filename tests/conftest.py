@@ -32,8 +32,6 @@ from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
-# Fixtures that tests of several folders use: a reference integration, and all texts.
-pytest_plugins = ["taylor_ball", "article_texts"]
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -155,8 +153,7 @@ def reference():
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    paths = [*sorted((ROOT / "figures").rglob("*.nc")), *(ROOT / "config").glob("ext_*.nc")]
-    return {path.stem: read_dataset(path) for path in paths}
+    return {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
 
 
 @pytest.fixture(scope="session")
@@ -171,24 +168,6 @@ def declared():
             assert not found.keys() & own.keys(), (name, found.keys() & own.keys())
             found |= own
     return found
-
-
-@pytest.fixture(scope="session")
-def coarse():
-    """Fewer samples, starts or compliant contacts of the studies that take as long as all others.
-
-    At their whole size they are compared with the record by `make diff`, and weekly.
-    """
-    return {
-        ("ext_cascades", "samples"): 5,
-        ("ext_cascades", "doublings"): 4,
-        ("ext_flights", "samples"): 5,
-        ("ext_flights", "flights"): 2,
-        # Balls on compliant contacts take most impacts to settle.
-        ("ext_flights", "min"): 50,
-        ("ext_laws", "samples"): 4,
-        ("ext_locked", "nodes"): 15,
-    }
 
 
 @pytest.fixture(scope="session")
@@ -311,29 +290,6 @@ def searched_once():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(OrbitsOfContacts, "exists", exists)
         yield
-
-
-@pytest.fixture
-def short_motions(monkeypatch):
-    """An answer about the motion on which a ball ends follows few impacts of few balls."""
-    from bouncing_ball.contacts import effort
-
-    few = effort.Sampling(unit=4, usual=4, impacts=(8,), before=4)
-    for kind in ("LINEAR", "OF_LAW"):
-        usual = getattr(effort, kind)
-        small = usual._replace(impacts=20, samples=few, samples_of_change=few)
-        monkeypatch.setattr(effort, kind, small)
-
-
-@pytest.fixture
-def short_runs(short_motions, monkeypatch):
-    """An answer follows few impacts: long runs are those of contacts/test_motion.py."""
-    from bouncing_ball.contacts import effort
-
-    for kind in ("LINEAR", "OF_LAW"):
-        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(starts=3))
-    # Balls of a law that come to rest on a stiff contact take longest.
-    monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 3)
 
 
 CHROMIUM = next(

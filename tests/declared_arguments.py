@@ -6,12 +6,12 @@ from functools import cache
 from types import UnionType
 
 import xarray as xr
+from bouncing_ball.contacts.units import SIParameter
+from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve
 
 import bouncing_ball as bb
-from bouncing_ball.contacts.units import SIParameter
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import Range
-from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve
 
 Declared = Range | SIParameter | tuple[str, ...]
 # What is imported for type checkers only.

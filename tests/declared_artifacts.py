@@ -1,4 +1,4 @@
-"""The artifacts that the rules of both sets of studies list, read without a run of Snakemake."""
+"""The artifacts that the rules list, read without a run of Snakemake."""
 
 import ast
 import re
@@ -34,9 +34,8 @@ def declared() -> dict[str, Artifact]:
             shown = figures or f"{module}_figures"
             artifacts[name] = Artifact(name=name, module=module, figures=shown, **each)
 
-    for part in ("paper", "beyond"):
-        for call in calls_of_stage((RULES / f"{part}.smk").read_text(encoding="utf-8")):
-            eval(call, {"stage": stage})
+    for call in calls_of_stage((RULES / "paper.smk").read_text(encoding="utf-8")):
+        eval(call, {"stage": stage})
     return artifacts
 
 

@@ -13,16 +13,16 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
+from bouncing_ball.contacts.law_balls import _RANGES as OF_LAWS
+from bouncing_ball.contacts.named_laws import LAWS
+from bouncing_ball.contacts.units import SIParameter, in_si
+from bouncing_ball.models.makers import LOSSES
 from declared_arguments import Declared, arguments
 from hypothesis import strategies as st
 
 import bouncing_ball as bb
-from bouncing_ball.contacts.law_balls import _RANGES as OF_LAWS
-from bouncing_ball.contacts.named_laws import LAWS
-from bouncing_ball.contacts.units import SIParameter, in_si
 from bouncing_ball.datasets.arguments import FINITE
 from bouncing_ball.errors import Range
-from bouncing_ball.models.makers import LOSSES
 
 Draw = Callable[[st.SearchStrategy], Any]
 

@@ -11,6 +11,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
+from bouncing_ball.periodic.orbits.stability import Side
 
 import bouncing_ball
 from bouncing_ball import (
@@ -26,11 +31,6 @@ from bouncing_ball import (
     spring_damper,
 )
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.corrected.model import CorrectedModel
-from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
-from bouncing_ball.periodic.orbits.stability import Side
 
 ROOT = Path(__file__).parents[1]
 CONTACT = spring_damper(restitution=0.85, frequency_ratio=10.0)

@@ -11,6 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bouncing_ball.contacts.contact import LOSSY, STIFF
+from bouncing_ball.contacts.engines.choice import ENGINES
+from bouncing_ball.measured.curves import CURVES
+from bouncing_ball.periodic.orbits.special import Special
 from declared_arguments import arguments, declared_by
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
@@ -18,12 +22,8 @@ from random_arguments import Calls, TimeOver, numbers, sometimes
 
 import bouncing_ball as bb
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
-from bouncing_ball.contacts.contact import LOSSY, STIFF
-from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.datasets.arguments import FINITE, POSITIVE, RESTITUTION
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.measured.curves import CURVES
-from bouncing_ball.periodic.orbits.special import Special
 
 # Random calls of each function, of all functions in the long test.
 SOME = 8

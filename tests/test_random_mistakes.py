@@ -18,6 +18,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.quantities import quantities
+from bouncing_ball.contacts.question import EngineSetup, Question
+from bouncing_ball.contacts.table import Table
+from bouncing_ball.models.makers import LOSSES
 from declared_arguments import arguments
 from declared_artifacts import ARTIFACTS
 from hypothesis import given, settings
@@ -27,12 +32,7 @@ from whole_configuration import configuration_type
 import bouncing_ball as bb
 from bouncing_ball.cli.answers import parser
 from bouncing_ball.cli.commands import COMMANDS
-from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.quantities import quantities
-from bouncing_ball.contacts.question import EngineSetup, Question
-from bouncing_ball.contacts.table import Table
 from bouncing_ball.errors import ModelError, Range
-from bouncing_ball.models.makers import LOSSES
 from bouncing_ball.pipeline.configuration import check_parameters, place
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 

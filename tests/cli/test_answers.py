@@ -5,19 +5,19 @@ import math
 
 import numpy as np
 import pytest
+from bouncing_ball.contacts.named_laws import LAWS
+from bouncing_ball.models.contact_model import ContactModel
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 from hypothesis import given
 from hypothesis import strategies as st
 
 import bouncing_ball
 from bouncing_ball import corrected, rigid, spring_damper
-from bouncing_ball.contacts.named_laws import LAWS
-from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")

@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from bouncing_ball.contacts.named_laws import LAWS
+from bouncing_ball.models.makers import spring_damper
 
 import bouncing_ball
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.options import meanings
-from bouncing_ball.contacts.named_laws import LAWS
-from bouncing_ball.models.makers import spring_damper
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")

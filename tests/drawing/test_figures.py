@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from adapter import function
+from bouncing_ball.beyond.exhibits.motion_maps import LOWEST_RATE
 from declared_artifacts import ARTIFACTS
 
 import bouncing_ball
-from bouncing_ball.beyond.exhibits.motion_maps import LOWEST_RATE
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import COLOURS, LINES, style

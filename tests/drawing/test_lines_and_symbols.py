@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.figure import Figure
-
-import bouncing_ball as bb
 from bouncing_ball.beyond.exhibits.contact_laws_figures import contact_laws
 from bouncing_ball.beyond.exhibits.motion_maps import (
     DOTS,
@@ -14,6 +11,9 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     mark_nodes,
     node_map,
 )
+from matplotlib.figure import Figure
+
+import bouncing_ball as bb
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
 from bouncing_ball.drawing.labels import _SYMBOLS, in_a_row

@@ -1,4 +1,4 @@
-r"""The quantities by which the models are compared, and the relative errors of the restitution model.
+r"""The quantities compared, and the relative errors of the restitution model (Eqs. 37 and 38).
 
 The paper compares the greatest height and the threshold of permanent contact of the spring-damper
 model (SD) with those of the restitution model (CR)::
@@ -83,7 +83,7 @@ def relative_errors(
     amplitude: ArrayLike,
     quantities: Sequence[str],
 ) -> np.ndarray:
-    """The errors (q_SD - q_CR)/q_CR of quantities (Eqs. 37 and 38), shape (quantity, ...).
+    """The errors (q_SD - q_CR)/q_CR of quantities (Eqs. 37-38), shape (quantity, ...).
 
     The arguments are those of :func:`values`, with both models.
 
@@ -101,9 +101,11 @@ def relative_errors(
     >>> relative_errors(contact, simple, 1, 1.0, ["permanent_contact"]).tolist()
     [-0.25]
     """
-    base = values(simple, n, amplitude, quantities)
+    shape = np.broadcast_shapes(exact.shape, simple.shape, np.shape(n), np.shape(amplitude))
+    lam = np.broadcast_to(amplitude, shape)
+    base = values(simple, n, lam, quantities)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return (values(exact, n, amplitude, quantities) - base) / base
+        return (values(exact, n, lam, quantities) - base) / base
 
 
 def modulus(error: ArrayLike) -> np.ndarray:

@@ -191,9 +191,7 @@ def search(
 
     found = np.array([crossing(*each) for each in zip(quantities, error, strict=True)])
     never = outside[..., -1]
-    within = np.where(
-        outside.any(axis=-1), ThresholdStatus.FOUND, ThresholdStatus.ALWAYS_WITHIN
-    )
+    within = np.where(outside.any(axis=-1), ThresholdStatus.FOUND, ThresholdStatus.ALWAYS_WITHIN)
     status = np.where(never, ThresholdStatus.NEVER_WITHIN, within)
     return Search(error, np.where(never, np.nan, found), status)
 

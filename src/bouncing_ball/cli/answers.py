@@ -43,8 +43,8 @@ def parser(arguments: list[str]) -> Parser:
     """The parser of all subcommands; only those named in the arguments have their options."""
     top = Parser(
         prog="bouncing-ball",
-        description="Orbits and other motions of a ball on a vibrating table. Quantities are "
-        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g. Only design has units.",
+        description="Orbits of a ball on a vibrating table. Quantities are "
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
         epilog="bouncing-ball COMMAND --help explains a command and gives examples",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")

@@ -6,7 +6,6 @@ are made from its signature.
 
 import argparse
 import builtins
-import collections.abc
 import enum
 import inspect
 import math
@@ -20,9 +19,6 @@ from typing import Any, NoReturn
 from bouncing_ball.cli.advice import advice, meaning
 from bouncing_ball.cli.output import say
 from bouncing_ball.errors import Range, escaped
-
-_OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
-_OTHER_NAMES |= {"amplitudes": "amplitude"}
 
 
 class Parser(argparse.ArgumentParser):
@@ -91,7 +87,7 @@ def option(name: str) -> str:
     >>> option("damping_ratio")
     '--damping-ratio'
     """
-    return "--" + _OTHER_NAMES.get(name, name).replace("_", "-")
+    return "--" + name.replace("_", "-")
 
 
 def meanings(call: Callable) -> dict[str, str]:
@@ -99,7 +95,7 @@ def meanings(call: Callable) -> dict[str, str]:
 
     Examples
     --------
-    >>> from bouncing_ball.models.makers import rigid
+    >>> from bouncing_ball.models.restitution import rigid
     >>> meanings(rigid)["restitution"]
     'Restitution coefficient r in (0, 1].'
     """
@@ -129,29 +125,6 @@ def _path(text: str) -> pathlib.Path:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty")
     return pathlib.Path(text)
-
-
-def _assignment(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    number = _number(value)
-    if not name.strip() or number not in Range():
-        why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
-        if "=" in value:
-            why += ": repeat the option for each parameter"
-        elif "=" in text:
-            why += _plain(value, Range())
-        raise argparse.ArgumentTypeError(why)
-    return name.strip(), number
-
-
-class _Assignments(argparse.Action):
-    """Collects assignments to different names in a dictionary."""
-
-    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
-        found = getattr(namespace, self.dest) or {}
-        if values[0] in found:
-            parser.error(f"argument {option_string}: {values[0]} is given twice")
-        setattr(namespace, self.dest, found | {values[0]: values[1]})
 
 
 def _within(allowed: Range) -> Callable[[str], Any]:
@@ -211,21 +184,6 @@ def add_number(
     )
 
 
-def add_optional_number(
-    parser: argparse.ArgumentParser, name: str, allowed: Range, text: str, *, const: float
-) -> None:
-    """Add an option that may be given with a number or alone, for the number ``const``."""
-    parser.add_argument(
-        option(name),
-        dest=name,
-        type=_within(allowed),
-        nargs="?",
-        const=const,
-        metavar="N" if allowed.whole else "X",
-        help=f"{text} Given without a number: {const:g}.",
-    )
-
-
 def add_choice(
     parser: argparse.ArgumentParser,
     name: str,
@@ -242,36 +200,6 @@ def add_choice(
         choices=list(map(str, choices)),
         default=default,
         help=_help(text, default),
-    )
-
-
-def add_file(parser: argparse.ArgumentParser, name: str, text: str) -> None:
-    """Add an option for a file that is written."""
-    parser.add_argument(option(name), dest=name, type=_path, metavar="FILE", help=_help(text, None))
-
-
-def add_interval(parser: argparse.ArgumentParser, name: str, allowed: Range, text: str) -> None:
-    """Add a required option for two numbers in a range."""
-    parser.add_argument(
-        option(name),
-        dest=name,
-        type=_within(allowed),
-        nargs=2,
-        metavar=("FROM", "TO"),
-        required=True,
-        help=_help(text, None),
-    )
-
-
-def add_assignments(parser: argparse.ArgumentParser, name: str, text: str) -> None:
-    """Add an option for assignments such as stiffness=1000, which may be repeated."""
-    parser.add_argument(
-        option(name),
-        dest=name,
-        type=_assignment,
-        action=_Assignments,
-        metavar="NAME=NUMBER",
-        help=_help(text, None),
     )
 
 
@@ -293,17 +221,6 @@ def add_parameters(parser: argparse.ArgumentParser, call: Callable) -> None:
             _add_option(parser, parameter, texts.get(name, ""))
 
 
-def add_optional(parser: argparse.ArgumentParser, call: Callable, names: Iterable[str]) -> None:
-    """Add options for some parameters of a call, of which none is required."""
-    texts = meanings(call)
-    parameters = inspect.signature(call).parameters
-    for name in names:
-        parameter = parameters[name]
-        if parameter.default is parameter.empty:
-            parameter = parameter.replace(default=None)
-        _add_option(parser, parameter, texts.get(name, ""))
-
-
 def _add_argument(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
     """Add an argument by position."""
     reading = _reading(parameter.annotation)
@@ -317,19 +234,9 @@ def _add_argument(parser: argparse.ArgumentParser, parameter: inspect.Parameter,
 def _add_option(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
     required = parameter.default is parameter.empty
     default = None if required else parameter.default
-    if parameter.name == "law":
-        text += laws()
     reading = _reading(parameter.annotation)
     reading |= {"default": default, "help": _help(text, default), "required": required}
     parser.add_argument(option(parameter.name), dest=parameter.name, **reading)
-
-
-def laws() -> str:
-    """A sentence with the names of the contact laws."""
-    # Imported here, because the import needs numpy, which the general help does not need.
-    from bouncing_ball.contacts.named_laws import LAWS
-
-    return f" Laws: {', '.join(LAWS)}."
 
 
 def _reading(annotation: Any) -> dict[str, Any]:
@@ -347,8 +254,6 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"choices": kinds}
         case builtins.bool:
             return {"action": "store_true"}
-        case collections.abc.Mapping:
-            return {"type": _assignment, "action": _Assignments, "metavar": "NAME=NUMBER"}
         case pathlib.Path:
             return {"type": _path, "metavar": "FILE"}
     # A text, or a quantity with a unit, which the call converts.

@@ -51,8 +51,6 @@ def _rows(answer: dict[str, Any], prefix: str = "") -> list[str]:
         name = f"{prefix}{key.replace('_', ' ')}"
         if isinstance(value, dict):
             rows += _rows(value, f"{name}, ")
-        elif key == "proved":
-            rows.append(f"{name:<39} {'; '.join(value)}")
         elif key == "multipliers":
             shown = "   ".join(f"{re:.10g} {im:+.10g}i" for re, im in value)
             rows.append(f"{name:<39} {shown}")

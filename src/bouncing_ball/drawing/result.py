@@ -11,9 +11,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets import CASE, DRAWING
+from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.errors import ModelError, extra
+from bouncing_ball.errors import ModelError, ParameterError, extra, shortened, suggesting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -118,6 +119,23 @@ class Result(xr.Dataset):
         if "title" in self.attrs:
             raise ModelError(f"the dataset {self.attrs['title']!r} has no figure")
         raise ModelError("this dataset has lost the attributes of the result of a call")
+
+
+@suggesting
+def open(path: str | Path) -> Result:
+    """The dataset in a netCDF file, such as that of an artifact of the replication.
+
+    ``bouncing_ball.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure from it.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, or if it is damaged.
+    """
+    if not isinstance(path, str | Path):
+        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
+    data = read_dataset(path)
+    return Result(data.data_vars, data.coords, data.attrs)
 
 
 def _function(name: str) -> Callable[..., Any]:

@@ -1,16 +1,8 @@
 r"""The table, and the free flight of a ball up to its landing (Eqs. 1, 3, 4, 14, 15).
 
-The table's height is w = Λ sin τ. A flight since τ₀ is ::
-
-    z′ = -(τ - τ₀) + z′₀                                (4)
-    z  = -(τ - τ₀)²/2 + (τ - τ₀) z′₀ + z₀
-
-Eq. 1 is the second line in metres and seconds, y = -g (t - t₀)²/2 + (t - t₀) ẏ₀ + y₀, and Eq. 3
-the first line at the next impact, z′₁ = -(τ₁ - τ₀) + z′₀.
-
-Here s = τ - τ₀ is the time since the release, with the phase φ_b of the table, the displacement δ_b
-of the ball relative to the table and its relative velocity v. With X = Λ cos φ_b and
-Y = Λ sin φ_b ::
+The table's height is w = Λ sin τ. Let s be the time since the release, at the phase φ_b of the
+table, with the displacement δ_b of the ball relative to the table and its relative velocity v. With
+X = Λ cos φ_b and Y = Λ sin φ_b ::
 
     δ(s) = δ_b + v s - s²/2 + Y (1 - cos s) + X (s - sin s)
     δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
@@ -47,6 +39,14 @@ def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray,
 
 class Flight(Motion):
     """The motion y = -δ of balls in flight; its first upward zero is the landing.
+
+    In the paper, a flight since τ₀ is ::
+
+        z′ = -(τ - τ₀) + z′₀                                (4)
+        z  = -(τ - τ₀)²/2 + (τ - τ₀) z′₀ + z₀
+
+    Eq. 1 is the second line in metres and seconds, y = -g (t - t₀)²/2 + (t - t₀) ẏ₀ + y₀, and Eq. 3
+    the first line at the next impact, z′₁ = -(τ₁ - τ₀) + z′₀. Here s = τ - τ₀ and v = z′₀ - w′₀.
 
     Parameters
     ----------

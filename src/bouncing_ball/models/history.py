@@ -146,6 +146,8 @@ class ImpactSequence:
         A model for all balls, or a row with one for each.
     amplitude : ndarray, shape (balls,)
         Λ.
+    status : ndarray of int, shape (balls,)
+        What each ball does after its last impact, a :class:`.Status`.
     time, phase : ndarray
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : ndarray
@@ -155,12 +157,11 @@ class ImpactSequence:
         rests on the table, and infinite for permanent contact.
     release_displacement, relative_bounce_velocity : ndarray
         δ and δ′ when the ball leaves.
-    status : ndarray of int, shape (balls,)
-        What each ball does after its last impact, a :class:`.Status`.
     """
 
     model: Model
     amplitude: np.ndarray
+    status: np.ndarray
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray
@@ -168,7 +169,6 @@ class ImpactSequence:
     contact_duration: np.ndarray
     release_displacement: np.ndarray
     relative_bounce_velocity: np.ndarray
-    status: np.ndarray
 
     @property
     def impact_velocity(self) -> np.ndarray:
@@ -277,7 +277,8 @@ def _sequence(
         found.append(columns)
         status = after
     missing = [np.full((7, amplitude.size), np.nan)] * (count - len(found))
-    return ImpactSequence(model, amplitude, *np.stack(found + missing, axis=1), status=status)
+    columns = np.stack(found + missing, axis=1)
+    return ImpactSequence(model, amplitude, status, *columns)
 
 
 def impacts_until(

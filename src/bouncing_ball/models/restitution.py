@@ -1,4 +1,4 @@
-r"""The restitution model: impacts without duration, chattering, and rest on the table (Eqs. 2, 5, 9).
+r"""The restitution model: impacts as instants, chattering, rest on the table (Eqs. 2, 5, 9).
 
 An impact turns the relative velocity δ′ of the ball into -r δ′. With v₀ just after an impact at the
 phase τ₀, the flight of Eqs. 3 and 4 for a time s, and the impact that follows, the map from one
@@ -158,7 +158,8 @@ class RestitutionModel(Model):
 
     def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
         """The phase stays, and the velocity is multiplied by -r."""
-        return matrix_of(1.0, 0.0, 0.0, -self.restitution + 0.0 * np.asarray(velocity))
+        slope = -self.restitution + 0.0 * np.asarray(velocity)
+        return matrix_of(np.ones_like(slope), 0.0 * slope, 0.0 * slope, slope)
 
     def contraction(self, duration: Any) -> Any:
         """r²."""

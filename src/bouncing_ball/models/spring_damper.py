@@ -28,9 +28,9 @@ F = Λ√(1 + κ²)::
     y(s) = e^{-ζϖs} (A cos ϖ_d s + B sin ϖ_d s) - 1/ϖ² + ρ sin(s + ψ),      ρ = F/√γ
     γ = (ϖ² - 1)² + (2ζϖ)²
 
-(Eq. 12 without the table). The derivative of order k of the first term is at most ``ϖ^k R e^{-ζϖs}``
-with R = √(A² + B²), and that of the last one at most ρ. The contact therefore never ends if at some
-time ``R e^{-ζϖs} + ρ ≤ 1/ϖ²``.
+(Eq. 12 without the table). With R = √(A² + B²), the derivative of order k of the first term is at
+most ``ϖ^k R e^{-ζϖs}``, and that of the last one at most ρ. The contact therefore never ends if at
+some time ``R e^{-ζϖs} + ρ ≤ 1/ϖ²``.
 """
 
 from __future__ import annotations
@@ -91,8 +91,9 @@ def _quotient(nu: complex, pole: np.ndarray, time: np.ndarray) -> np.ndarray:
     return time * np.exp(nu * time) * quotient
 
 
-# What remains of an oscillation after a long time may be below the smallest number, and is then 0.
-@np.errstate(under="ignore")
+# What remains of an oscillation after a long time may be below the smallest number, and is then 0;
+# and a complex number that is not a number would cause a warning.
+@np.errstate(under="ignore", invalid="ignore")
 def responses(
     time: ArrayLike,
     frequency_ratio: ArrayLike,
@@ -151,7 +152,7 @@ def flow(
     phase: ArrayLike,
     amplitude: ArrayLike,
 ) -> ContactState:
-    """The state of a ball in contact a time s after (δ₀, δ′₀) at the phase φ (Eqs. 12 and 13).
+    """The state of a ball in contact a time s after (δ₀, δ′₀) at the phase φ (Eqs. 12-13).
 
     Examples
     --------
@@ -323,6 +324,11 @@ class SpringDamper(Model):
         duration = np.where(leaves, end.time, np.inf)
         return Departure(duration, -self.lag * speed, speed, status)
 
+    def opening_rate(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+        """δ′ + κ δ″ at the end of contacts of these durations: positive where they open."""
+        state = self.flow(duration, phase, velocity, amplitude)
+        return state.velocity + self.lag * state.acceleration
+
     def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
         """The derivative of (φ_b, δ′_b) by (φ, δ′), with the release condition, shape (..., 2, 2).
 
@@ -334,7 +340,7 @@ class SpringDamper(Model):
         x, y = table(np.asarray(phase, dtype=float), amplitude)
         by_phase = x * found.in_phase - y * found.quadrature
         rate_by_phase = x * (found.impulse - found.quadrature) - y * found.in_phase
-        opening = state.velocity + self.lag * state.acceleration
+        opening = self.opening_rate(phase, velocity, amplitude, duration)
         later_by_phase = -(by_phase + self.lag * rate_by_phase) / opening
         later_by_velocity = -(found.impulse + self.lag * found.impulse_rate) / opening
         return matrix_of(
@@ -401,14 +407,8 @@ class _Contact(Motion):
             near = self._near_resonance(value, rate, second)
             bounds = [np.where(self.resonant, *pair) for pair in zip(near, bounds, strict=True)]
         level = 1 / self.stiffness
-        return Derivatives(
-            value,
-            rate,
-            second,
-            third,
-            *bounds,
-            ended=transient + (self.steady - level) <= _ROUNDING * level,
-        )
+        ended = transient + (self.steady - level) <= _ROUNDING * level
+        return Derivatives._make([value, rate, second, third, *bounds, ended])
 
     def _near_resonance(
         self, value: np.ndarray, rate: np.ndarray, second: np.ndarray

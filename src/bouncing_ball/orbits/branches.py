@@ -298,8 +298,9 @@ def _branch_of(model: Model, n: int, amplitude_max: float | None, count: int) ->
     if isinstance(model, RestitutionModel):
         return restitution_dataset(model, n, top, count)
     longest = max(LARGEST_STEP, _STRIDE * top)
-    contact = SpringDamper([model.frequency_ratio], model.damping_ratio, model.release)
-    (found,) = follow_branches(contact, [n], top, longest)
+    contact: Any = model
+    row = SpringDamper([contact.frequency_ratio], contact.damping_ratio, contact.release)
+    (found,) = follow_branches(row, [n], top, longest)
     if isinstance(found, NoOrbitError):
         raise found
     try:

@@ -1,18 +1,8 @@
 """A branch of n-T orbits of the spring-damper model by continuation, in the paper's unknowns.
 
-The paper solves six equations for six unknowns φ, z′_i, τ_b, z′_b, A and B by a predictor and a
-corrector, with Λ as the parameter (Eqs. 21-26). With the height Z in contact (Eqs. 12-13) and z in
-flight (Eqs. 14-15), the contact from τ_i to τ_b and the next impact at τ_2 they are ::
-
-    Z(τ_i, φ, A, B) = Λ sin(τ_i + φ)            (21)  the contact begins on the table
-    Z′(τ_i, φ, A, B) = z′_i                     (22)  with the velocity of the impact,
-    Z(τ_b, φ, A, B) = Λ sin(τ_b + φ)            (23)  and it ends there
-    Z′(τ_b, φ, A, B) = z′_b                     (24)  with the velocity of the bounce;
-    z(τ_b, z′_b, φ, τ_2) = Λ sin(τ_2 + φ)       (25)  the flight ends on the table
-    z′(τ_b, z′_b, φ, τ_2) = z′_2                (26)  with the velocity of the next impact,
-
-where τ_i = 0, τ_2 = 2πn and z′_2 = z′_i, because the motion repeats (Eqs. 18-20). With the force
-release Eq. 23 is δ + κ δ′ = 0. The unknowns are scaled to order one::
+The paper solves the six equations :meth:`PaperEquations.residual` for six unknowns φ, z′_i, τ_b,
+z′_b, A and B by a predictor and a corrector, with Λ as the parameter (Eqs. 21-26). Here the
+unknowns are scaled to order one::
 
     y = (φ, z′_i, ϖτ_b, z′_b, ϖA, ϖB, Λ)
 
@@ -29,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Self
 
 import numpy as np
@@ -140,7 +130,21 @@ class PaperEquations:
         return np.array([value, rate, -2 * zeta * rate - value])
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """The defects of Eqs. 21-26, shape (..., 6)."""
+        """The defects of the six equations, shape (..., 6).
+
+        With the height Z in contact (Eqs. 12-13) and z in flight (Eqs. 14-15), the contact from
+        τ_i to τ_b and the next impact at τ_2 the paper has ::
+
+            Z(τ_i, φ, A, B) = Λ sin(τ_i + φ)            (21)  the contact begins on the table
+            Z′(τ_i, φ, A, B) = z′_i                     (22)  with the velocity of the impact,
+            Z(τ_b, φ, A, B) = Λ sin(τ_b + φ)            (23)  and it ends there
+            Z′(τ_b, φ, A, B) = z′_b                     (24)  with the velocity of the bounce;
+            z(τ_b, z′_b, φ, τ_2) = Λ sin(τ_2 + φ)       (25)  the flight ends on the table
+            z′(τ_b, z′_b, φ, τ_2) = z′_2                (26)  with the velocity of the next impact,
+
+        where τ_i = 0, τ_2 = 2πn and z′_2 = z′_i, because the motion repeats (Eqs. 18-20). With the
+        force release Eq. 23 is δ + κ δ′ = 0. Heights in contact are those over the table, times ϖ.
+        """
         phase, impact, theta, bounce, a, b, amplitude = np.moveaxis(y, -1, 0)
         omega = self.contact.frequency_ratio
         zeta = self.contact.damping_ratio
@@ -255,8 +259,7 @@ def _events(equations: PaperEquations, top: float, ends: Sequence[str]) -> list[
     def opening(y: np.ndarray) -> np.ndarray:
         orbit = equations.orbit(y)
         start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
-        state = orbit.model.flow(orbit.contact_duration, *start)
-        return state.velocity + orbit.model.lag * state.acceleration
+        return equations.contact.opening_rate(*start, orbit.contact_duration)
 
     def in_a_row(margin: Any) -> Any:
         """A margin of orbits at y of any leading shape."""
@@ -267,12 +270,11 @@ def _events(equations: PaperEquations, top: float, ends: Sequence[str]) -> list[
 
         return function
 
-    found = [
-        Event(kind, lambda y, kind=kind: equations.test(kind, y), terminal=kind in ends)
-        for kind in Bifurcation
-    ]
     return [
-        *found,
+        *(
+            Event(kind, partial(equations.test, kind), terminal=kind in ends)
+            for kind in Bifurcation
+        ),
         Event(Special.GRAZING_FLIGHT, in_a_row(flight_margin)),
         Event(Special.GRAZING_RELEASE, in_a_row(release_margin)),
         Event("impact", impact_speed, terminal=True, reason=_GRAZES),

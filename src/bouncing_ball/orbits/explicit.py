@@ -382,10 +382,10 @@ class BranchPoint(NamedTuple):
     def slope(self) -> np.ndarray:
         """½ d(Λ²)/dD, which vanishes where Λ turns; its sign changes at the poles as well."""
         orbit = self.orbit
+        contact: Any = orbit.model
         closing = orbit.relative_impact_velocity
         start = orbit.phase, closing, orbit.amplitude
-        state = orbit.model.flow(orbit.contact_duration, *start)
-        opening = state.velocity + orbit.model.lag * state.acceleration
+        opening = contact.opening_rate(*start, orbit.contact_duration)
         return -self.test(Bifurcation.SADDLE_NODE) * closing * opening / self.determinant
 
 

@@ -140,7 +140,9 @@ class Orbit(Batch):
     impact_velocity: Any
 
     def __repr__(self) -> str:
-        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in ("n", "model", *OBSERVABLES))
+        values = (
+            f"  {name:<22}{in_words(getattr(self, name))}" for name in ("n", "model", *OBSERVABLES)
+        )
         judged = (f"  {name:<22}{getattr(self, name)}" for name in ("stable", "admissible"))
         return "\n".join(["Orbit", *values, *judged])
 
@@ -356,10 +358,11 @@ def multipliers(orbit: Orbit) -> np.ndarray:
     """
     trace, determinant = trace_and_determinant(orbit)
     half = trace / 2
-    root = np.sqrt(half * half - determinant + 0j)
-    first = half + np.where(half < 0, -1, 1) * root
-    zero = first == 0
-    second = np.where(zero, 0, determinant / np.where(zero, 1, first))
+    with np.errstate(invalid="ignore"):  # an orbit that does not exist is NaN
+        root = np.sqrt(half * half - determinant + 0j)
+        first = half + np.where(half < 0, -1, 1) * root
+        zero = first == 0
+        second = np.where(zero, 0, determinant / np.where(zero, 1, first))
     return np.stack([first, second], axis=-1)
 
 

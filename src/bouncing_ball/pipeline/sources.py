@@ -146,7 +146,7 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
     --------
     >>> found = sources(["bouncing_ball.models.damping"])
     >>> [path.name for path in found if path.name != "__init__.py"]
-    ['errors.py', 'damping.py', 'arrays.py', 'elementary.py']
+    ['errors.py', 'damping.py', 'arrays.py']
     """
     for module in modules:
         if module_file(module) is None:
@@ -299,10 +299,10 @@ def changed_since(recorded: str) -> list[str]:
 
     Examples
     --------
-    >>> changed_since(computation([_ROOT / "models" / "rigid.py"]))
+    >>> changed_since(computation([_ROOT / "models" / "restitution.py"]))
     []
-    >>> changed_since("1f0e models/rigid.py\\n2a2a models/gone.py")
-    ['models/rigid.py', 'models/gone.py']
+    >>> changed_since("1f0e models/restitution.py\\n2a2a models/gone.py")
+    ['models/restitution.py', 'models/gone.py']
     """
     changed = []
     for line in recorded.splitlines():

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
 from bouncing_ball.paper.claims.parameters import PAPER, digest, of_dataset
@@ -98,14 +97,10 @@ def test_an_explanation_fails_with_its_checks(data):
     assert "without explanation" in tally(result)
 
 
-@pytest.mark.parametrize(
-    ("digests", "section"),
-    [(PAPER, "paper"), (CERTIFIED, "beyond")],
-)
-def test_claims_are_decided_for_the_parameters_of_the_configuration(digests, section):
+def test_claims_are_decided_for_the_parameters_of_the_configuration():
     config = read_yaml(ROOT / "config" / "config.yaml")
-    for name, (expected, *names) in digests.items():
-        given = parameter_attributes(config[section][name] | {"release": config["release"]})
+    for name, (expected, *names) in PAPER.items():
+        given = parameter_attributes(config["paper"][name] | {"release": config["release"]})
         assert digest(of_dataset(given, tuple(names))) == expected, name
 
 

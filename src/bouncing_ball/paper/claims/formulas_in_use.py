@@ -238,7 +238,7 @@ def _motions(rng, orbit, lam) -> Rows:
     aloft = end + orbit.flight_time * rng.uniform(0, 1, end.size)
     flown = np.array(printed.flight(aloft, end, orbit.bounce_velocity, lam, phase))
     return {
-        "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
+        "Eqs. 12-13": _used("models.spring_damper.flow", defects=(flow,)),
         "Eqs. 14-15": _used(
             "orbits.orbit.flight_path", defects=(flown - flight_path(orbit, aloft),)
         ),

@@ -119,9 +119,7 @@ def _branches(
     """The dataset of :func:`orbit_branches`, also if no branch can be followed."""
     contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     families = np.full(len(ratios), parameters.n)
-    found = follow_branches(
-        contacts, families, parameters.amplitude_max, continuation.largest_step
-    )
+    found = follow_branches(contacts, families, parameters.amplitude_max, continuation.largest_step)
     data = joined([_columns(each, parameters.points) for each in found], "frequency_ratio")
     data = data.assign_coords(frequency_ratio=list(ratios))
     data["damping_ratio"] = float(damping_ratio(parameters.restitution))

@@ -18,7 +18,6 @@ from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import COLOURS
 from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, text, text_table, value
 
-
 domains = over_amplitude
 """Figs. 8 and 9: the spring-damper model's branches for each ϖ; a panel for each phase."""
 

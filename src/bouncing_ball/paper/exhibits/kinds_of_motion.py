@@ -1,16 +1,17 @@
 r"""Periodic, subharmonic and chaotic motions of the restitution model, one ball for each.
 
-A few balls that start alike are simulated on tables of different Λ. After a first quarter of the
-impacts, which may belong to the way to a motion, two questions are asked:
+A few balls that start alike are simulated on tables of different Λ. The first impacts belong to the
+way to a motion. Two questions are asked about the later ones:
 
-* After how many impacts is the ball back in its state up to rounding, for the first time and ever
-  again? It has then repeated its motion to the end of the simulation.
-* How fast does a small deviation of the ball grow? The derivative of the map takes it from impact
-  to impact. The Lyapunov exponent is the sum of the logarithms of its growth over the time passed.
-  Its standard error follows from its scatter over blocks of impacts.
+* After how many impacts is the ball back in its state up to rounding, again and again in the last
+  quarter of its impacts?
+* How fast does a small deviation of the ball grow in the last three quarters? The derivative of the
+  map takes it from impact to impact. The Lyapunov exponent is the sum of the logarithms of its
+  growth over the time passed. Its standard error follows from its scatter over blocks of impacts.
 
-Balls are followed with the operations + - × ÷ and √ only (:mod:`bouncing_ball.numerics.elementary`),
-so that the same bits give the same chaotic motion on every processor.
+Balls are followed with the operations + - × ÷ and √ only, see
+:mod:`bouncing_ball.numerics.elementary`, so that the same bits give the same chaotic motion on
+every processor.
 
 A ball that sticks leaves in a state that does not depend on its earlier motion, so that a motion
 that sticks again and again repeats in the end. The amplitudes of the run are chosen so that no ball
@@ -66,6 +67,7 @@ def period(phase: np.ndarray, velocity: np.ndarray) -> int:
     >>> period(np.array([0.1, 0.2, 0.1, 0.2, 0.1, 0.2]), np.full(6, -1.0))
     2
     """
+
     def apart(later: slice, earlier: slice) -> np.ndarray:
         turned = np.abs(reduce_angle(phase[later] - phase[earlier]))
         return np.maximum(turned, np.abs(velocity[later] - velocity[earlier]))
@@ -78,7 +80,7 @@ def period(phase: np.ndarray, velocity: np.ndarray) -> int:
 
 
 def growth(path: ImpactSequence, ball: int) -> np.ndarray:
-    """The logarithm of the growth of a deviation (dφ, dδ′) from each impact of a ball to the next."""
+    """The logarithms of the growth of a deviation (dφ, dδ′) from each impact to the next."""
     phase = path.phase[:, ball]
     velocity = path.relative_velocity[:, ball]
     lam = path.amplitude[ball]
@@ -132,15 +134,13 @@ def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
             f"{int(np.isfinite(path.time[:, ball]).sum())} impacts, and stays there: only above "
             "Λ = 1 does the table throw it off"
         )
-    settled = parameters.impacts // 4
-    balls = np.arange(amplitude.size)
+    settled = 3 * parameters.impacts // 4
+    balls = range(amplitude.size)
     states = path.phase[settled:], path.relative_velocity[settled:]
     impacts = np.array([period(*(x[:, k] for x in states)) for k in balls])
     lasts = path.time[settled + impacts, balls] - path.time[settled]
     stickings = np.sum(path.contact_duration > 0, axis=0)
-    found = [
-        (np.nan, np.nan) if impacts[k] or stickings[k] else exponent(path, k) for k in balls
-    ]
+    found = [(np.nan, np.nan) if impacts[k] or stickings[k] else exponent(path, k) for k in balls]
     rate, error = np.array(found).T
     return described(
         {

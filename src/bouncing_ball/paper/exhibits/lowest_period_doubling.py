@@ -33,9 +33,7 @@ def lowest_period_doublings(parameters: FamiliesAlongRatio, release: Release) ->
     from scipy.optimize.elementwise import find_minimum
 
     def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
-        contacts = SpringDamper.from_restitution(
-            parameters.restitution, np.exp(log_ratio), release
-        )
+        contacts = SpringDamper.from_restitution(parameters.restitution, np.exp(log_ratio), release)
         return explicit_branch(contacts).bifurcation(Bifurcation.PERIOD_DOUBLING, n).amplitude
 
     families = np.array(parameters.n)

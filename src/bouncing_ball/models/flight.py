@@ -7,7 +7,7 @@ X = Λ cos φ_b and Y = Λ sin φ_b ::
     δ(s) = δ_b + v s - s²/2 + Y (1 - cos s) + X (s - sin s)
     δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
 
-This form loses no digits in a short flight. The ball has landed where δ = 0. It cannot land while
+The rounding errors of this form vanish with s. The ball has landed where δ = 0. It cannot land while
 it is above the table's highest point, z > Λ, and the search skips this part.
 """
 
@@ -123,7 +123,7 @@ class Flight(Motion):
         """
         speed = np.sqrt(np.maximum(self.level_speed_squared(), 0.0))
         time = (self.velocity + speed) / (1 + self.amplitude)
-        left_behind = (self.velocity == 0) & (self.displacement == 0)
+        left_behind = (self.velocity == 0) & (self.displacement == 0) & (self.y >= 1)
         if not left_behind.any():
             return time
         top = np.maximum(self.amplitude, 1.0)

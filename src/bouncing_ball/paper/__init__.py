@@ -35,7 +35,7 @@ Eqs.    what                      where
 ..      where a ball lifts off    ``models.restitution.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.flow``
-..      with its A and B          ``orbits.continuation.PaperEquations``
+..      with its A and B          ``orbits.continuation.PaperEquations.point``
 14, 15  flight after it           ``orbits.orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
@@ -63,6 +63,7 @@ map: its function gives it for that map, and by default that of the exact return
 
 Eqs. 1-3 and 10 are in metres and seconds, all others dimensionless. The paper solves the six
 equations of an orbit, Eqs. 21-26, by continuation, as the library does; at a given duration of the
-contact they are linear, so that the library also has their solutions in closed form. The force release, at which the contact force vanishes, is a variant
-of the paper's release (Eq. 23) and costs one symbol, κ.
+contact they are linear, so that the library also has their solutions in closed form. The force
+release, at which the contact force vanishes, is a variant of the paper's release (Eq. 23) and costs
+one symbol, κ.
 """

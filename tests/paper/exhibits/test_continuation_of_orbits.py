@@ -184,8 +184,13 @@ def test_figure_8_has_the_branches_of_the_paper_and_names_what_it_marks(figure_8
     data = figure_8.assign_attrs(n=1, restitution=0.85, amplitude_max=1.5)
     figure = domains(data)
     (legend,) = figure.legends
-    names = {text.get_text() for text in legend.get_texts()} - {r"$\varpi=10$", r"$\varpi=2$"}
-    assert names == {"stable", "unstable", SADDLE_NODE, PERIOD_DOUBLING}
+    names = {text.get_text() for text in legend.get_texts()}
+    assert names - {"", r"$\varpi=10$", r"$\varpi=2$"} == {
+        "stable",
+        "unstable",
+        SADDLE_NODE,
+        PERIOD_DOUBLING,
+    }
     drawn = np.concatenate([line.get_xdata() for line in figure.axes[0].lines])
     assert np.isin(data.amplitude.values, drawn).all()
     assert [len(axes.child_axes) for axes in figure.axes] == [0, 0]

@@ -7,8 +7,8 @@ X = Λ cos φ_b and Y = Λ sin φ_b ::
     δ(s) = δ_b + v s - s²/2 + Y (1 - cos s) + X (s - sin s)
     δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
 
-The rounding errors of this form vanish with s. The ball has landed where δ = 0. It cannot land while
-it is above the table's highest point, z > Λ, and the search skips this part.
+The rounding errors of this form vanish with s. The ball has landed where δ = 0. It cannot land
+while it is above the table's highest point, z > Λ, and the search skips this part.
 """
 
 from typing import NamedTuple

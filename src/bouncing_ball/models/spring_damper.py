@@ -18,7 +18,11 @@ exponential function, of which the one with ν = 0 is G, and that with ν = i is
     g = (e^{λ₊s} - e^{λ₋s})/(λ₊ - λ₋)
     h = [(e^{νs} - e^{λ₊s})/(ν - λ₊) - g]/(ν - λ₋)
 
-The second denominator is never small, and the first quotient is regular where ν = λ₊.
+The second denominator is never small, and the first quotient is regular where ν = λ₊. For a short
+time the difference of the two numbers in the bracket loses digits, and the sum of a series is in
+use, with the complete homogeneous symmetric polynomials h_k of λ₊, λ₋ and ν::
+
+    h = Σ h_k s^{k+2}/(k + 2)!
 
 The contact ends at the first upward zero of y = δ + κ δ′, with κ = 0 for the displacement release
 (Eq. 23) and κ = 2ζ/ϖ for the force release, for which -ϖ² y is the force of the table over the
@@ -67,6 +71,10 @@ _RESONANCE = 0.03
 # Number of steps of a search after which the time is skipped in which y is certainly negative.
 _PATIENCE = 12
 _TURN = 2 * np.pi
+# The quotient (e^x - 1)/x is 1 for an x below this, by which it could not be divided.
+_SMALLEST = 1e-300
+# Terms of the series of a short time, of which the one of order k is below s²/(2 k!).
+_TERMS = 20
 # A bound of the rounding errors of the terms that decide whether a contact ends.
 _ROUNDING = 8 * np.finfo(float).eps
 
@@ -86,9 +94,33 @@ class Responses(NamedTuple):
 def _quotient(nu: complex, pole: np.ndarray, time: np.ndarray) -> np.ndarray:
     """(e^{νs} - e^{λs})/(ν - λ), which is s e^{νs} where ν = λ."""
     difference = (pole - nu) * time
-    apart = difference != 0
+    apart = np.abs(difference) > _SMALLEST
     quotient = np.where(apart, np.expm1(difference) / np.where(apart, difference, 1.0), 1.0)
     return time * np.exp(nu * time) * quotient
+
+
+def _double_quotient(
+    nu: complex, time: np.ndarray, omega: np.ndarray, zeta: np.ndarray, g: np.ndarray
+) -> np.ndarray:
+    """h of the module's docstring: the response to e^{νs}, with g of the same contact."""
+    decay_rate = zeta * omega
+    pole = -decay_rate + 1j * omega * np.sqrt((1 - zeta) * (1 + zeta))
+    found = np.asarray((_quotient(nu, pole, time) - g) / (nu - np.conj(pole)))
+    short = np.abs(time) * (omega + abs(nu)) < 1
+    if not short.any():
+        return found
+    s, loss, stiffness = time[short], 2 * decay_rate[short], (omega * omega)[short]
+    power = s * s / 2
+    total = power + 0j
+    before, of_poles, of_all = np.zeros_like(s), np.ones_like(s), np.ones_like(total)
+    for k in range(1, _TERMS):
+        # h_k of λ₊ and λ₋ alone, which are the roots of λ² + 2ζϖλ + ϖ² = 0, and then of all three.
+        before, of_poles = of_poles, -loss * of_poles - stiffness * before
+        of_all = nu * of_all + of_poles
+        power = power * s / (k + 2)
+        total = total + of_all * power
+    found[short] = total
+    return found
 
 
 # What remains of an oscillation after a long time may be below the smallest number, and is then 0;
@@ -123,13 +155,11 @@ def responses(
     sine, cosine = swing or (np.sin(damped * s), np.cos(damped * s))
     decay = np.exp(-decay_rate * s)
     g = decay * sine / damped
-    upper = -decay_rate + 1j * damped
-    gravity = (_quotient(0.0, upper, s) - g) / (decay_rate + 1j * damped)
-    of_table = (_quotient(1j, upper, s) - g) / (decay_rate + 1j * (1 + damped))
+    of_table = _double_quotient(1j, s, omega, zeta, g)
     return Responses(
         impulse=g,
         impulse_rate=decay * cosine - decay_rate * g,
-        gravity=np.real(gravity),
+        gravity=np.real(_double_quotient(0.0, s, omega, zeta, g)),
         in_phase=np.real(of_table),
         quadrature=np.imag(of_table),
     )

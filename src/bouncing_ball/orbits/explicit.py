@@ -370,7 +370,7 @@ _DIFFERENCE = 1e-6
 
 
 class BranchPoint(NamedTuple):
-    """Points of the branch of the spring-damper model: their orbits, and det A of the equations."""
+    """Points of the branch of the spring-damper model: their orbits, and ϖ det A."""
 
     orbit: Orbit
     determinant: np.ndarray
@@ -386,7 +386,9 @@ class BranchPoint(NamedTuple):
         closing = orbit.relative_impact_velocity
         start = orbit.phase, closing, orbit.amplitude
         opening = contact.opening_rate(*start, orbit.contact_duration)
-        return -self.test(Bifurcation.SADDLE_NODE) * closing * opening / self.determinant
+        # The determinant has the equation of the release times ϖ.
+        determinant = self.determinant / contact.frequency_ratio
+        return -self.test(Bifurcation.SADDLE_NODE) * closing * opening / determinant
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # at a pole Λ is infinite

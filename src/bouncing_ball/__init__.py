@@ -47,10 +47,10 @@ if TYPE_CHECKING:
     from bouncing_ball.models.restitution import rigid as rigid
     from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
     from bouncing_ball.models.spring_damper import spring_damper as spring_damper
-    from bouncing_ball.orbits.branches import branch as branch
-    from bouncing_ball.orbits.calls import limits as limits
-    from bouncing_ball.orbits.calls import orbit as orbit
-    from bouncing_ball.orbits.calls import orbits as orbits
+    from bouncing_ball.periodic.branches import branch as branch
+    from bouncing_ball.periodic.calls import limits as limits
+    from bouncing_ball.periodic.calls import orbit as orbit
+    from bouncing_ball.periodic.calls import orbits as orbits
 
 __version__ = "0.1.0"
 
@@ -60,14 +60,14 @@ _MODULES = {
     "NoOrbitError": "errors",
     "RestitutionModel": "models.restitution",
     "SpringDamper": "models.spring_damper",
-    "branch": "orbits.branches",
+    "branch": "periodic.branches",
     "drop": "models.history",
     "error_thresholds": "accuracy.thresholds",
     "history": "models.history",
-    "limits": "orbits.calls",
+    "limits": "periodic.calls",
     "open": "drawing.result",
-    "orbit": "orbits.calls",
-    "orbits": "orbits.calls",
+    "orbit": "periodic.calls",
+    "orbits": "periodic.calls",
     "permanent_contact": "models.permanent_contact",
     "rigid": "models.restitution",
     "simulate": "models.history",

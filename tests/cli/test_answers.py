@@ -10,7 +10,7 @@ from bouncing_ball.models.contact_model import ContactModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
+from bouncing_ball.periodic.periodic.orbit import OBSERVABLES
 from hypothesis import given
 from hypothesis import strategies as st
 

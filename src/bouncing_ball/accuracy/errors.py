@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation
 
 
 class Quantity(StrEnum):

@@ -31,9 +31,9 @@ from bouncing_ball.models.history import impacts_of
 from bouncing_ball.models.model import Model, Status
 from bouncing_ball.models.restitution import rigid
 from bouncing_ball.models.spring_damper import SpringDamper, spring_damper, the_loss
-from bouncing_ball.orbits import branches, calls
-from bouncing_ball.orbits.continuation import PaperEquations
-from bouncing_ball.orbits.orbit import OBSERVABLES, Bifurcation, Orbit, multipliers
+from bouncing_ball.periodic import branches, calls
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Orbit, multipliers
 
 Answer = dict[str, Any]
 SideOrAll = Literal["stable", "unstable", "all"]

@@ -28,30 +28,30 @@ Eqs.    what                      where
 1, 3, 4 flight                    ``models.flight.Flight``
 2       impact                    ``models.restitution.RestitutionModel.impact``
 5       from impact to impact     ``models.history.next_impact``
-6       phase of the n-T orbit    ``orbits.explicit.RestitutionBranch.orbit``
-7       its saddle-node           ``orbits.explicit.restitution_saddle_node``
-8       its period doubling       ``orbits.explicit.restitution_period_doubling``
+6       phase of the n-T orbit    ``periodic.explicit.RestitutionBranch.orbit``
+7       its saddle-node           ``periodic.explicit.restitution_saddle_node``
+8       its period doubling       ``periodic.explicit.restitution_period_doubling``
 9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
 ..      where a ball lifts off    ``models.restitution.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
 12, 13  motion in contact         ``models.spring_damper.flow``
-..      with its A and B          ``orbits.continuation.PaperEquations.point``
-14, 15  flight after it           ``orbits.orbit.flight_path``
+..      with its A and B          ``periodic.continuation.PaperEquations.point``
+14, 15  flight after it           ``periodic.orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
-17      apparent restitution      ``orbits.orbit.Orbit.apparent_restitution``
-18-20   period of the n-T orbit   ``orbits.orbit.Orbit.flight_time``
-21-26   the six, written out      ``orbits.continuation.PaperEquations.residual``
+17      apparent restitution      ``periodic.orbit.Orbit.apparent_restitution``
+18-20   period of the n-T orbit   ``periodic.orbit.Orbit.flight_time``
+21-26   the six, written out      ``periodic.continuation.PaperEquations.residual``
 ..      end of contact, Eq. 23    ``models.spring_damper.SpringDamper.impact``
-..      at a given duration       ``orbits.explicit.branch_point``
-..      their bifurcations        ``orbits.explicit.SpringDamperBranch.bifurcation``
-27      bouncing-off velocity     ``orbits.orbit.Orbit.bounce_velocity``
+..      at a given duration       ``periodic.explicit.branch_point``
+..      their bifurcations        ``periodic.explicit.SpringDamperBranch.bifurcation``
+27      bouncing-off velocity     ``periodic.orbit.Orbit.bounce_velocity``
 28-31   only as printed           ``paper.claims.as_printed.steady_displacement``
 32, 33  permanent contact, Λ_SD   ``models.permanent_contact.permanent_contact_threshold``
 34, 35  the inverse of Λ_SD       ``models.permanent_contact.permanent_contact_frequency_ratios``
 36      the smallest Λ_SD         ``models.permanent_contact.permanent_contact_minimum``
 37, 38  errors                    ``accuracy.errors.relative_errors``
-..      of the greatest height    ``orbits.orbit.Orbit.max_height``
+..      of the greatest height    ``periodic.orbit.Orbit.max_height``
 ..      thresholds ϖ_h, ϖ_PC      ``accuracy.thresholds.search``
 ======= ========================= ==================================================================
 

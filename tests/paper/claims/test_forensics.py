@@ -8,9 +8,6 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits import explicit
-from bouncing_ball.orbits.explicit import ImpactMap, branch_point, explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation, monodromy
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
     altered_ends,
@@ -19,6 +16,9 @@ from bouncing_ball.paper.claims.forensics import (
     weightless_orbits,
 )
 from bouncing_ball.paper.claims.tables import forensics as rows
+from bouncing_ball.periodic import explicit
+from bouncing_ball.periodic.explicit import ImpactMap, branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, monodromy
 
 ZETA = float(damping_ratio(0.85))
 

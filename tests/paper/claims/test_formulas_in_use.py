@@ -57,9 +57,9 @@ FLIGHT = "models/flight.py"
 RIGID = "models/restitution.py"
 CONTACT = "models/spring_damper.py"
 PERMANENT = "models/permanent_contact.py"
-ORBIT = "orbits/orbit.py"
-BRANCH = "orbits/explicit.py"
-CONTINUED = "orbits/continuation.py"
+ORBIT = "periodic/orbit.py"
+BRANCH = "periodic/explicit.py"
+CONTINUED = "periodic/continuation.py"
 EDITS = [
     Edit(FLIGHT, "* (self.velocity - time / 2)", "* (self.velocity - time)", "Eq. 4"),
     Edit(
@@ -199,7 +199,7 @@ def test_the_index_of_equations_names_the_functions_that_are_compared():
     # The first is a printed form itself; the residual of the six equations uses the second.
     apart = {
         "paper.claims.as_printed.steady_displacement",
-        "orbits.continuation.PaperEquations.point",
+        "periodic.continuation.PaperEquations.point",
     }
     assert index - apart == used - {""}
 

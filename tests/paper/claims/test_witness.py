@@ -9,8 +9,6 @@ from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.models.history import next_impact
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.orbits.continuation import PaperEquations
-from bouncing_ball.orbits.orbit import monodromy
 from bouncing_ball.paper.claims import witness as witnesses
 from bouncing_ball.paper.claims.tables import witness as rows
 from bouncing_ball.paper.claims.witness import (
@@ -21,6 +19,8 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.orbit import monodromy
 
 
 @pytest.fixture(scope="module")

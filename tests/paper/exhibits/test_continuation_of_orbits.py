@@ -8,14 +8,14 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import branch_point, explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation, Orbit, monodromy
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     both_domains,
     orbit_branches,
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
+from bouncing_ball.periodic.explicit import branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, monodromy
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.

@@ -9,10 +9,10 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

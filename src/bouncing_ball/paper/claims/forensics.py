@@ -19,10 +19,10 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.flight import flight_derivative, matrix_of
 from bouncing_ball.models.spring_damper import ContactState, SpringDamper, responses
 from bouncing_ball.numerics.corrector import solve_linear
-from bouncing_ball.orbits.explicit import branch_point, explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation, Orbit
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
+from bouncing_ball.periodic.explicit import branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit
 
 VARIABLES = {
     "rows": Variable("rows of the table that are compared", equation="Table 1"),

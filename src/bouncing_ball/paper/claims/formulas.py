@@ -23,7 +23,6 @@ from bouncing_ball.models.model import Status
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.orbits.orbit import Bifurcation, Orbit, trace_and_determinant
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import (
     InUse,
@@ -32,6 +31,7 @@ from bouncing_ball.paper.claims.formulas_in_use import (
     largest_defect,
     random_orbits,
 )
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, trace_and_determinant
 
 VARIABLES = {
     "formula": Variable("printed formula"),

@@ -19,11 +19,11 @@ from bouncing_ball.models.flight import Flight
 from bouncing_ball.models.history import impacts_of, next_impact
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits import explicit
-from bouncing_ball.orbits.continuation import PaperEquations
-from bouncing_ball.orbits.explicit import ImpactMap, explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation, Orbit, flight_path, trace_and_determinant
 from bouncing_ball.paper.claims import as_printed as printed
+from bouncing_ball.periodic import explicit
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.explicit import ImpactMap, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, flight_path, trace_and_determinant
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
 _RATIOS = np.geomspace(1.0, 1e3, 31)
@@ -31,9 +31,9 @@ _TOLERANCE = 0.01
 # The functions that solve Eqs. 21-26, from the contact to the bifurcations of its orbits.
 _OF_ORBITS = (
     "models.spring_damper.SpringDamper.impact",
-    "orbits.continuation.PaperEquations.residual",
-    "orbits.explicit.branch_point",
-    "orbits.explicit.SpringDamperBranch.bifurcation",
+    "periodic.continuation.PaperEquations.residual",
+    "periodic.explicit.branch_point",
+    "periodic.explicit.SpringDamperBranch.bifurcation",
 )
 
 
@@ -166,19 +166,19 @@ def _restitution_orbits(rng, r) -> Rows:
     holmes = explicit.restitution_period_doubling(n, r, ImpactMap.HOLMES)
     return {
         "Eq. 6": _used(
-            "orbits.explicit.RestitutionBranch.orbit",
+            "periodic.explicit.RestitutionBranch.orbit",
             defects=(orbit.phase - phase, orbit.bounce_velocity - velocity),
         ),
         "Eq. 7": _used(
-            "orbits.explicit.restitution_saddle_node",
+            "periodic.explicit.restitution_saddle_node",
             defects=(explicit.restitution_saddle_node(n, r) - fold, node - fold),
         ),
         "Eq. 8, Holmes' map": _used(
-            "orbits.explicit.restitution_period_doubling",
+            "periodic.explicit.restitution_period_doubling",
             defects=(holmes - printed.period_doubling(n, r),),
         ),
         "Eq. 8, corrected": _used(
-            "orbits.explicit.restitution_period_doubling",
+            "periodic.explicit.restitution_period_doubling",
             defects=(
                 explicit.restitution_period_doubling(n, r) - corrected,
                 doubling - corrected,
@@ -240,7 +240,7 @@ def _motions(rng, orbit, lam) -> Rows:
     return {
         "Eqs. 12-13": _used("models.spring_damper.flow", defects=(flow,)),
         "Eqs. 14-15": _used(
-            "orbits.orbit.flight_path", defects=(flown - flight_path(orbit, aloft),)
+            "periodic.orbit.flight_path", defects=(flown - flight_path(orbit, aloft),)
         ),
     }
 
@@ -270,11 +270,11 @@ def _orbit_equations(orbit, lam) -> Rows:
     tests = np.array([kind.test(*trace_and_determinant(each)) for kind, each in pairs])
     return {
         "Eq. 17": _used(
-            "orbits.orbit.Orbit.apparent_restitution",
+            "periodic.orbit.Orbit.apparent_restitution",
             defects=(orbit.apparent_restitution - apparent,),
         ),
         "Eqs. 18-20": _used(
-            "orbits.orbit.Orbit.flight_time",
+            "periodic.orbit.Orbit.flight_time",
             defects=(orbit.flight_time - printed.flight_time(n, end),),
         ),
         "Eqs. 21-26": _used(
@@ -288,7 +288,7 @@ def _orbit_equations(orbit, lam) -> Rows:
             ),
         ),
         "Eq. 27": _used(
-            "orbits.orbit.Orbit.bounce_velocity",
+            "periodic.orbit.Orbit.bounce_velocity",
             defects=(bounce - printed.bounce_velocity(impact, n, end),),
         ),
     }
@@ -355,7 +355,7 @@ def _errors(rng, samples) -> Rows:
     )
     return {
         "Eqs. 37-38": _used(
-            "orbits.orbit.Orbit.max_height",
+            "periodic.orbit.Orbit.max_height",
             "accuracy.errors.relative_errors",
             "accuracy.thresholds.search",
             defects=(

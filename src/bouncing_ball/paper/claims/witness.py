@@ -18,10 +18,10 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import vanishing
-from bouncing_ball.orbits.continuation import PaperEquations
-from bouncing_ball.orbits.explicit import RestitutionBranch, branch_point, nearest_excess
-from bouncing_ball.orbits.orbit import Bifurcation, Orbit, difference, trace_and_determinant
 from bouncing_ball.paper.claims import FORMULA
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.explicit import RestitutionBranch, branch_point, nearest_excess
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, difference, trace_and_determinant
 
 VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),

@@ -12,13 +12,13 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.branches import OBSERVED
-from bouncing_ball.orbits.explicit import explicit_branch
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
     require_amplitude,
     require_any_orbit,
 )
+from bouncing_ball.periodic.branches import OBSERVED
+from bouncing_ball.periodic.explicit import explicit_branch
 
 VARIABLES = {
     "labelled": Variable("whether the figure marks this frequency ratio"),

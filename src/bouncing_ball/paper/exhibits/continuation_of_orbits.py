@@ -19,16 +19,6 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.orbits import branches
-from bouncing_ball.orbits.branches import PLACE, branch_dataset, joined, no_branch
-from bouncing_ball.orbits.continuation import NoBranch, OrbitBranch, follow_branches
-from bouncing_ball.orbits.explicit import (
-    ImpactMap,
-    RestitutionBranch,
-    restitution_period_doubling,
-    restitution_saddle_node,
-)
-from bouncing_ball.orbits.orbit import Bifurcation
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     BranchEnd,
     BranchPoints,
@@ -36,6 +26,16 @@ from bouncing_ball.paper.exhibits.orbit_parameters import (
     BranchRatios,
 )
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
+from bouncing_ball.periodic import branches
+from bouncing_ball.periodic.branches import PLACE, branch_dataset, joined, no_branch
+from bouncing_ball.periodic.continuation import NoBranch, OrbitBranch, follow_branches
+from bouncing_ball.periodic.explicit import (
+    ImpactMap,
+    RestitutionBranch,
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
+from bouncing_ball.periodic.orbit import Bifurcation
 
 VARIABLES = {
     "absence": Variable("why there is no stable range"),

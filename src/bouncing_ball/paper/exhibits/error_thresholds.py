@@ -11,13 +11,13 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import explicit_branch
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitErrors,
     OrbitsAlongRatio,
     require_any_orbit,
 )
+from bouncing_ball.periodic.explicit import explicit_branch
 
 VARIABLES = {
     "restitution_max_height": Variable(

@@ -11,8 +11,8 @@ from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Pa
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import explicit_branch
-from bouncing_ball.orbits.orbit import Bifurcation
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation
 
 
 class FamiliesAlongRatio(Parameters):

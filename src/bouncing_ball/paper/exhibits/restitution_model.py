@@ -8,15 +8,15 @@ import xarray as xr
 from bouncing_ball.datasets.parameters import Samples, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.restitution import RestitutionModel
-from bouncing_ball.orbits.explicit import (
+from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
+from bouncing_ball.periodic.explicit import (
     ImpactMap,
     RestitutionBranch,
     period_doubling_lift,
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball.orbits.orbit import path
-from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
+from bouncing_ball.periodic.orbit import path
 
 VARIABLES = {
     "grazing_amplitude": Variable(

@@ -9,9 +9,9 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import explicit_branch
-from bouncing_ball.orbits.orbit import Orbit, contact_path, flight_path, path
 from bouncing_ball.paper.exhibits.orbit_parameters import ContactRatio, OrbitParameters
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import Orbit, contact_path, flight_path, path
 
 VARIABLES = {
     "table_phase": Variable("phase of the table, whose height is Λ sin τ", symbol="τ", units="rad"),

@@ -13,7 +13,7 @@ from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import (
+from bouncing_ball.periodic.explicit import (
     Absence,
     ImpactMap,
     RestitutionBranch,
@@ -26,7 +26,7 @@ from bouncing_ball.orbits.explicit import (
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball.orbits.orbit import Bifurcation, Side, trace_and_determinant
+from bouncing_ball.periodic.orbit import Bifurcation, Side, trace_and_determinant
 
 EPS = np.finfo(float).eps
 

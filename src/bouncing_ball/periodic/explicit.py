@@ -72,7 +72,7 @@ from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper, responses
 from bouncing_ball.numerics.arrays import blocks
 from bouncing_ball.numerics.corrector import solve_linear
-from bouncing_ball.orbits.orbit import (
+from bouncing_ball.periodic.orbit import (
     Bifurcation,
     Orbit,
     Side,

@@ -11,8 +11,8 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.history import next_impact
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.orbits.explicit import RestitutionBranch, branch_point, explicit_branch
-from bouncing_ball.orbits.orbit import (
+from bouncing_ball.periodic.explicit import RestitutionBranch, branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import (
     Bifurcation,
     Orbit,
     Side,

@@ -18,8 +18,8 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.model import Model, a_ball, a_single_ball
-from bouncing_ball.orbits.explicit import explicit_branch
-from bouncing_ball.orbits.orbit import OBSERVABLES, Bifurcation, Orbit, Side
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Orbit, Side
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid

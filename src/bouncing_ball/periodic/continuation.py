@@ -34,8 +34,8 @@ from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKin
 from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.orbits.explicit import SpringDamperBranch, explicit_branch
-from bouncing_ball.orbits.orbit import (
+from bouncing_ball.periodic.explicit import SpringDamperBranch, explicit_branch
+from bouncing_ball.periodic.orbit import (
     Bifurcation,
     Orbit,
     flight_margin,

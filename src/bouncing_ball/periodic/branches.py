@@ -30,15 +30,15 @@ from bouncing_ball.models.model import Model, a_ball
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.orbits.continuation import (
+from bouncing_ball.periodic.continuation import (
     LARGEST_STEP,
     OrbitBranch,
     Special,
     default_top,
     follow_branches,
 )
-from bouncing_ball.orbits.explicit import RestitutionBranch
-from bouncing_ball.orbits.orbit import Bifurcation, Orbit, multipliers
+from bouncing_ball.periodic.explicit import RestitutionBranch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, multipliers
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),

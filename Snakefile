@@ -20,13 +20,12 @@ configfile: here("config/config.yaml")
 report: "workflow/report/workflow.rst"
 
 
-# From parameters to datasets: what all stages have in common, and the stages of both sets of
+# From parameters to datasets: what all stages have in common, and the stages of the
 # studies, with the study, the drawing and the table of each artifact.
 include: "workflow/rules/stage.smk"
 include: "workflow/rules/paper.smk"
-include: "workflow/rules/beyond.smk"
 include: "workflow/rules/check.smk"
-# From datasets to figures, tables and the explorer.
+# From datasets to figures and tables.
 include: "workflow/rules/shown.smk"
 # From datasets and tables to the article.
 include: "workflow/rules/article.smk"

@@ -4,7 +4,8 @@ import functools
 from pathlib import Path
 
 import pytest
-from bouncing_ball_beyond.exhibits import (
+from bouncing_ball.beyond.atlas.figures import shares
+from bouncing_ball.beyond.exhibits import (
     certified_verdicts_figures,
     contact_laws_figures,
     corrected_model_figures,
@@ -12,7 +13,7 @@ from bouncing_ball_beyond.exhibits import (
     measured_impacts_figures,
     proofs_figures,
 )
-from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
+from bouncing_ball.beyond.exhibits.certified_verdicts import certified_verdicts
 from declared_artifacts import ARTIFACTS
 from jinja2 import BytecodeCache, Environment
 
@@ -84,7 +85,7 @@ def tables_of(name, data):
 
 
 def all_texts(data, verdicts=None):
-    """All tables in all formats, the article and its supplement.
+    """All tables in all formats, the articles and the supplement.
 
     ``verdicts`` are those by certified intervals; by default they are computed.
     """
@@ -96,13 +97,14 @@ def all_texts(data, verdicts=None):
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     other = [path for path in (ROOT / "config").glob("*.nc") if path.stem not in data]
     data |= {path.stem: read_dataset(path) for path in other}
+    texts["atlas"] = to_markdown(*shares(data["atlas"]))
     about = read_yaml(ROOT / "CITATION.cff")
     decided = rows.Claims(data["claims"])
     sections = {}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(article, "pandoc", PANDOC)
         patch.setattr(article, "Environment", COMPILED)
-        for name in ("supplement", "article"):
+        for name in ("supplement", "article", "motions"):
             file = TEMPLATES / f"{name}.md.j2"
             made[name] = render_article(
                 file, data, texts, decided, ARTIFACTS, about=about, sections=sections
@@ -113,7 +115,7 @@ def all_texts(data, verdicts=None):
 
 @pytest.fixture(scope="session")
 def texts():
-    """Makes all tables in all formats, and the article, from datasets by name."""
+    """Makes all tables in all formats, and the articles, from datasets by name."""
     return all_texts
 
 

@@ -1,7 +1,6 @@
-"""Shared by all tests: the hypothesis profile, reference implementations, the command line.
+"""Shared by the root's tests: the accepted record, what variables are declared, settings.
 
-The references use nothing of the package: they are a matrix exponential, the paper's
-solution of the contact, Brent's method, and free flight.
+What the tests of all houses share is in :mod:`shared_fixtures`.
 """
 
 import importlib
@@ -19,13 +18,7 @@ from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
-# Fixtures that tests of several folders use: a reference integration, and all texts.
-pytest_plugins = ["shared_fixtures", "taylor_ball", "article_texts"]
-# Programs that the tests start keep what they have compiled, whatever the shell says: else
-# each start takes twice as long.
-
-# The lines of commands that take long depend on the load of the machine, and tests compare what is
-# printed. Tests of these lines set another time.
+pytest_plugins = ["shared_fixtures"]
 
 
 def pytest_collection_modifyitems(items):
@@ -37,8 +30,7 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    paths = [*sorted((ROOT / "figures").rglob("*.nc")), *(ROOT / "config").glob("ext_*.nc")]
-    return {path.stem: read_dataset(path) for path in paths}
+    return {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
 
 
 @pytest.fixture(scope="session")
@@ -53,17 +45,6 @@ def declared():
             assert not found.keys() & own.keys(), (name, found.keys() & own.keys())
             found |= own
     return found
-
-
-@pytest.fixture(scope="session")
-def coarse():
-    """Fewer samples, starts or compliant contacts of the studies that take as long as all others.
-
-    At their whole size they are compared with the record by `make diff`, and weekly.
-    """
-    return {
-        ("ext_laws", "samples"): 4,
-    }
 
 
 @pytest.fixture(scope="session")
@@ -105,23 +86,3 @@ def searched_once():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(OrbitsOfContacts, "exists", exists)
         yield
-
-
-@pytest.fixture
-def short_motions(monkeypatch):
-    """An answer about the motion on which a ball ends follows few impacts."""
-    from bouncing_ball_contacts.contact import effort
-
-    for kind in ("LINEAR", "OF_LAW"):
-        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(impacts=20))
-
-
-@pytest.fixture
-def short_runs(short_motions, monkeypatch):
-    """An answer follows few impacts: long runs are those of contacts/test_motion.py."""
-    from bouncing_ball_contacts.contact import effort
-
-    for kind in ("LINEAR", "OF_LAW"):
-        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(starts=3))
-    # Balls of a law that come to rest on a stiff contact take longest.
-    monkeypatch.setattr("bouncing_ball_contacts.contact.starts._IMPACTS", 3)

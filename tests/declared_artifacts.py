@@ -1,4 +1,4 @@
-"""The artifacts that the rules of both sets of studies list, read without a run of Snakemake."""
+"""The artifacts that the rules list, read without a run of Snakemake."""
 
 import ast
 import re
@@ -7,8 +7,8 @@ from pathlib import Path
 
 import xarray as xr
 from adapter import function
-
 from bouncing_ball.beyond.exhibits.budgets import BUDGETS as BEYOND
+
 from bouncing_ball.datasets.variables import budgeted
 from bouncing_ball.paper.exhibits.budgets import BUDGETS as PAPER
 from bouncing_ball.pipeline.artifacts import Artifact
@@ -40,9 +40,8 @@ def declared() -> dict[str, Artifact]:
             shown = figures or f"{module}_figures"
             artifacts[name] = Artifact(name=name, module=module, figures=shown, **each)
 
-    for part in ("paper", "beyond"):
-        for call in calls_of_stage((RULES / f"{part}.smk").read_text(encoding="utf-8")):
-            eval(call, {"stage": stage})
+    for call in calls_of_stage((RULES / "paper.smk").read_text(encoding="utf-8")):
+        eval(call, {"stage": stage})
     return artifacts
 
 

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.corrected.model import CorrectedModel
-from bouncing_ball_beyond.models.laws.hertzian import Tsuji
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
-from bouncing_ball_beyond.periodic.orbits.stability import Side
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
+from bouncing_ball.periodic.orbits.stability import Side
 
 import bouncing_ball
 from bouncing_ball import (
@@ -45,6 +45,7 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
         ("docs/python.md", 14),
         ("docs/error-law.md", 8),
         ("docs/periodic-orbits.md", 14),
+        ("docs/other-tables.md", 40),
         ("docs/thesis.md", 24),
         ("docs/how-an-orbit-is-found.md", 4),
         ("docs/proofs.md", 7),

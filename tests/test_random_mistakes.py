@@ -18,11 +18,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.makers import LOSSES
-from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.contact.quantities import quantities
-from bouncing_ball_contacts.contact.question import EngineSetup, Question
-from bouncing_ball_contacts.contact.table import Table
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.quantities import quantities
+from bouncing_ball.contacts.question import EngineSetup, Question
+from bouncing_ball.contacts.table import Table
+from bouncing_ball.models.makers import LOSSES
 from declared_arguments import arguments
 from declared_artifacts import ARTIFACTS
 from hypothesis import given, settings

@@ -4,9 +4,9 @@ import importlib
 import os
 from pathlib import Path
 
-import bouncing_ball_beyond
 import pytest
 
+import bouncing_ball_beyond
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.variables import SHARED
 

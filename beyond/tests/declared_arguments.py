@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from types import UnionType
 
-import bouncing_ball_beyond as bb
 import xarray as xr
-from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
-from bouncing_ball_contacts.contact.units import SIParameter
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import Range
+from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
+from bouncing_ball_contacts.contact.units import SIParameter
 
 Declared = Range | SIParameter | tuple[str, ...]
 # What is imported for type checkers only.

@@ -12,17 +12,17 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-import bouncing_ball_beyond as bb
 import numpy as np
+from declared_arguments import Declared, arguments
+from hypothesis import strategies as st
+
+import bouncing_ball_beyond as bb
+from bouncing_ball.datasets.arguments import FINITE
+from bouncing_ball.errors import Range
 from bouncing_ball_beyond.models.makers import LOSSES
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS
 from bouncing_ball_contacts.contact.units import SIParameter, in_si
-from declared_arguments import Declared, arguments
-from hypothesis import strategies as st
-
-from bouncing_ball.datasets.arguments import FINITE
-from bouncing_ball.errors import Range
 
 Draw = Callable[[st.SearchStrategy], Any]
 

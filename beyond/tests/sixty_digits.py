@@ -6,9 +6,10 @@ of the return map, whose events are found by the secant method. With a step of 1
 digits, 35 digits are left.
 """
 
+from mpmath import mp, mpf
+
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from mpmath import mp, mpf
 
 STEP = mpf(10) ** -20
 

@@ -4,11 +4,12 @@ import ast
 import runpy
 from pathlib import Path
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from PIL import Image
+
+import bouncing_ball_beyond
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 SCRIPTS = sorted(GALLERY.glob("*.py"))

@@ -1,10 +1,10 @@
 """Arrays with labels as arguments of calls: what their labels may say, and what is refused."""
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
 import xarray as xr
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 
 BALL = bb.rigid(restitution=0.85)

@@ -11,9 +11,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
 import pytest
+
+import bouncing_ball_beyond
 from bouncing_ball_beyond.cli.commands import COMMANDS
 
 HOUSE = Path(__file__).parents[1]

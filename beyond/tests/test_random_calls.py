@@ -9,21 +9,21 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
-from bouncing_ball_beyond.periodic.orbits.special import Special
-from bouncing_ball_contacts.contact.contact import LOSSY, STIFF
-from bouncing_ball_contacts.engines.choice import ENGINES
-from bouncing_ball_contacts.measured.curves import CURVES
 from declared_arguments import arguments, declared_by
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from random_arguments import Calls, TimeOver, numbers, sometimes
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.datasets.arguments import FINITE, POSITIVE, RESTITUTION
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball_beyond.periodic.orbits.special import Special
+from bouncing_ball_contacts.contact.contact import LOSSY, STIFF
+from bouncing_ball_contacts.engines.choice import ENGINES
+from bouncing_ball_contacts.measured.curves import CURVES
 
 # Random calls of each function, of all functions in the long test.
 SOME = 8

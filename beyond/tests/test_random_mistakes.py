@@ -11,17 +11,17 @@ import inspect
 import math
 import shlex
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
-from bouncing_ball_beyond.cli.commands import COMMANDS
-from bouncing_ball_beyond.models.makers import LOSSES
 from declared_arguments import arguments
 from hypothesis import given
 from hypothesis import strategies as st
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.cli.answers import parser
 from bouncing_ball.errors import ModelError, Range
+from bouncing_ball_beyond.cli.commands import COMMANDS
+from bouncing_ball_beyond.models.makers import LOSSES
 
 NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
 # Words that begin no number, no name and no choice.

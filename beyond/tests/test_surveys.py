@@ -3,14 +3,14 @@
 import pickle
 from itertools import product
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
 import xarray as xr
-from bouncing_ball_beyond.periodic.one_impact import n_t
 from scipy.optimize import brentq
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.drawing.result import Result
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
 CONTACT = bb.spring_damper(restitution=0.85, frequency_ratio=10.0)
 RIGID = bb.rigid(restitution=0.85)

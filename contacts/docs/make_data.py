@@ -11,6 +11,20 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import xarray as xr
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from bouncing_ball.datasets.files import (
+    CONVENTIONS,
+    parameter_attributes,
+    read_dataset,
+    write_dataset,
+    write_text,
+)
+from bouncing_ball.drawing.files import save
+from bouncing_ball.drawing.style import style
+from bouncing_ball.drawing.tables import TextTable, tables_by_suffix
+from bouncing_ball.pipeline.article import FORMATS, by_sentence
+from bouncing_ball.pipeline.front import with_parts
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.documents import bounces, engine_steps, measured_impacts
 from bouncing_ball_contacts.documents.bounces_figures import bounces as draw_bounces
@@ -27,20 +41,6 @@ from bouncing_ball_contacts.documents.measured_impacts_figures import (
     measured_impacts as draw_measured,
 )
 from bouncing_ball_contacts.documents.measured_impacts_figures import measured_table, shaker_table
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-from bouncing_ball.datasets.files import (
-    CONVENTIONS,
-    parameter_attributes,
-    read_dataset,
-    write_dataset,
-    write_text,
-)
-from bouncing_ball.drawing.files import save
-from bouncing_ball.drawing.style import style
-from bouncing_ball.drawing.tables import TextTable, tables_by_suffix
-from bouncing_ball.pipeline.article import FORMATS, by_sentence
-from bouncing_ball.pipeline.front import with_parts
 
 DOCS = Path(__file__).resolve().parent
 DATA = DOCS / "data"

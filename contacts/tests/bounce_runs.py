@@ -11,9 +11,10 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from bouncing_ball_contacts import Contact, EngineSetup, write_contact
 from engine_runs import RUN, Trial
 from newer_runs import genesis_balls
+
+from bouncing_ball_contacts import Contact, EngineSetup, write_contact
 
 G = 9.81
 RADIUS = 0.1

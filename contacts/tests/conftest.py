@@ -1,6 +1,7 @@
 """What all tests share: short answers about motions, and the texts and data of the docs."""
 
 import pytest
+
 from bouncing_ball_contacts.contact import effort
 
 pytest_plugins = ["shared_fixtures"]

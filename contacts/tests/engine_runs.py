@@ -12,6 +12,7 @@ from time import process_time
 from typing import NamedTuple
 
 import numpy as np
+
 from bouncing_ball_contacts.engines.engine import EngineSettings
 
 RADIUS = 1.0

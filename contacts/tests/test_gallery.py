@@ -3,13 +3,14 @@
 import ast
 import runpy
 
-import bouncing_ball_beyond
-import bouncing_ball_contacts
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from PIL import Image
 from the_docs import DOCS
+
+import bouncing_ball_beyond
+import bouncing_ball_contacts
 
 GALLERY = DOCS / "gallery"
 SCRIPTS = sorted(GALLERY.glob("*.py"))

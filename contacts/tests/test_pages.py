@@ -9,11 +9,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
-import bouncing_ball_contacts
 import make_data
 import pytest
 from the_docs import DATA, DOCS
 
+import bouncing_ball_contacts
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 

@@ -10,16 +10,16 @@ import inspect
 import math
 import shlex
 
-from bouncing_ball_contacts.cli.commands import COMMANDS
-from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.contact.quantities import quantities
-from bouncing_ball_contacts.contact.question import EngineSetup, Question
-from bouncing_ball_contacts.contact.table import Table
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.cli.answers import parser
 from bouncing_ball.errors import ModelError, Range
+from bouncing_ball_contacts.cli.commands import COMMANDS
+from bouncing_ball_contacts.contact.contact import Contact
+from bouncing_ball_contacts.contact.quantities import quantities
+from bouncing_ball_contacts.contact.question import EngineSetup, Question
+from bouncing_ball_contacts.contact.table import Table
 
 NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
 # Words that begin no number, no name and no choice.

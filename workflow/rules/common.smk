@@ -54,7 +54,7 @@ def here(path):
     return path if os.path.exists(path) else os.path.relpath(Path(HOUSE, path))
 
 
-# All artifacts by name, as the stages of both sets of studies list them.
+# All artifacts by name, as the stages list them.
 ARTIFACTS = {}
 # The files of the datasets that are accepted by hand.
 ACCEPTED = set()

@@ -1,4 +1,4 @@
-# From datasets to figures, tables and the page of the explorer. Each is made from the dataset of its
+# From datasets to figures and tables. Each is made from the dataset of its
 # artifact; the schematics have no dataset.
 
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
@@ -77,20 +77,3 @@ for each in ARTIFACTS.values():
             ENVIRONMENT
         script:
             "../scripts/table.py"
-
-
-# The page to explore the models, with reference orbits for the check of its results.
-rule draw_explorer:
-    message:
-        "Writing results/figures/beyond/explorer.html"
-    input:
-        code=lambda wildcards: code("draw_explorer", "explorer.py"),
-        data="results/figures/beyond/explorer.nc",
-    output:
-        html="results/figures/beyond/explorer.html",
-    log:
-        "results/logs/explorer.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/explorer.py"

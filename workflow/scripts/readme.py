@@ -2,14 +2,13 @@
 
 from pathlib import Path
 
-from bouncing_ball_contacts.documents.bounces_figures import drivers, in_javascript, rapier_974
-
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.front import folder_page, page_of, thumbnails, with_parts
 from bouncing_ball.pipeline.jobs import logged
+from bouncing_ball_contacts.documents.bounces_figures import drivers, in_javascript, rapier_974
 
 
 def lines(path):

@@ -10,15 +10,15 @@ from bouncing_ball.pipeline.configuration import configuration_model
 
 
 def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
-    """The type of the configuration: both sets of studies, and settings of the run.
+    """The type of the configuration: the studies, and settings of the run.
 
     Raises
     ------
     ConfigurationError
         If there is no function with the name of a study.
     """
-    studies: dict = {"paper": {}, "beyond": {}}
+    studies: dict = {"paper": {}}
     for each in artifacts:
         if each.study:
             studies[each.part][each.name] = function(each.module, each.study)
-    return configuration_model(studies)
+    return configuration_model(studies, {})

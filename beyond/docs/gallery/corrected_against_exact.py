@@ -1,8 +1,9 @@
 """The corrected model against the exact one: its error falls as 1/ϖ², and not as 1/ϖ."""
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
 import numpy as np
+
+import bouncing_ball_beyond
 
 ratios = np.geomspace(3, 300, 100)
 balls = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=ratios)

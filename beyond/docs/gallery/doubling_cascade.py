@@ -1,8 +1,9 @@
 """A doubling cascade: the motion repeats after 1, 2, 4, 8 … impacts, and then not at all."""
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
 import numpy as np
+
+import bouncing_ball_beyond
 
 amplitudes = np.linspace(1.48, 1.76, 400)
 ball = bouncing_ball_beyond.rigid(restitution=0.5)

@@ -1,7 +1,8 @@
 """Hertz against linear: both contacts have the same restitution coefficient and duration."""
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
+
+import bouncing_ball_beyond
 
 linear = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
 hertz = bouncing_ball_beyond.contact_law("tsuji", restitution=0.85, duration=0.3157)

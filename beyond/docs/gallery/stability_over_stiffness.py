@@ -1,7 +1,8 @@
 """Stability over stiffness: where the 1-T, 2-T and 3-T orbits and their doublings are stable."""
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
+
+import bouncing_ball_beyond
 
 ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
 parameters = ("amplitude", "frequency_ratio")

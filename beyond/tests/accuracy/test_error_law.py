@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.accuracy.error_law import (
     REMAINDER,
     coefficients,
@@ -24,8 +26,6 @@ from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbit
-
-from bouncing_ball.errors import NoOrbitError
 
 RELEASES = LINEAR
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.accuracy.errors import (
     OF_IMPACTS,
     OF_LIMITS,

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.laws.signature import Signature

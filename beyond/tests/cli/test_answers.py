@@ -3,9 +3,12 @@
 import json
 import math
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import bouncing_ball_beyond
 from bouncing_ball_beyond import corrected, rigid, spring_damper
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
@@ -14,8 +17,6 @@ from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, tsuji_dampin
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
-from hypothesis import given
-from hypothesis import strategies as st
 
 ORBIT = ("law-orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")

@@ -5,8 +5,9 @@ import shlex
 from decimal import Decimal
 from pathlib import Path
 
-import bouncing_ball_beyond
 import pytest
+
+import bouncing_ball_beyond
 
 PAGE = (Path(__file__).parents[2] / "docs" / "proofs.md").read_text(encoding="utf-8")
 GIVEN = ("certify", "--restitution", "0.85", "--frequency-ratio", "10")

@@ -2,14 +2,14 @@
 
 from dataclasses import replace
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.branches import observables
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 
 RIGID = bouncing_ball_beyond.rigid(restitution=0.5)
 ORBIT = ("follow", "--restitution", "0.5", "--amplitude", "1.4")

@@ -7,13 +7,13 @@ import threading
 import time
 from pathlib import Path
 
-import bouncing_ball_beyond
 import pytest
-from bouncing_ball_beyond.models.dynamics import Dynamics
 
+import bouncing_ball_beyond
 from bouncing_ball.cli import patience as module
 from bouncing_ball.cli.main import main
 from bouncing_ball.cli.patience import told_if_slow
+from bouncing_ball_beyond.models.dynamics import Dynamics
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.

@@ -8,6 +8,7 @@ needs: its orbits, their stability and bifurcations, and its simulation follow.
 from dataclasses import dataclass
 
 import numpy as np
+
 from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 
 

@@ -12,6 +12,11 @@ from typing import ClassVar
 import numpy as np
 import pytest
 import xarray as xr
+from loaded_laws import Sharing
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.laws.collocation import contacts, path
@@ -36,11 +41,6 @@ from bouncing_ball_beyond.models.named_laws import by_name
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from loaded_laws import Sharing
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
-
-from bouncing_ball.errors import ModelError
 
 
 @dataclass(frozen=True, repr=False)

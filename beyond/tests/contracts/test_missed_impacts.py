@@ -3,12 +3,12 @@
 import mpmath
 import numpy as np
 import pytest
+
+from bouncing_ball.numerics import first_zero
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
-from bouncing_ball.numerics import first_zero
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

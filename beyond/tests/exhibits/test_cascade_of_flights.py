@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.exhibits.cascade_of_flights import cascade_of_flights, stiff_openings
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from openings_found import motions, opening, threshold
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball_beyond.exhibits.cascade_of_flights import cascade_of_flights, stiff_openings
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
 def test_the_dataset_has_the_limits_of_each_restitution_and_their_ratios(described):

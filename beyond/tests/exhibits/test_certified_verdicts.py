@@ -4,11 +4,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.exhibits.certified_verdicts import Verdict, interval_against_print
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.exhibits.certified_verdicts import Verdict, interval_against_print
 
 # The largest distance at which a number is close, in units of its last digit.
 CLOSE_UNITS = 2

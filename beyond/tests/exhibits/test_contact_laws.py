@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+
+from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball_beyond.accuracy.simple_models import search
 from bouncing_ball_beyond.exhibits.contact_laws import (
     LINEAR,
@@ -19,8 +21,6 @@ from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
-
-from bouncing_ball.pipeline.configuration import typed
 
 slow = pytest.mark.slow
 

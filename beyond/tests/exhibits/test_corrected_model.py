@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+
+from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.exhibits import corrected_model as study
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
-from bouncing_ball.pipeline.configuration import typed
 
 SPAN = {"min": 1.0, "max": 1e4, "samples": 41}
 ORBIT = {"n": 1, "restitution": 0.65, "amplitude": 1.0}

@@ -1,12 +1,12 @@
 """The reference orbits solve the equations, in the stable range and beyond, under both rules."""
 
 import numpy as np
+
+from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-
-from bouncing_ball.pipeline.configuration import typed
 
 GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}
 

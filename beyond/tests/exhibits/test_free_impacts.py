@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.exhibits.release_rules import free_impacts
 from scipy.integrate import simpson
 
 from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball_beyond.exhibits.release_rules import free_impacts
 
 DATA = typed(free_impacts)({"restitution": 0.4, "restitution_min": 0.2, "samples": 2001})
 

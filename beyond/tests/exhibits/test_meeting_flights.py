@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.exhibits.corrected_model import meeting_flights
 
 from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball_beyond.exhibits.corrected_model import meeting_flights
 
 PARAMETERS = {
     "n": 1,

@@ -6,6 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.yaml_files import read_yaml
 from bouncing_ball_beyond.exhibits.certified_verdicts import (
     certified_interval,
     certified_verdicts,
@@ -17,9 +20,6 @@ from bouncing_ball_beyond.exhibits.proofs import (
     certified_thresholds,
     proofs,
 )
-
-from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.yaml_files import read_yaml
 
 CONFIG = Path(__file__).resolve().parents[2] / "config" / "config.yaml"
 GIVEN = read_yaml(CONFIG)["beyond"]["ext_proofs"]

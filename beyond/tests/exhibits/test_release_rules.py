@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+
+from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.exhibits.release_rules import release_rules
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import saddle_node
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point
-
-from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {
     "n": [1, 2],

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+
+from bouncing_ball.drawing.style import style
 from bouncing_ball_beyond.accuracy.error_law import remainder
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors, search
@@ -17,8 +19,6 @@ from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
-
-from bouncing_ball.drawing.style import style
 
 HEIGHT = [Quantity.MAX_HEIGHT]
 GIVEN = {

@@ -15,6 +15,8 @@ from urllib.parse import urlencode
 
 import numpy as np
 import pytest
+
+from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball_beyond.accuracy.errors import QUANTITIES
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball_beyond.explorer.document import BOUND, to_html
@@ -25,8 +27,6 @@ from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.texts import shown
-
-from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow
 

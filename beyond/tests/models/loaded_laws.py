@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
 from bouncing_ball_beyond.models.laws.loaded import LoadedLaw
 

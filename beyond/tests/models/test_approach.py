@@ -4,6 +4,9 @@ from time import process_time
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond import contact_law, corrected, orbit, rigid, spring_damper
 from bouncing_ball_beyond.models.damping import (
     LINEAR,
@@ -14,9 +17,6 @@ from bouncing_ball_beyond.models.damping import (
 from bouncing_ball_beyond.models.laws.signature import computed
 from bouncing_ball_beyond.models.laws.steady_contact import permanent_contact
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from scipy.integrate import solve_ivp
-
-from bouncing_ball.errors import ModelError
 
 APPROACH = Release.APPROACH
 

@@ -1,9 +1,9 @@
 """Histories of balls that come to lie on a contact that is computed by collocation."""
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.errors import ModelError
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.flight import Flight, land, table
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics

@@ -7,6 +7,7 @@ more than 30 correct digits.
 import mpmath
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.oscillator import responses
 
 EPS = np.finfo(float).eps

@@ -3,6 +3,11 @@
 import mpmath
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import minimize_scalar
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.permanent_contact import (
     permanent_contact_frequency_ratios,
@@ -10,11 +15,6 @@ from bouncing_ball_beyond.models.permanent_contact import (
     permanent_contact_threshold,
 )
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.optimize import minimize_scalar
-
-from bouncing_ball.errors import ModelError
 
 EPS = np.finfo(float).eps
 

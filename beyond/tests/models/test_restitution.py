@@ -3,15 +3,15 @@
 import mpmath
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.sticking import lift_off_phase
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
-from bouncing_ball.errors import ModelError
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():

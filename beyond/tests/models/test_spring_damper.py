@@ -3,12 +3,12 @@
 import mpmath
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 EPS = np.finfo(float).eps
 

@@ -4,9 +4,10 @@ import inspect
 from functools import cache
 from itertools import pairwise
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+
+import bouncing_ball_beyond
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel

@@ -2,12 +2,12 @@
 
 import math
 
-import bouncing_ball_beyond as bb
 import pytest
+
+import bouncing_ball_beyond as bb
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.motions import over_time
-
-from bouncing_ball.errors import ModelError
 
 BALLS = {
     "rigid": bb.rigid(restitution=1.0),

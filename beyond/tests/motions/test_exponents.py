@@ -2,9 +2,10 @@
 
 import math
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+
+import bouncing_ball_beyond
 
 
 @pytest.mark.parametrize("amplitude", [1.4, 1.6])

@@ -2,13 +2,13 @@
 
 import json
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
-from bouncing_ball_beyond.periodic.one_impact import n_t
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.cli.main import main
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
 R = bb.rigid(restitution=0.5)
 STIFF = bb.spring_damper(restitution=0.5, frequency_ratio=100.0)

@@ -3,10 +3,10 @@
 import itertools
 from typing import NamedTuple
 
-import bouncing_ball_beyond
 import numpy as np
 from second_code import closing_of, corrected_defect, defect_of, rates_of_release
 
+import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 
 BALLS = ("rigid", "displacement", "force", "hunt-crossley", "corrected")

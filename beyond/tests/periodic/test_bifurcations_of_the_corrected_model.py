@@ -1,8 +1,9 @@
 """The closed form of the corrected model's bifurcations, by the multipliers of its map."""
 
-import bouncing_ball_beyond as bb
 import numpy as np
 import pytest
+
+import bouncing_ball_beyond as bb
 
 BALLS = [(0.6, 8.0, "displacement"), (0.85, 2.5, "displacement"), (0.5, 5.0, "force")]
 

@@ -1,17 +1,17 @@
 """Curves of special orbits in two parameters: against closed forms, with cusps and resonances."""
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+from orbits_found import FOUND, balls, first, found_orbit
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.periodic.branches.curves import Degenerate, curve_through
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball_beyond.periodic.orbits.ends import Window
 from bouncing_ball_beyond.periodic.orbits.special import Special, flight_margin
-from orbits_found import FOUND, balls, first, found_orbit
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 
 
 def special(name, kind, to, amplitude=1.3):

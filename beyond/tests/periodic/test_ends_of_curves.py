@@ -2,16 +2,16 @@
 
 from functools import cache
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formulas
 from mpmath import findroot, mp, mpf, workdps
 from second_code import defect_of, rates_of_release
 
+import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formulas
 
 # Step of the central differences in 40 digits.
 STEP = mpf("1e-13")

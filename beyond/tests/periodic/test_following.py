@@ -2,9 +2,15 @@
 
 from dataclasses import replace
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+from orbits_found import FOUND, balls, first, found_orbit, legs_of
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.flight import Flight, table
 from bouncing_ball_beyond.motions.destination import final_motions
@@ -18,12 +24,6 @@ from bouncing_ball_beyond.periodic.orbits.halves import turns_apart, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 from bouncing_ball_beyond.periodic.orbits.special import Special
-from orbits_found import FOUND, balls, first, found_orbit, legs_of
-
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
-from bouncing_ball.numerics.corrector import newton, plane
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.events import domain_limits
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 

@@ -2,11 +2,11 @@
 
 import math
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 
 R = 0.5

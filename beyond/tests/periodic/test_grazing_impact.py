@@ -2,20 +2,20 @@
 
 from dataclasses import replace
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+from orbits_found import balls, first, legs_of
+from scipy.optimize import brentq
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.special import Special
 from bouncing_ball_beyond.periodic.orbits.steps import STEPS
-from orbits_found import balls, first, legs_of
-from scipy.optimize import brentq
-
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
 SLOW = 3e-3

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.motions.destination import final_motions
-from bouncing_ball_beyond.motions.motions import Kind
-from bouncing_ball_beyond.motions.orbit_of_motion import of_impact
 from orbits_found import balls, legs_of
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.motions.destination import final_motions
+from bouncing_ball_beyond.motions.motions import Kind
+from bouncing_ball_beyond.motions.orbit_of_motion import of_impact
 
 # Digits that a ball may lose from rest to rest so that Newton's method settles: half of those of a
 # double, because the steps must fall below 1e-12 times the phases, and the residual has an error of

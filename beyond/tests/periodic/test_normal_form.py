@@ -3,15 +3,15 @@
 import math
 from functools import partial
 
-import bouncing_ball_beyond
 import mpmath as mp
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.orbits.return_map import returned
 
+import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.orbits.return_map import returned
 
 
 def _one_impact(ball, amplitude):

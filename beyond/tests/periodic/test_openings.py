@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
+from openings_found import motions, opening, threshold
+from sixty_digits import Exact
+
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.branches.curves import curve_through
 from bouncing_ball_beyond.periodic.orbits.ends import Window
 from bouncing_ball_beyond.periodic.orbits.special import Special
-from mpmath import mp, mpf
-from openings_found import motions, opening, threshold
-from sixty_digits import Exact
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,13 @@
 
 from types import SimpleNamespace
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+from scipy.optimize import brentq
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import ModelError
+from bouncing_ball.numerics.corrector import solve
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -14,10 +18,6 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     orbits_of_points,
 )
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from scipy.optimize import brentq
-
-from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.corrector import solve
 
 
 def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():

@@ -2,6 +2,13 @@
 
 import numpy as np
 import pytest
+from bounds_of_branches import parameter_bound
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from one_branch import continue_branch
+from scipy.optimize import brentq
+
+from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
@@ -21,13 +28,6 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
 )
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations
-from bounds_of_branches import parameter_bound
-from hypothesis import assume, given
-from hypothesis import strategies as st
-from one_branch import continue_branch
-from scipy.optimize import brentq
-
-from bouncing_ball.numerics.steps import StepControl
 
 releases = st.sampled_from(LINEAR)
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.periodic.branches.following import branch_from
 from random_branches import BALLS, orbit_of, sample
+
+from bouncing_ball_beyond.periodic.branches.following import branch_from
 
 LONG = [pytest.mark.long, pytest.mark.slow]
 

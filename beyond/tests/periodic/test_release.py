@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from orbits_found import balls, known_orbit
+
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.motion import ContactDynamics
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
@@ -11,7 +13,6 @@ from bouncing_ball_beyond.models.permanent_contact import permanent_contact_thre
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
 from bouncing_ball_beyond.periodic.orbits.special import release_condition, release_margin
-from orbits_found import balls, known_orbit
 
 
 def long_contact(ratio, excess):

@@ -2,6 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import (
@@ -14,10 +18,6 @@ from bouncing_ball_beyond.periodic.one_impact.restitution_branch import (
 )
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.stability import Side
-from hypothesis import given
-from hypothesis import strategies as st
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 
 EPS = np.finfo(float).eps
 

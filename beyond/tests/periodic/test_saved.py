@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
-import bouncing_ball_beyond
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-
-from bouncing_ball.errors import ModelError
 
 LINEAR = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
 

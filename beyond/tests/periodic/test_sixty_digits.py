@@ -3,14 +3,15 @@
 import mpmath
 import numpy as np
 import pytest
+from mpmath import mp, mpf
+from sixty_digits import Exact
+
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact import spring_damper_bifurcations as bifurcations
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point
-from mpmath import mp, mpf
-from sixty_digits import Exact
 
 EPS = np.finfo(float).eps
 

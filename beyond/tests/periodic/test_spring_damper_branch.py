@@ -3,6 +3,11 @@
 import mpmath
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from sixty_digits import Exact
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.oscillator import responses
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
@@ -13,11 +18,6 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     nearest_excess,
     orbits_of_points,
 )
-from hypothesis import given
-from hypothesis import strategies as st
-from sixty_digits import Exact
-
-from bouncing_ball.errors import ModelError
 
 EPS = np.finfo(float).eps
 

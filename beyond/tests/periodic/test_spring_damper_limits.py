@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
+
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -16,9 +19,6 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     orbits_of_points,
 )
 from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side, is_stable
-from scipy.optimize import minimize_scalar
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 
 EPS = np.finfo(float).eps
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.periodic.orbits.stability import is_stable, multipliers
 from hypothesis import given
 from hypothesis import strategies as st
+
+from bouncing_ball_beyond.periodic.orbits.stability import is_stable, multipliers
 
 EPS = np.finfo(float).eps
 # Rounded, to keep subnormal numbers away.

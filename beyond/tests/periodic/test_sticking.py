@@ -12,16 +12,17 @@ u³ - 5u² + (7 - 2r) u - 3 (1 - r) in (0, 1). After j bounces w depends smoothl
 
 from functools import cache, partial
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+from mpmath import findroot, mp, mpf, workdps
+from orbits_found import balls, first
+
+import bouncing_ball_beyond
 from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
 from bouncing_ball_beyond.periodic.branches import curves
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball_beyond.periodic.orbits.special import Special
-from mpmath import findroot, mp, mpf, workdps
-from orbits_found import balls, first
 
 # The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
 SETTLED = 1e-17

@@ -1,17 +1,17 @@
 """Whole branches of n-T orbits, one at a time and several side by side."""
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
+
+import bouncing_ball_beyond
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch, whole_branches
 from bouncing_ball_beyond.periodic.orbits import ends
-
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.branch import ContinuationError
 
 CASES = [(1, 1e4), (2, 10.0), (1, 2.0), (3, 2.0), (1, 1.0), (2, 0.9)]
 TOP = 1.4

@@ -3,11 +3,11 @@
 import math
 
 import pytest
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
 
 G = 9.81
 

@@ -5,6 +5,10 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
+from flint import arb
+from mpmath import mp, mpf
+from sixty_digits import Exact
+
 from bouncing_ball_beyond.periodic.one_impact import spring_damper_bifurcations as double
 from bouncing_ball_beyond.proofs import certificates, newton
 from bouncing_ball_beyond.proofs.balls import ProofError, decimal_with_bound, precision, rational
@@ -19,9 +23,6 @@ from bouncing_ball_beyond.proofs.certificates import (
 from bouncing_ball_beyond.proofs.newton import certified_zero
 from bouncing_ball_beyond.proofs.problem import RationalProblem, damping_of
 from bouncing_ball_beyond.proofs.series import Series
-from flint import arb
-from mpmath import mp, mpf
-from sixty_digits import Exact
 
 TABLE_1 = [(ratio, n) for ratio in (10_000, 10, 2) for n in (1, 2, 3)]
 

@@ -4,6 +4,10 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from flint import arb
+from mpmath import mp, mpf
+from sixty_digits import Exact
+
 from bouncing_ball_beyond import error_thresholds, rigid
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -19,9 +23,6 @@ from bouncing_ball_beyond.proofs.thresholds import (
     height_threshold,
     permanent_contact_threshold,
 )
-from flint import arb
-from mpmath import mp, mpf
-from sixty_digits import Exact
 
 R = Fraction(65, 100)
 TOLERANCE = Fraction(1, 100)

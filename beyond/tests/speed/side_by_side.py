@@ -17,9 +17,11 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
-import bouncing_ball_beyond
 import compiled_auto
 import numpy as np
+
+import bouncing_ball_beyond
+from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
@@ -31,8 +33,6 @@ from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.ends import Window
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import Special
-
-from bouncing_ball.numerics.corrector import newton, plane
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "speed.md"
 R = 0.5
@@ -352,9 +352,10 @@ def engine_row() -> Row:
     if not (peer("mujoco") and peer("bouncing_ball_contacts")):
         return Row(task, ours, error, "MuJoCo: absent")
     sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "contacts" / "tests"))
+    from engine_runs import Trial, mujoco
+
     from bouncing_ball_contacts.engines.engine import Physical
     from bouncing_ball_contacts.engines.mujoco import MuJoCo
-    from engine_runs import Trial, mujoco
 
     stiffness = 20.0**2
     damping = 2 * float(contact.damping_ratio) * 20.0

@@ -1,7 +1,8 @@
 """The first three apexes of a dropped ball over those of a rigid one, by stiffness and r."""
 
-import bouncing_ball_beyond
 import numpy as np
+
+import bouncing_ball_beyond
 
 GRAVITY, HEIGHT = 9.81, 0.4  # m/s^2, m above the height at which the ball touches
 MASS = 2600 * 4 / 3 * np.pi * 0.1**3  # kg

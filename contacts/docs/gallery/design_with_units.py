@@ -2,8 +2,9 @@
 
 import textwrap
 
-import bouncing_ball_contacts
 import matplotlib.pyplot as plt
+
+import bouncing_ball_contacts
 
 found = bouncing_ball_contacts.assess_contact(
     bouncing_ball_contacts.Table(frequency="50 Hz", acceleration="0.8 g"),

@@ -1,8 +1,9 @@
 """Laws against a real ball: restitution coefficients of croquet, and the laws fitted to them."""
 
-import bouncing_ball_contacts
 import matplotlib.pyplot as plt
 import numpy as np
+
+import bouncing_ball_contacts
 
 # D. Gugan, Experiments on the game of croquet: bouncing and rolling balls, Table I.
 speed = np.array([0.50, 1.00, 1.64, 2.04, 2.00, 2.83, 3.51, 4.43, 5.47, 6.01])

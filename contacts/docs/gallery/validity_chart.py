@@ -1,9 +1,10 @@
 """The validity chart with your contact: where is a restitution coefficient enough?"""
 
-import bouncing_ball_beyond
-import bouncing_ball_contacts
 import matplotlib.pyplot as plt
 import numpy as np
+
+import bouncing_ball_beyond
+import bouncing_ball_contacts
 
 ours = bouncing_ball_contacts.assess_contact(
     bouncing_ball_contacts.Table(frequency="50 Hz", acceleration="0.8 g"),

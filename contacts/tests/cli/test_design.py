@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 from asked_contacts import assessed
+from PIL import Image
+
+from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_contacts.contact.page_data import chart_and_motion
 from bouncing_ball_contacts.contact.page_figures import draw
 from bouncing_ball_contacts.contact.rows import document
-from PIL import Image
-
-from bouncing_ball.drawing.labels import QUANTITIES
 
 # Where the verdict is not what is tested, the runs that it rests on are short.
 QUICK = pytest.mark.usefixtures("short_runs")

@@ -5,6 +5,7 @@ import math
 
 import pytest
 from asked_contacts import answered
+
 from bouncing_ball_contacts.contact.rows import document
 from bouncing_ball_contacts.engines.choice import ENGINES
 

@@ -7,12 +7,12 @@ import subprocess
 import sys
 
 import pytest
+
+from bouncing_ball.cli.options import meanings
 from bouncing_ball_contacts.cli import design
 from bouncing_ball_contacts.cli.commands import COMMANDS
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.engines.laws import LAWS
-
-from bouncing_ball.cli.options import meanings
 
 DESIGN = ["design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g"]
 DESIGN += ["--stiffness", "1e7 N/m", "--restitution", "0.85", "--n", "1"]

@@ -1,13 +1,13 @@
 """Arguments of a wrong class in the questions about a contact."""
 
+import pytest
+
 import bouncing_ball_beyond
 import bouncing_ball_contacts
-import pytest
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
-
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 
 TABLE = Table(frequency="50 Hz", acceleration="0.8 g")
 CONTACT = Contact(mass="20 g", stiffness="1e7 N/m", restitution=0.85)

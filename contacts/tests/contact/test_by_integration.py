@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_contacts import Contact, Question, Table, assess_contact
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_contacts import Contact, Question, Table, assess_contact
 
 G = 9.80665
 PRECISE = {"rtol": 1e-11, "atol": 1e-14, "method": "DOP853"}

@@ -4,9 +4,9 @@ import re
 
 import pytest
 from asked_contacts import assessed
-from bouncing_ball_contacts import Contact, Question, Table, choose_contact
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_contacts import Contact, Question, Table, choose_contact
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

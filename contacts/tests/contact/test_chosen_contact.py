@@ -1,6 +1,7 @@
 """The contact that was chosen, as an argument of the other calls."""
 
 import pytest
+
 from bouncing_ball_contacts import (
     Contact,
     EngineSetup,

@@ -6,6 +6,8 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered, assessed
+
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors
@@ -21,8 +23,6 @@ from bouncing_ball_contacts.contact.drop_test import rebound
 from bouncing_ball_contacts.contact.judgement import OrbitJudgement
 from bouncing_ball_contacts.contact.notes import notes
 from bouncing_ball_contacts.contact.verdict import said_of_orbit
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

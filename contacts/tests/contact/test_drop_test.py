@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered, assessed, described
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_contacts.contact.drop_test import rebound
 from bouncing_ball_contacts.contact.rebounds import rises, slowed
-from scipy.integrate import solve_ivp
-
-from bouncing_ball.errors import ModelError
 
 G = 9.80665
 PRECISE = {"rtol": 1e-11, "atol": 1e-15, "method": "DOP853"}

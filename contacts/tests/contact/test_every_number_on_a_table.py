@@ -17,10 +17,11 @@ from collections import Counter
 import numpy as np
 import pytest
 from asked_contacts import answered
-from bouncing_ball_beyond.motions.basins import fastest
-from bouncing_ball_contacts.contact import rows
 from scipy.linalg import expm
 from scipy.optimize import brentq, minimize_scalar
+
+from bouncing_ball_beyond.motions.basins import fastest
+from bouncing_ball_contacts.contact import rows
 
 G = 9.80665
 TURN = 2 * math.pi

@@ -11,6 +11,7 @@ from collections import Counter
 import numpy as np
 import pytest
 from asked_contacts import assessed
+
 from bouncing_ball_beyond.motions.basins import fastest
 
 G = 9.80665

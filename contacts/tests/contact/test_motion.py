@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from asked_contacts import assessed
+
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -3,6 +3,11 @@
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -11,11 +16,6 @@ from bouncing_ball_contacts.contact.hertz import hertz
 from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import TableMotion
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.integrate import quad
-
-from bouncing_ball.errors import ModelError
 
 STEEL_ON_GLASS = {
     "youngs_modulus": 2.1e11,

@@ -5,6 +5,7 @@ from itertools import product
 
 import pytest
 from asked_contacts import assessed
+
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion

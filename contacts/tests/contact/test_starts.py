@@ -5,6 +5,7 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions.basins import MotionName

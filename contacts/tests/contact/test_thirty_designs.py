@@ -13,9 +13,10 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered
+from scipy.integrate import solve_ivp
+
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.contact import rows
-from scipy.integrate import solve_ivp
 
 G = 9.80665
 TIGHT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-16}

@@ -4,6 +4,10 @@ import math
 
 import pint
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import drop_at_rest
 from bouncing_ball_contacts.contact.quantities import quantities
@@ -11,10 +15,6 @@ from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.contact.units import number_in_si
-from hypothesis import given
-from hypothesis import strategies as st
-
-from bouncing_ball.errors import ModelError
 
 KINDS = {}
 for each in (Contact, Table, Question, EngineSetup, drop_at_rest):

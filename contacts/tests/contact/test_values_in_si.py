@@ -2,9 +2,10 @@
 
 import math
 
+import pytest
+
 import bouncing_ball_beyond
 import bouncing_ball_contacts as bb
-import pytest
 
 FREQUENCY = 50.0
 GRAVITY = 9.80665

@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.accuracy.simple_models import errors
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.documents.engine_steps import EngineOrbit, conformance
-from bouncing_ball_contacts.engines.choice import ENGINES
-from bouncing_ball_contacts.engines.scheme import Scheme
 from make_data import ENGINE_STEPS
 from the_docs import DATA
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.accuracy.simple_models import errors
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.documents.engine_steps import EngineOrbit, conformance
+from bouncing_ball_contacts.engines.choice import ENGINES
+from bouncing_ball_contacts.engines.scheme import Scheme
 
 RUNS = read_dataset(DATA / "engines.nc")
 FORCE = RUNS.sel(release="force")

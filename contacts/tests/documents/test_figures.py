@@ -5,12 +5,12 @@ from importlib.metadata import version
 import make_data
 import numpy as np
 import pytest
+from bouncing_ball.pipeline.diff.budgets import PIXEL
+from bouncing_ball.pipeline.diff.folders import read_picture
 from the_docs import DATA
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.files import save
-from bouncing_ball.pipeline.diff.budgets import PIXEL
-from bouncing_ball.pipeline.diff.folders import read_picture
 from bouncing_ball.pipeline.provenance import read_attributes
 
 pytestmark = pytest.mark.slow

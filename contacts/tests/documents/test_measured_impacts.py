@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 import xarray as xr
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel
@@ -22,8 +24,6 @@ from bouncing_ball_contacts.documents.measured_impacts import (
 from bouncing_ball_contacts.measured.curves import CURVES, LawCurve
 from bouncing_ball_contacts.measured.experiment import experiment
 from bouncing_ball_contacts.measured.verdicts import judge
-
-from bouncing_ball.errors import ModelError
 
 MEASURED = {"experiments": ["croquet", "plastic_ball", "superball"], "samples": 5}
 SHAKER = {

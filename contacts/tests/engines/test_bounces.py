@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 import xarray as xr
 from bounce_runs import BOUNCE, SETTINGS, G, rebounds
-from bouncing_ball_contacts.documents.bounces import (
-    ALL_VARIABLES,
-    SETTINGS_TITLE,
-    TITLE,
-)
 from installed_engines import LAST_SEEN, engine_of, only_if_installed, package
 from the_docs import DATA, MEASURED
 
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball_contacts.documents.bounces import (
+    ALL_VARIABLES,
+    SETTINGS_TITLE,
+    TITLE,
+)
 
 ASKED = (0.3, 0.5, 0.75, 0.9)
 STEPS = (1 / 60, 1 / 240, 1 / 1000)

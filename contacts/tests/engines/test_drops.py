@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered
-from bouncing_ball_contacts import Contact, EngineSetup, Table, write_contact
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
+
+from bouncing_ball_contacts import Contact, EngineSetup, Table, write_contact
 
 G = 9.80665
 

@@ -6,16 +6,16 @@ import hypothesis
 import numpy as np
 import pytest
 from asked_contacts import answered
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_contacts import Contact, describe_contact
 from bouncing_ball_contacts.engines.choice import ENGINES, engine_named
 from bouncing_ball_contacts.engines.engine import ERROR, Physical
 from bouncing_ball_contacts.engines.impacts import error_in_steps
 from bouncing_ball_contacts.engines.scheme import Scheme
-from hypothesis import given
-from hypothesis import strategies as st
-
-from bouncing_ball.errors import ModelError
 
 CONTACT = Physical(mass=0.02, stiffness=3e5, damping=7.0)
 BOTH = [(name, release) for name, engine in ENGINES.items() for release in engine.releases]

@@ -6,6 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 from asked_contacts import answered
+from engine_runs import RUN, Trial
+from installed_engines import only_if_installed
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts import Contact, EngineSetup, write_contact
@@ -15,10 +19,6 @@ from bouncing_ball_contacts.engines.given_step import at_step, spread_in_steps, 
 from bouncing_ball_contacts.engines.impacts import FEWEST, has_stable_steps, impacts_in_steps
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
-from engine_runs import RUN, Trial
-from installed_engines import only_if_installed
-
-from bouncing_ball.errors import ModelError
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

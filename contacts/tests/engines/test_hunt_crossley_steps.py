@@ -7,14 +7,14 @@ from functools import cache
 import numpy as np
 import pytest
 from asked_contacts import answered
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_contacts.engines import hunt_crossley_steps
-from bouncing_ball_contacts.engines.drake import HuntCrossleyDrake
-from bouncing_ball_contacts.engines.physical import Physical
 from engine_runs import Trial, drake
 from installed_engines import only_if_installed
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_contacts.engines import hunt_crossley_steps
+from bouncing_ball_contacts.engines.drake import HuntCrossleyDrake
+from bouncing_ball_contacts.engines.physical import Physical
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, paper_error
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
@@ -19,8 +21,6 @@ from bouncing_ball_beyond.models.laws.sweeps import Start
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_contacts.engines.impedance import Impedance
-
-from bouncing_ball.errors import ModelError
 
 BEYOND = Path(__file__).parents[3] / "beyond" / "tests"
 LAWS = {

@@ -17,6 +17,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from asked_contacts import answered
+from engine_runs import RUN, Trial, drake, mujoco
+from installed_engines import LAST_SEEN, missing, only_if_installed
+from make_data import ENGINE_STEPS as PARAMETERS
+from pandas import DataFrame
+from the_docs import DATA, MEASURED
+
+from bouncing_ball.datasets.files import read_dataset, write_dataset
+from bouncing_ball.datasets.variables import describe
 from bouncing_ball_beyond import corrected, limits, rigid, spring_damper
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
@@ -39,14 +47,6 @@ from bouncing_ball_contacts.engines.engine import ERROR, Physical
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
-from engine_runs import RUN, Trial, drake, mujoco
-from installed_engines import LAST_SEEN, missing, only_if_installed
-from make_data import ENGINE_STEPS as PARAMETERS
-from pandas import DataFrame
-from the_docs import DATA, MEASURED
-
-from bouncing_ball.datasets.files import read_dataset, write_dataset
-from bouncing_ball.datasets.variables import describe
 
 RELEASES = [(name, release) for name in RUN for release in ENGINES[name].releases]
 LOSSES = (0.65, 0.85)

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from asked_contacts import answered
-from bouncing_ball_contacts.engines.choice import ENGINES
 from engine_runs import Trial
 from installed_engines import only_if_installed
 from newer_runs import NEWER, RECIPES
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.engines.choice import ENGINES
 
 G = 9.80665
 MASS = 0.5

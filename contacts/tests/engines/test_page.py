@@ -11,13 +11,13 @@ import sys
 import numpy as np
 import pandas
 import pytest
-from bouncing_ball_contacts.documents.bounces_figures import in_javascript, rapier_974
-from bouncing_ball_contacts.engines.choice import ENGINES
-from bouncing_ball_contacts.engines.engine import Physical
 from scipy.integrate import solve_ivp
 from the_docs import DOCS
 
 from bouncing_ball.cli.main import main
+from bouncing_ball_contacts.documents.bounces_figures import in_javascript, rapier_974
+from bouncing_ball_contacts.engines.choice import ENGINES
+from bouncing_ball_contacts.engines.engine import Physical
 
 PAGE = (DOCS / "engines.md").read_text(encoding="utf-8")
 BOUNCES = (DOCS / "bounces.md").read_text(encoding="utf-8")

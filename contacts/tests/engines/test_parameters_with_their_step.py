@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from asked_contacts import answered
-from bouncing_ball_contacts.cli.design_text import design_lines
-from bouncing_ball_contacts.engines.engine import filled, text_to_paste
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.cli.design_text import design_lines
+from bouncing_ball_contacts.engines.engine import filled, text_to_paste
 
 M = 0.5
 PYBULLET = {"contactStiffness": 2e5, "contactDamping": 20.0}

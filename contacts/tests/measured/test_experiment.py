@@ -5,10 +5,10 @@ import sys
 
 import numpy as np
 import pytest
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
-from bouncing_ball_contacts.measured.experiment import DATA, experiment, experiment_names, read
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.measured.experiment import DATA, experiment, experiment_names, read
 
 
 def test_every_experiment_says_where_its_numbers_come_from():

@@ -1,18 +1,18 @@
 """Contact laws fitted to measured impacts: trial numbers, intervals that hold, and mistakes."""
 
-import bouncing_ball_contacts
 import numpy as np
 import pytest
+from scipy import stats
+from scipy.integrate import quad, solve_ivp
+
+import bouncing_ball_contacts
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.laws.hertzian import KuwabaraKono
 from bouncing_ball_contacts import Table, assess_contact, fit_contact, write_contact
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.measured.curves import CURVES, curve_named
 from bouncing_ball_contacts.measured.experiment import experiment
 from bouncing_ball_contacts.measured.law_fit import MeasuredPoints, fit_law
-from scipy import stats
-from scipy.integrate import quad, solve_ivp
-
-from bouncing_ball.errors import ModelError, NoOrbitError
 
 TABLE = Table(frequency="20 Hz", acceleration="1 g")
 SPEEDS = np.geomspace(0.5, 6.0, 8)

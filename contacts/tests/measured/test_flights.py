@@ -4,6 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.curves import curve_named
 from bouncing_ball_contacts.measured.fit import fit_contact
@@ -15,9 +18,6 @@ from bouncing_ball_contacts.measured.flights import (
     together,
 )
 from bouncing_ball_contacts.measured.law_fit import MeasuredPoints, fit_law
-from scipy.integrate import solve_ivp
-
-from bouncing_ball.errors import ModelError
 
 PRECISE = {"rtol": 1e-12, "atol": 1e-14, "method": "DOP853"}
 # A table-tennis ball, for which the drag is large: 2.7 g and 40 mm.

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+
 from bouncing_ball_contacts.measured.curves import curve_named
 from bouncing_ball_contacts.measured.experiment import experiment
 from bouncing_ball_contacts.measured.fit import fit_contact

@@ -55,8 +55,8 @@ def parser(arguments: list[str]) -> Parser:
     """The parser of all subcommands; only those named in the arguments have their options."""
     top = Parser(
         prog="bouncing-ball",
-        description="Orbits and other motions of a ball on a vibrating table. Quantities are "
-        "dimensionless, unless a command says otherwise: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
+        description="Orbits of a ball on a vibrating table. Quantities are dimensionless, unless a "
+        "command says otherwise: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
         epilog="bouncing-ball COMMAND --help explains a command and gives examples",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")

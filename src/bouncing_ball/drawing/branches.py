@@ -23,7 +23,7 @@ from bouncing_ball.datasets import (
 )
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import in_a_row, title
-from bouncing_ball.drawing.style import LINES, MARKS, TABLE
+from bouncing_ball.drawing.style import LINES, MARKS
 
 _GRAZING = {GRAZING_FLIGHT, GRAZING_RELEASE}
 # The special orbits of the restitution model, and the beginnings of the names of their variables.
@@ -35,10 +35,6 @@ _OF_RIGID = {
 _ALONG = ("point", "special", "multiplier", "end")
 # Width in characters of a reason below the title.
 _LINE = 110
-# Relative distance below which the end of a branch is at the largest Λ of the panel.
-_AT_THE_EDGE = 1e-9
-# The place of an enlargement in a panel: left, bottom, width and height.
-_CORNER = (0.13, 0.1, 0.3, 0.22)
 SPECIAL = (SADDLE_NODE, PERIOD_DOUBLING, GRAZING_FLIGHT, GRAZING_RELEASE)
 """The kinds of special points at which the line of a branch may change its look."""
 
@@ -147,55 +143,19 @@ def phase_panels(touching: bool) -> tuple[Figure, list[Axes]]:
     return figure, [*panels]
 
 
-def over_amplitude(data: xr.Dataset, second: xr.Dataset | None = None) -> Figure:
-    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ.
-
-    ``second`` has further branches of the same balls, in the same colours. What is inadmissible of
-    them is enlarged in a corner.
-    """
+def over_amplitude(data: xr.Dataset) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
     rows, names = in_a_row(data, *_ALONG)
-    further = None if second is None else in_a_row(second, *_ALONG)[0]
     figure, panels = phase_panels(bool((rows.contact_duration > 0).any()))
     panels[0].set_xlim(0.0, data.attrs.get("amplitude_max", data.amplitude.max()))
     # Both phases of a curve have its colour.
-    for row, ((curve, colour), name) in enumerate(zip(coloured(rows, CASE), names, strict=True)):
+    for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
         if name and curve.amplitude.notnull().any():
             name_curve(panels[0], name, colour)
         draw_both_phases(panels, placed(curve), colour)
-        if further is not None:
-            _draw_second(panels, placed(further.isel({CASE: row})), colour)
     legend_below(figure)
     head(figure, title(data), rows)
     return figure
-
-
-def _draw_second(panels: Sequence[Axes], curve: xr.Dataset, colour: str) -> None:
-    """A further branch of a ball, of which the inadmissible part is enlarged."""
-    draw_both_phases(panels, curve, colour)
-    # With the points next to it, because it may be a single one.
-    near = (~curve.admissible).rolling(point=3, center=True, min_periods=1).max()
-    hidden = curve.amplitude.where(near > 0)
-    if hidden.notnull().any():
-        _enlarge(panels[0], curve, hidden, colour)
-
-
-def _enlarge(axes: Axes, curve: xr.Dataset, amplitude: xr.DataArray, colour: str) -> None:
-    """The part of a branch with these Λ and its surroundings in a corner of a panel, where the
-    marks of its ends do not hide it.
-    """
-    corner = axes.inset_axes(_CORNER)
-    corner.set_xlim(*_around(amplitude))
-    corner.set_ylim(*_around(curve.phase.where(amplitude.notnull()) / np.pi))
-    _draw_phase(corner, curve, curve.phase, curve.special_phase, colour)
-    corner.tick_params(labelsize=6)
-    axes.indicate_inset_zoom(corner, edgecolor=TABLE)
-
-
-def _around(values: xr.DataArray) -> np.ndarray:
-    """The ends of an axis on which these values take the middle third."""
-    low = float(values.min())
-    high = float(values.max())
-    return np.array([2 * low - high, 2 * high - low])
 
 
 def head(figure: Figure, title: str, rows: xr.Dataset) -> None:
@@ -238,7 +198,3 @@ def _draw_phase(
     for kind in SPECIAL:
         there = special.where(curve.special_kind == kind)
         mark_orbits(axes, kind, curve.special_amplitude, there, colour)
-    # A branch that does not leave the window ends where its contact or its flight does.
-    ends = curve.amplitude[[0, -1]]
-    inside = ends < axes.get_xlim()[1] * (1 - _AT_THE_EDGE)
-    mark_orbits(axes, "end of a branch", ends, phase[[0, -1]].where(inside), colour)

@@ -1,15 +1,27 @@
 """Labelled datasets that draw themselves: results of public functions, and files of a run."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets import DRAWING
-from bouncing_ball.errors import ModelError, extra, one_of, shortened
+from bouncing_ball.datasets import CASE, DRAWING
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.datasets.labelled import Grid
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.errors import (
+    ModelError,
+    ParameterError,
+    extra,
+    one_of,
+    shortened,
+    suggesting,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,6 +52,21 @@ class Result(xr.Dataset):
     def of(cls, found: xr.Dataset, made_by: str) -> Self:
         """A dataset as the result of a command or a call, of which this is the name."""
         return cls(found.data_vars, found.coords, {**found.attrs, MADE_BY: made_by})
+
+    @classmethod
+    def on_grid(cls, grid: Grid, columns: Mapping[str, ArrayLike], made_by: str) -> Self:
+        """The result of a call for each place of a grid, with the axes of the grid.
+
+        ``columns`` has an entry for each place, one after another, or one entry for all.
+
+        Examples
+        --------
+        >>> found = Result.on_grid(Grid(n=[1, 2]), {"phase": [0.5, 1.0]}, "orbit")
+        >>> found.phase.sel(n=2).item()
+        1.0
+        """
+        rows = {name: (CASE, np.broadcast_to(x, grid.size)) for name, x in columns.items()}
+        return cls.of(grid.unfold(described(rows)), made_by)
 
     # The accessor of the same name of an xarray.Dataset is no method.
     def plot(  # type: ignore[override]
@@ -100,6 +127,23 @@ class Result(xr.Dataset):
         if "title" in self.attrs:
             raise ModelError(f"the dataset {self.attrs['title']!r} has no figure")
         raise ModelError("this dataset has lost the attributes of the result of a call")
+
+
+@suggesting
+def open(path: str | Path) -> Result:
+    """The dataset in a netCDF file, such as that of an artifact of the replication.
+
+    ``bouncing_ball.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure from it.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, or if it is damaged.
+    """
+    if not isinstance(path, str | Path):
+        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
+    data = read_dataset(path)
+    return Result(data.data_vars, data.coords, data.attrs)
 
 
 def _function(name: str) -> Callable[..., Any]:

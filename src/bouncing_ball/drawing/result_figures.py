@@ -246,13 +246,11 @@ def permanent_contact(data: xr.Dataset) -> Figure:
 def error_thresholds(data: xr.Dataset) -> Figure:
     """The ϖ from which on each error is tolerable; a ball that needs none has no mark."""
     figure, axes = canvas(WIDE, 2.8)
-    rows, names = in_a_row(data, "simple", "quantity")
+    rows, names = in_a_row(data, "quantity")
     place = np.arange(data.quantity.size)
     for (row, colour), name in zip(coloured(rows, CASE), names, strict=True):
-        for simple, marker in (("restitution", "o"), ("corrected", "D")):
-            values = row.error_threshold.sel(simple=simple)
-            label = ", ".join(x for x in (f"{simple} model", name) if x)
-            axes.semilogx(values, place, marker, color=colour, label=label, markersize=4)
+        label = ", ".join(x for x in ("restitution model", name) if x)
+        axes.semilogx(row.error_threshold, place, "o", color=colour, label=label, markersize=4)
     axes.set(yticks=place, yticklabels=[QUANTITIES[str(x)] for x in data.quantity.values])
     axes.set(xlabel=r"frequency ratio $\varpi$ of the contact", title=title(data))
     axes.invert_yaxis()

@@ -55,7 +55,6 @@ MARKS: dict[str, Look] = {
     "period doubling": {"marker": "s", **_HOLLOW},
     "grazing of a flight": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
     "grazing of a release": {"marker": "v", "markersize": 4.5, "linestyle": "none"},
-    "end of a branch": {"marker": ".", "markersize": 7, "linestyle": "none"},
     "period doubling, Eq. 8": {"marker": "x", "markersize": 4, "linestyle": "none"},
 }
 # The line of each model where several are compared; that of the contact is below the others.

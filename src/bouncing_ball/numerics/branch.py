@@ -1,5 +1,6 @@
 """A branch of solutions: its points, its ends with their reasons, and equal steps along it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple
@@ -108,8 +109,15 @@ def _between(
     return at, slope / np.linalg.norm(slope, axis=-1, keepdims=True)
 
 
-def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
+def resample(
+    problem: Problem,
+    branch: Branch,
+    count: int,
+    measured: Callable[[np.ndarray], np.ndarray] = np.asarray,
+) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
+
+    ``measured`` maps points to the coordinates in which the distances are equal, by default all.
 
     The cubic through the points of the branch with their tangents is the predictor, and Newton's
     method in the plane normal to it is the corrector; the first and last points are those of the
@@ -140,7 +148,7 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
                 f"resampling to {count} points failed with residual {residual:.1e}"
             )
         points = found.point
-        chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        chords = np.linalg.norm(np.diff(measured(points), axis=0), axis=1)
         if np.ptp(chords) <= NewtonSettings().tolerance * chords.mean():
             break
         passed = np.concatenate([[0.0], np.cumsum(chords)])

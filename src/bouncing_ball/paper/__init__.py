@@ -26,48 +26,44 @@ printed form:
 Eqs.    what                      where
 ======= ========================= ==================================================================
 1, 3, 4 flight                    ``models.flight.Flight``
-2       impact                    ``models.restitution.RestitutionDynamics.depart``
-5       from impact to impact     ``models.restitution.RestitutionDynamics``
-6       phase of the n-T orbit    ``periodic.one_impact.restitution_branch.phase``
-7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
-8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
+2       impact                    ``models.restitution.RestitutionModel.impact``
+5       from impact to impact     ``models.history.next_impact``
+6       phase of the n-T orbit    ``periodic.explicit.RestitutionBranch.orbit``
+7       its saddle-node           ``periodic.explicit.restitution_saddle_node``
+8       its period doubling       ``periodic.explicit.restitution_period_doubling``
 9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
-..      where a ball lifts off    ``models.sticking.lift_off_phase``
+..      where a ball lifts off    ``models.restitution.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
-12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``
-..      with its A and B          ``models.linear_contact.ClosedFormMotion``
-14, 15  flight after it           ``periodic.orbits.orbit.Orbit.flight_path``
+12, 13  motion in contact         ``models.spring_damper.flow``
+..      with its A and B          ``periodic.continuation.PaperEquations.point``
+14, 15  flight after it           ``periodic.orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
-17      apparent restitution      ``periodic.orbits.impacts.OrbitImpacts.apparent_restitution``
-18-20   period of the n-T orbit   ``periodic.orbits.impacts.OrbitImpacts.flight_time``
-21-26   the six, written out      ``periodic.one_impact.paper_unknowns.PaperUnknowns``
-..      start, Eqs. 21 and 22     ``models.contacts_and_flights.ContactsAndFlights.start``
-..      end of contact, Eq. 23    ``models.linear_contact.LinearContactDynamics.depart``
-..      return, Eqs. 24-26        ``periodic.orbits.problem.OrbitEquations.residual``
-..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
-..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``
-..      their period doubling     ``periodic.one_impact.spring_damper_bifurcations.period_doubling``
-27      bouncing-off velocity     ``periodic.orbits.impacts.OrbitImpacts.bounce_velocity``
+17      apparent restitution      ``periodic.orbit.Orbit.apparent_restitution``
+18-20   period of the n-T orbit   ``periodic.orbit.Orbit.flight_time``
+21-26   the six, written out      ``periodic.continuation.PaperEquations.residual``
+..      end of contact, Eq. 23    ``models.spring_damper.SpringDamper.impact``
+..      at a given duration       ``periodic.explicit.branch_point``
+..      their bifurcations        ``periodic.explicit.SpringDamperBranch.bifurcation``
+27      bouncing-off velocity     ``periodic.orbit.Orbit.bounce_velocity``
 28-31   only as printed           ``paper.claims.as_printed.steady_displacement``
 32, 33  permanent contact, Λ_SD   ``models.permanent_contact.permanent_contact_threshold``
 34, 35  the inverse of Λ_SD       ``models.permanent_contact.permanent_contact_frequency_ratios``
 36      the smallest Λ_SD         ``models.permanent_contact.permanent_contact_minimum``
 37, 38  errors                    ``accuracy.errors.relative_errors``
-..      of the greatest height    ``periodic.orbits.orbit.Orbit.max_height``
-..      thresholds ϖ_h, ϖ_PC      ``accuracy.simple_models.search``
+..      of the greatest height    ``periodic.orbit.Orbit.max_height``
+..      thresholds ϖ_h, ϖ_PC      ``accuracy.thresholds.search``
 ======= ========================= ==================================================================
 
 The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only
 the threshold that follows from them (Eqs. 32 and 33). The row of these equations leads to the
 printed form of the last one. Eqs. 18 and 20 are conditions, which n-T orbits meet because they have
 one impact in n periods; the function is that of Eq. 19. Eq. 8 is the period doubling of Holmes'
-map: its function gives it for that map, and by default that of the exact return map. The release
-(Eq. 23) is searched on the motion of Eq. 12 with its A and B.
+map: its function gives it for that map, and by default that of the exact return map.
 
-Eqs. 1-3 and 10 are in metres and seconds, all others dimensionless. The six equations of an orbit,
-Eqs. 21-26, are written out where they are in the unknowns of the paper. The paper solves them by
-continuation; at a given duration of the contact they are linear, so that the library also has
-their solutions in closed form. The force release, at which the contact force vanishes, is a variant
-of the paper's release (Eq. 23) and costs one symbol, κ.
+Eqs. 1-3 and 10 are in metres and seconds, all others dimensionless. The paper solves the six
+equations of an orbit, Eqs. 21-26, by continuation, as the library does; at a given duration of the
+contact they are linear, so that the library also has their solutions in closed form. The force
+release, at which the contact force vanishes, is a variant of the paper's release (Eq. 23) and costs
+one symbol, κ.
 """

@@ -4,25 +4,29 @@ from functools import partial
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbit
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from scipy.optimize import brentq
 
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
     altered_ends,
+    altered_monodromy,
     forensics,
-    monodromy,
     weightless_orbits,
 )
 from bouncing_ball.paper.claims.tables import forensics as rows
+from bouncing_ball.periodic import explicit
+from bouncing_ball.periodic.explicit import ImpactMap, branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, monodromy
 
 ZETA = float(damping_ratio(0.85))
+
+
+def orbits_on_branch(*given):
+    return branch_point(*given).orbit
+
+
 WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"
 
 
@@ -33,8 +37,8 @@ def study(described):
 
 def cycle(phase, u, orbit, reference, *, weight, rise):
     """One altered cycle, with its events located by Brent's method."""
-    omega = float(orbit.law.frequency_ratio)
-    zeta = float(orbit.law.damping_ratio)
+    omega = float(orbit.model.frequency_ratio)
+    zeta = float(orbit.model.damping_ratio)
     lam = float(orbit.amplitude)
     duration = float(orbit.contact_duration)
     flight = float(orbit.flight_time)
@@ -64,10 +68,10 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
 @pytest.mark.parametrize(
     ("orbit_at", "linearised", "weight", "rise"),
     [
-        (weightless_orbits, partial(monodromy, weight=0.0), 0, True),
-        (orbits_on_branch, partial(monodromy, high_bounce=True), 1, False),
+        (weightless_orbits, partial(altered_monodromy, weight=0.0), 0, True),
+        (orbits_on_branch, partial(altered_monodromy, high_bounce=True), 1, False),
+        (orbits_on_branch, altered_monodromy, 1, True),
         (orbits_on_branch, monodromy, 1, True),
-        (orbits_on_branch, Orbit.monodromy, 1, True),
     ],
 )
 def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
@@ -89,11 +93,9 @@ def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
 def test_the_ends_of_an_unaltered_branch_are_those_of_the_model():
     contact = SpringDamper(np.array([2.0, 10.0, 1e4]), ZETA)
     n = np.full(3, 2)
-    model = ContactModel(contact)
-    found = altered_ends(contact, n, orbits_on_branch, Orbit.monodromy)
-    expected = np.stack(
-        [n_t.saddle_node(model, n).amplitude, n_t.period_doubling(model, n).amplitude], -1
-    )
+    branch = explicit_branch(contact)
+    found = altered_ends(contact, n, orbits_on_branch, monodromy)
+    expected = np.stack([branch.bifurcation(kind, n).amplitude for kind in Bifurcation], -1)
     # At a fold Λ is known to rounding; at the other end ε has the digits of D.
     assert found == pytest.approx(expected, abs=1e-10)
 
@@ -101,13 +103,15 @@ def test_the_ends_of_an_unaltered_branch_are_those_of_the_model():
 def test_the_stiff_limits_are_holmes_map_and_the_restitution_model(study):
     stiff = study.computed.sel(frequency_ratio=1e4)
     n = study.n.values
-    maps = restitution_orbit.ImpactMap
-    for reading, impact_map in ((HIGH_BOUNCE, maps.HOLMES), (WEIGHTLESS, maps.EXACT)):
-        doubling = restitution_orbit.period_doubling(n, 0.85, impact_map)
+    for reading, impact_map in (
+        (HIGH_BOUNCE, ImpactMap.HOLMES),
+        (WEIGHTLESS, ImpactMap.EXACT),
+    ):
+        doubling = explicit.restitution_period_doubling(n, 0.85, impact_map)
         found = stiff.sel(reading=reading, bound="period doubling").values
         assert found == pytest.approx(doubling, abs=1e-4)  # of the order 1/ϖ
         nodes = stiff.sel(reading=reading, bound="saddle-node").values
-        assert nodes == pytest.approx(restitution_orbit.saddle_node(n, 0.85), abs=1e-4)
+        assert nodes == pytest.approx(explicit.restitution_saddle_node(n, 0.85), abs=1e-4)
 
 
 def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):
@@ -116,9 +120,10 @@ def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):
         ("damping to first order", -np.log(0.85) / np.pi),
         ("equations as they stand", ZETA),
     ):
-        node = n_t.saddle_node(ContactModel(SpringDamper(10.0, zeta)), 3).amplitude
+        branch = explicit_branch(SpringDamper(10.0, zeta))
+        node = branch.bifurcation(Bifurcation.SADDLE_NODE, 3).amplitude
         found = study.computed.sel(reading=reading, frequency_ratio=10, n=3, bound="saddle-node")
-        assert float(found) == float(node)
+        assert float(found) == pytest.approx(float(node), rel=1e-14)
 
 
 def test_distances_are_those_of_the_differences(study):

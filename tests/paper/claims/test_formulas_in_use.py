@@ -53,105 +53,83 @@ class Edit(NamedTuple):
     row: str
 
 
-RIGID = "periodic/one_impact/restitution_branch.py"
-BRANCH = "periodic/one_impact/spring_damper_branch.py"
-ENDS = "periodic/one_impact/spring_damper_bifurcations.py"
-LINEAR = "models/linear_contact.py"
+FLIGHT = "models/flight.py"
+RIGID = "models/restitution.py"
+CONTACT = "models/spring_damper.py"
 PERMANENT = "models/permanent_contact.py"
-ORBIT = "periodic/orbits/orbit.py"
-IMPACTS = "periodic/orbits/impacts.py"
+ORBIT = "periodic/orbit.py"
+BRANCH = "periodic/explicit.py"
+CONTINUED = "periodic/continuation.py"
 EDITS = [
-    Edit("models/flight.py", "(self.velocity - _HALF * time)", "(self.velocity - time)", "Eq. 4"),
-    Edit("models/flight.py", "slowing = y * sine + x * versine", "slowing = y * sine", "Eq. 5"),
+    Edit(FLIGHT, "* (self.velocity - time / 2)", "* (self.velocity - time)", "Eq. 4"),
     Edit(
-        "models/restitution.py",
-        "velocity = -r * impact.velocity\n        level",
-        "velocity = -0.9 * r * impact.velocity\n        level",
-        "Eq. 2",
+        FLIGHT,
+        "slowing = self.y * sine + self.x * versine",
+        "slowing = self.y * sine",
+        "Eq. 5",
     ),
-    Edit(RIGID, "np.sqrt((lam - fold) * (lam + fold))", "np.sqrt(lam * lam + fold)", "Eq. 6"),
-    Edit(RIGID, "* np.pi * (1 - r) / (1 + r)\n", "* np.pi * (1 - r) / (1 + 0.9 * r)\n", "Eq. 7"),
-    Edit(RIGID, "return np.ones_like(r)", "return 2 * np.ones_like(r)", "Eq. 8, Holmes' map"),
-    Edit(RIGID, "2 * (1 + r * r) / (1 + r) ** 2", "(1 + r * r) / (1 + r)", "Eq. 8, corrected"),
-    Edit("models/sticking.py", "arctangent(1.0, lift", "arctangent(0.9, lift", "Eq. 9"),
+    Edit(RIGID, "rebound = -self.restitution * velocity\n", "rebound = -0.9 * velocity\n", "Eq. 2"),
+    Edit(
+        BRANCH,
+        "sign * np.sqrt((lam - level) * (lam + level))",
+        "sign * np.sqrt(lam * lam + level)",
+        "Eq. 6",
+    ),
+    Edit(BRANCH, "* np.pi * (1 - r) / (1 + r)\n", "* np.pi * (1 - r) / (1 + 0.9 * r)\n", "Eq. 7"),
+    Edit(BRANCH, "return np.ones_like(r)", "return 2 * np.ones_like(r)", "Eq. 8, Holmes' map"),
+    Edit(BRANCH, "2 * (1 + r * r) / (1 + r) ** 2", "(1 + r * r) / (1 + r)", "Eq. 8, corrected"),
+    Edit(RIGID, "arctangent(1.0, np.sqrt(", "arctangent(0.9, np.sqrt(", "Eq. 9"),
     Edit(PERMANENT, "RESTITUTION_THRESHOLD = 1.0", "RESTITUTION_THRESHOLD = 1.1", "Eq. 9"),
     Edit(
-        "models/spring_damper.py",
-        "omega * penetration + 2 * self.damping_ratio * rate",
-        "omega * penetration + self.damping_ratio * rate",
+        CONTACT,
+        "+ 2 * self.damping_ratio * np.asarray(rate)",
+        "+ self.damping_ratio * np.asarray(rate)",
         "ϖ = Ω/ω, Ω of the contact",
     ),
+    Edit(CONTACT, "+ y * in_phase - gravity", "+ y * in_phase + gravity", "Eqs. 12-13"),
+    Edit(ORBIT, "+ velocity) / 2 * since", "+ velocity) * since", "Eqs. 14-15"),
+    Edit("models/damping.py", "/ np.hypot(np.pi, decrement)", "/ np.pi", "Eq. 16"),
     Edit(
-        "models/linear_flow.py",
-        "+ v0 * g.value - G",
-        "+ v0 * g.value + G",
-        "Eqs. 12-13",
-    ),
-    Edit(ORBIT, "+ (bounce + velocity) / 2 * s", "+ bounce * s", "Eqs. 14-15"),
-    Edit(
-        "models/damping.py",
-        "np.pi * np.pi + decrement * decrement",
-        "np.pi * np.pi + 0.9 * decrement * decrement",
-        "Eq. 16",
+        "models/damping.py", "np.exp(-rule.free_angle(", "np.exp(-0.9 * rule.free_angle(", "Eq. 16"
     ),
     Edit(
-        "models/damping.py",
-        "exponential(-angle * under",
-        "exponential(-0.9 * angle * under",
-        "Eq. 16",
-    ),
-    Edit(
-        IMPACTS,
-        "self._shaped(-self._leaving / closing)",
-        "self._shaped(self._bounces / closing)",
+        ORBIT,
+        "return -self.relative_bounce_velocity /",
+        "return -self.bounce_velocity /",
         "Eq. 17",
     ),
     Edit(
-        IMPACTS,
-        "return self._shaped(self._flights)",
-        "return self._shaped(self._intervals)",
+        ORBIT,
+        "return 2 * np.pi * self.n - self.contact_duration",
+        "return 2 * np.pi * self.n",
         "Eqs. 18-20",
     ),
-    Edit(LINEAR, "self.a = self.start + (_ONE /", "self.a = self.start - (_ONE /", "Eqs. 21-26"),
-    Edit(BRANCH, "right=end.g + flight,", "right=end.g + 0.9 * flight,", "Eqs. 21-26"),
-    # No contact of the sample has a saddle-node then.
-    Edit(BRANCH, "(x * d_x + y * d_y) / (u", "(x * d_x - y * d_y) / (u", "Eqs. 21-26"),
-    Edit(ENDS, "return point.saddle_node", "return point.saddle_node - 0.01", "Eqs. 21-26"),
+    Edit(BRANCH, "g + flight],", "g + 0.9 * flight],", "Eqs. 21-26"),
     Edit(
-        ENDS,
-        "return Bifurcation.PERIOD_DOUBLING.test(point.trace,",
-        "return Bifurcation.PERIOD_DOUBLING.test(0.9 * point.trace,",
+        BRANCH,
+        "return point.test(Bifurcation.SADDLE_NODE)",
+        "return point.test(Bifurcation.SADDLE_NODE) - 0.01",
         "Eqs. 21-26",
     ),
     Edit(
-        "periodic/orbits/problem.py",
-        "landing.velocity.reshape(shape) - ",
-        "0.9 * landing.velocity.reshape(shape) - ",
+        BRANCH,
+        "return point.test(Bifurcation.PERIOD_DOUBLING)",
+        "return point.test(Bifurcation.PERIOD_DOUBLING) - 0.01",
         "Eqs. 21-26",
     ),
+    Edit(CONTINUED, "gap + omega * lag * leaving,", "gap + leaving,", "Eqs. 21-26"),
     Edit(
-        "periodic/one_impact/paper_unknowns.py",
-        "inner[..., 1] -= lam",
-        "inner[..., 1] += lam",
-        "Eqs. 21-26",
-    ),
-    Edit(
-        IMPACTS,
-        "return np.roll(self.velocities, -1, axis=-1) + self._flights",
-        "return np.roll(self.velocities, -1, axis=-1) + self._intervals",
+        ORBIT,
+        "return self.impact_velocity + self.flight_time",
+        "return self.impact_velocity",
         "Eq. 27",
     ),
-    Edit(PERMANENT, "loss = 2 * zeta / omega", "loss = zeta / omega", "Eq. 33"),
+    Edit(PERMANENT, "hypot(detuning, 2 * zeta", "hypot(detuning, zeta", "Eq. 33"),
     Edit(PERMANENT, "(centre + root) / divisor", "(centre + 0.9 * root) / divisor", "Eq. 34"),
     Edit(PERMANENT, "1 / (centre + root)", "1 / (centre - root)", "Eq. 35"),
     Edit(PERMANENT, "omega = 1 / np.sqrt(x)", "omega = 1.1 / np.sqrt(x)", "Eq. 36"),
     Edit(ORBIT, "rising * rising / 2", "rising * rising / 4", "Eqs. 37-38"),
-    Edit(
-        "accuracy/errors.py",
-        "dtype=float) - base) / base",
-        "dtype=float) - base) / value",
-        "Eqs. 37-38",
-    ),
+    Edit("accuracy/errors.py", "quantities) - base) / base", "quantities) - base)", "Eqs. 37-38"),
     Edit(
         "accuracy/thresholds.py",
         "np.exp(np.where(root.success, root.x, end))",
@@ -218,10 +196,10 @@ def test_a_wrong_edit_shows_in_the_row_of_its_formula(edit, copy, disagreeing, w
 def test_the_index_of_equations_names_the_functions_that_are_compared():
     index = {name for name in re.findall(r"``([\w.]+)``", paper.__doc__) if "." in name}
     used = {name for text in typed(formulas)(PARAMETERS).used.values for name in text.split(", ")}
-    # The first is a printed form itself; `LinearContactDynamics.depart` computes with the second.
+    # The first is a printed form itself; the residual of the six equations uses the second.
     apart = {
         "paper.claims.as_printed.steady_displacement",
-        "models.linear_contact.ClosedFormMotion",
+        "periodic.continuation.PaperEquations.point",
     }
     assert index - apart == used - {""}
 

@@ -5,10 +5,9 @@ from functools import partial
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from declared_artifacts import ARTIFACTS
 
+from bouncing_ball.models.history import next_impact
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import witness as witnesses
 from bouncing_ball.paper.claims.tables import witness as rows
@@ -20,6 +19,8 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.orbit import monodromy
 
 
 @pytest.fixture(scope="module")
@@ -55,16 +56,16 @@ def test_the_multipliers_are_those_of_the_simulated_map(recorded, name, k):
     orbit = found[k].orbit[found[k].admissible.astype(bool)]
     phase = orbit.phase
     speed = orbit.relative_impact_velocity
-    cycle = partial(orbit.model.cycle, orbit.amplitude)
+    cycle = partial(next_impact, orbit.model, amplitude=orbit.amplitude)
     step = 1e-6 * np.abs(speed)
-    matrix = orbit.monodromy()
+    matrix = monodromy(orbit)
     # Central differences: the rounding of a cycle's time over the step, which is small near
     # permanent contact, is above the truncation, 1e-12 times a third derivative.
     rounding = 100 * np.finfo(float).eps * 2 * np.pi * orbit.n / step
     for k, (later, faster) in enumerate([(step, 0.0), (0.0, step)]):
         ahead, behind = (cycle(phase + x * later, speed + x * faster) for x in (1, -1))
         turned = reduce_angle(ahead.phase - behind.phase)
-        column = np.array([turned, ahead.relative_velocity - behind.relative_velocity])
+        column = np.array([turned, ahead.velocity - behind.velocity])
         off = np.abs(column / (2 * step) - matrix[..., k].T)
         assert orbit.size and np.all(off <= rounding * np.abs(matrix).max((-2, -1)))
 
@@ -106,7 +107,7 @@ def test_one_orbit_that_is_not_a_number_is_seen(recorded):
     ("where", "blind", "replacement"),
     [
         (witnesses, "nearest", lambda orbit: orbit),
-        (PaperUnknowns, "residual", lambda self, y: 0 * y[..., 1:]),
+        (PaperEquations, "residual", lambda self, y: 0 * y[..., 1:]),
     ],
 )
 def test_formula_and_equations_each_see_what_is_off(
@@ -123,26 +124,24 @@ def test_the_phase_of_a_bifurcation_is_compared_itself(recorded, monkeypatch):
     first = next(all_orbits("table1", recorded["table1"]))
     near = witnesses.nearest(first.orbit)
     monkeypatch.setattr(witnesses, "nearest", lambda orbit: near)
-    moved = replace(first.orbit, phases=first.orbit.phases + 1e-9)
+    moved = replace(first.orbit, phase=first.orbit.phase + 1e-9)
     found = formula_and_equations(first._replace(orbit=moved))
     assert found == pytest.approx(np.full(moved.size, 1e-9), rel=0.01)
 
 
 def test_where_the_equations_have_no_derivatives_no_orbit_is_found(recorded, monkeypatch):
-    original = PaperUnknowns.jacobian
-    monkeypatch.setattr(PaperUnknowns, "jacobian", lambda self, y: np.nan * original(self, y))
+    original = PaperEquations.jacobian
+    monkeypatch.setattr(PaperEquations, "jacobian", lambda self, y: np.nan * original(self, y))
     found = witness({"fig05": recorded["fig05"]})
     assert np.isposinf(found.disagreement.sel(comparison=FORMULA)).all()
 
 
 def test_the_comparison_with_the_simulation_can_fail(recorded, monkeypatch):
-    original = ContactModel.cycle
-
-    def late(self, *start):
-        cycle = original(self, *start)
+    def late(*start):
+        cycle = next_impact(*start)
         return cycle._replace(time=cycle.time + 1e-7)
 
-    monkeypatch.setattr(ContactModel, "cycle", late)
+    monkeypatch.setattr(witnesses, "next_impact", late)
     assert off("fig08", recorded["fig08"]) == {CLOSES}
 
 

@@ -4,10 +4,10 @@ import itertools
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.damping import damping_ratio
 
 from bouncing_ball.datasets.parameters import Span
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.paper.exhibits import apparent_restitution_figures as figures
 from bouncing_ball.paper.exhibits.apparent_restitution import (
     Case,

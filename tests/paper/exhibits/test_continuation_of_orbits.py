@@ -2,28 +2,20 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
-from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.branches.following import orbits_along
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import (
-    period_doubling,
-    saddle_node,
-)
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point, excess_angle
-from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     both_domains,
-    first_limits,
     orbit_branches,
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
+from bouncing_ball.periodic.explicit import branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, monodromy
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.
@@ -36,58 +28,8 @@ FIGURE_8 = WINDOW | {"n": 1, "points": 61}
 
 
 def bifurcations(n, r, omega, release="displacement"):
-    contact = SpringDamper(omega, float(damping_ratio(r)), Release(release))
-    return [
-        float(branch_point(find(contact, n), contact, n).amplitude)
-        for find in (saddle_node, period_doubling)
-    ]
-
-
-def test_figure_8_has_the_long_contacts_that_begin_where_permanent_contact_ends(
-    continuation_settings,
-):
-    """Against the explicit curve; at ϖ = 2 they are on the branch that is there already."""
-    found = orbit_branches(FIGURE_8, "displacement", continuation_settings)
-    compliant = found.sel(frequency_ratio=2.0)
-    held = permanent_contact_threshold(np.array([10.0, 2.0]), damping_ratio(0.85))
-    assert compliant.long_amplitude.isnull().all()
-    assert float(compliant.amplitude[0]) == pytest.approx(held[1], rel=1e-3)
-    one = found.sel(frequency_ratio=10.0)
-    lam = one.long_amplitude.values
-    assert lam[0] == pytest.approx(held[0], rel=1e-3) and lam.max() < 1.5
-    contact = SpringDamper(10.0, float(damping_ratio(0.85)))
-    point = branch_point(excess_angle(contact, one.long_contact_duration.values), contact, 1)
-    np.testing.assert_allclose(lam, point.amplitude, rtol=1e-9)
-    # They are stable and followed by balls up to where the contact opens.
-    opens = one.long_special_amplitude.values[one.long_special_kind == "grazing of a release"]
-    assert one.long_stable.all() and opens.size == 1
-    np.testing.assert_array_equal(one.long_admissible, lam < opens[0])
-
-
-def test_figure_8_is_drawn_under_the_other_release_too(continuation_settings):
-    """Long contacts open and are lost a little elsewhere than under the displacement release."""
-    found, other = (
-        orbit_branches(FIGURE_8, release, continuation_settings)
-        for release in ("force", "displacement")
-    )
-    np.testing.assert_array_equal(found.long_special_kind, other.long_special_kind)
-    opens = [one.long_special_amplitude.values[0] for one in (found, other)]
-    np.testing.assert_allclose(opens[0], opens[1], rtol=1e-3)
-    assert not np.array_equal(opens[0], opens[1], equal_nan=True)
-    data = found.assign_attrs(n=1, restitution=0.85, amplitude_max=1.5)
-    drawn = np.concatenate([line.get_xdata() for line in domains(data).axes[0].lines])
-    assert np.isin(data.amplitude.values, drawn).all()
-
-
-@pytest.fixture
-def follow(continuation_settings):
-    """The equations and the branch of n-T orbits up to ``top``."""
-
-    def along(n, r, omega, top):
-        model = ContactModel(SpringDamper.from_restitution(r, omega))
-        return whole_branch(model, n, top, continuation_settings.largest_step)
-
-    return along
+    branch = explicit_branch(SpringDamper(omega, damping_ratio(r), Release(release)))
+    return [float(branch.bifurcation(kind, n).amplitude) for kind in Bifurcation]
 
 
 @pytest.fixture(scope="module")
@@ -100,8 +42,8 @@ def test_points_are_orbits(figure_8):
     assert float(figure_8.residual.max()) < 1e-12
     for omega in FIGURE_8["frequency_ratio"]:
         row = figure_8.sel(frequency_ratio=omega)
-        orbit = Orbit.of(
-            ContactModel(SpringDamper(omega, zeta)),
+        orbit = Orbit(
+            SpringDamper(omega, zeta),
             1,
             row.amplitude.values,
             row.phase.values,
@@ -111,7 +53,7 @@ def test_points_are_orbits(figure_8):
         # The explicit formula at the same contact duration: ε carries the
         # rounding of ϖD, and Λ changes by ϖ² over ε.
         excess = row.contact_duration.values * omega * np.sqrt(1 - zeta**2) - np.pi
-        point = branch_point(excess, SpringDamper(omega, zeta), 1)
+        point = branch_point(excess, SpringDamper(omega, zeta), 1).orbit
         assert point.amplitude == pytest.approx(row.amplitude.values, abs=1e-12 * (1 + omega**2))
         turn = np.angle(np.exp(1j * (point.phase - row.phase.values)))
         # Next to permanent contact the equations are nearly singular: 1e-9.
@@ -127,7 +69,7 @@ def test_points_are_orbits(figure_8):
         # Multipliers and stability from the matrix itself. At the end of the
         # soft branch the impact velocity vanishes, and the map is singular.
         inner = np.abs(orbit.relative_impact_velocity) > 1e-3
-        eigenvalues = np.linalg.eigvals(orbit.monodromy())
+        eigenvalues = np.linalg.eigvals(monodromy(orbit))
         largest = np.abs(eigenvalues).max(axis=-1)
         far = inner & (np.abs(largest - 1) > 1e-6)
         assert far.sum() > 50
@@ -232,20 +174,36 @@ def test_fig_15_has_the_branches_of_both_models(continuation_settings, described
     )
 
 
-def test_a_very_stiff_contact_is_stable_between_its_bifurcations(follow):
-    branch = follow(1, 0.85, 1e5, 1.2).branch
-    assert first_limits(branch)[:, -1] == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
+def test_a_very_stiff_contact_is_stable_between_its_bifurcations(continuation_settings):
+    parameters = WINDOW | {"n": [1], "frequency_ratio": [1e5], "amplitude_max": 1.2}
+    data = stability_ranges(parameters, "displacement", continuation_settings)
+    assert data.computed.values.ravel() == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
 
 
-def test_a_branch_between_permanent_contact_and_the_grazing_of_an_impact(follow):
-    # ϖ = 0.6, n = 2: the branch ends on both sides before Λ = 10.
-    branch = follow(2, 0.3, 0.6, 10.0)
-    merged = branch.branch.start
-    grazes = branch.branch.end
-    assert str(merged) == "the flight vanishes: the orbit merges with permanent contact"
-    assert str(grazes).startswith("grazing of an impact: ")
-    flight = orbits_along(branch.problem, branch.branch.points[[0, -1]]).flight_time
-    assert flight[0] < 1e-3 and flight[1] > 5.0
+def test_figure_8_has_the_branches_of_the_paper_and_names_what_it_marks(figure_8):
+    data = figure_8.assign_attrs(n=1, restitution=0.85, amplitude_max=1.5)
+    figure = domains(data)
+    (legend,) = figure.legends
+    names = {text.get_text() for text in legend.get_texts()}
+    assert names - {"", r"$\varpi=10$", r"$\varpi=2$"} == {
+        "stable",
+        "unstable",
+        SADDLE_NODE,
+        PERIOD_DOUBLING,
+    }
+    drawn = np.concatenate([line.get_xdata() for line in figure.axes[0].lines])
+    assert np.isin(data.amplitude.values, drawn).all()
+    assert [len(axes.child_axes) for axes in figure.axes] == [0, 0]
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_branches_under_each_release_are_those_of_the_closed_form(continuation_settings, release):
+    parameters = FIGURE_8 | {"frequency_ratio": [10.0], "points": 21}
+    data = orbit_branches(parameters, release, continuation_settings).squeeze()
+    contact = SpringDamper(10.0, damping_ratio(0.85), Release(release))
+    excess = data.contact_duration.values * contact.damped_frequency - contact.free_angle
+    found = branch_point(excess, contact, 1).orbit
+    assert found.amplitude == pytest.approx(data.amplitude.values, abs=1e-10)
 
 
 def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_settings):
@@ -273,15 +231,6 @@ def test_the_figure_has_the_reason_for_a_branch_that_is_missing(continuation_set
     assert title.count("no 1-T orbit up to Λ = 1.5 for ϖ = 0.6") == 1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
-def test_the_branch_of_a_contact_slower_than_the_table_is_followed(follow, n, r, top):
-    found = follow(n, r, 0.6, top)
-    branch = found.branch
-    assert np.max(np.abs(found.problem.residual(branch.points))) < 1e-10
-    assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
-
-
 def test_a_window_without_a_period_doubling_has_no_range_and_says_why(continuation_settings):
     parameters = WINDOW | {"n": [1], "frequency_ratio": [10.0], "amplitude_max": 0.9}
     data = stability_ranges(parameters, "displacement", continuation_settings)
@@ -290,7 +239,7 @@ def test_a_window_without_a_period_doubling_has_no_range_and_says_why(continuati
     assert "no period doubling" in why and "amplitude = 0.9 is reached" in why
 
 
-def test_a_branch_without_a_saddle_node_is_refused(follow, refusal):
-    branch = follow(1, 0.85, 1.0, 1.5).branch
-    with refusal(NoOrbitError, "no saddle-node"):
-        first_limits(branch)
+def test_a_branch_without_a_saddle_node_has_no_range_and_says_why(continuation_settings):
+    parameters = WINDOW | {"n": [1], "frequency_ratio": [1.0]}
+    data = stability_ranges(parameters, "displacement", continuation_settings)
+    assert np.isnan(data.computed).all() and "no saddle-node" in str(data.absence[0, 0].item())

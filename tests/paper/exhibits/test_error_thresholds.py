@@ -2,18 +2,17 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.accuracy.errors import Quantity, modulus, relative_errors
-from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 
+from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {
@@ -65,9 +64,8 @@ def test_beyond_its_threshold_each_error_is_within_the_tolerance(described):
     assert data["quantity"].values.tolist() == PARAMETERS["quantities"]
     # With the r and the ζ of Eq. 16, exact over restitution model.
     contact = SpringDamper(data.frequency_ratio.values, float(damping_ratio(0.65)))
-    exact = ContactModel(contact)
     simple = RestitutionModel(0.65)
-    expected = modulus(relative_errors(exact, [simple], 1, 1.0, tuple(Quantity))[0])
+    expected = modulus(relative_errors(contact, simple, 1, 1.0, tuple(Quantity)))
     np.testing.assert_allclose(data.relative_error, expected, rtol=1e-9)
     for k, tolerance in enumerate(PARAMETERS["tolerances"]):
         one = data.isel(tolerance=k)
@@ -84,7 +82,7 @@ def test_under_the_force_release_the_restitution_never_comes_within_one_percent(
     assert str(dry.threshold_status.sel(at)[1].values) == ThresholdStatus.NEVER_WITHIN
     assert str(paper.threshold_status.sel(at)[1].values) == ThresholdStatus.FOUND
     contact = SpringDamper(1e4, float(damping_ratio(0.65)), Release.FORCE)
-    expected = float(orbit_at(contact, 1, 1.0).apparent_restitution) / 0.65 - 1
+    expected = float(explicit_branch(contact).orbit(1, 1.0).apparent_restitution) / 0.65 - 1
     assert float(dry.relative_error.sel(at)[-1]) == pytest.approx(expected, rel=1e-9)
 
 
@@ -97,8 +95,8 @@ def test_a_threshold_at_the_end_of_the_bifurcation():
     assert data.threshold_status.item() == ThresholdStatus.FOUND
     fine = np.geomspace(1.0, 10.0, 20001)
     threshold = data.error_threshold.item()
-    exact = ContactModel(SpringDamper.from_restitution(0.0893, fine))
-    there = np.isfinite(n_t.saddle_node(exact, 1).amplitude)
+    branch = explicit_branch(SpringDamper.from_restitution(0.0893, fine))
+    there = branch.bifurcation(Bifurcation.SADDLE_NODE, 1).exists
     first = int(np.argmax(there))
     assert np.all(there[first:]) and fine[first - 1] <= threshold <= fine[first]
     assert np.array_equal(np.isinf(data.relative_error[0]), data.frequency_ratio < threshold)

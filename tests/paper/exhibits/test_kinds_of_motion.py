@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.periodic.one_impact import n_t
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.exhibits.kinds_of_motion import kinds_of_motion
+from bouncing_ball.models.history import impacts_of, next_impact
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.exhibits.kinds_of_motion import growth, kinds_of_motion
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {
@@ -32,8 +34,24 @@ def test_the_three_balls_are_periodic_subharmonic_and_chaotic(balls, described):
 
 
 def test_the_periodic_ball_ends_on_the_orbit_of_the_restitution_model():
-    path = RestitutionModel(0.5).simulate(1.2, 1.0, 1.2 * np.cos(1.0) - 5.0, 257)
-    assert path.phase[-1] == pytest.approx(float(n_t.orbit(RestitutionModel(0.5), 1, 1.2).phase))
+    ball = RestitutionModel(0.5)
+    path = impacts_of(ball, 1.2, 1.0, 1.2 * np.cos(1.0) - 5.0, 257)
+    assert path.phase[-1, 0] == pytest.approx(float(explicit_branch(ball).orbit(1, 1.2).phase))
+
+
+def test_a_small_deviation_of_the_simulated_ball_grows_as_the_map_says():
+    ball = RestitutionModel(0.5)
+    path = impacts_of(ball, 1.75, 1.0, 1.75 * np.cos(1.0) - 5.0, 6)
+    start = path.phase[0, 0], path.relative_velocity[0, 0]
+    moved = np.array([start[0] + 1e-7, start[1]])
+    for k in range(5):
+        leg = next_impact(ball, *moved, 1.75)
+        moved = np.array([leg.phase, leg.velocity])
+        there = np.array([path.phase[k + 1, 0], path.relative_velocity[k + 1, 0]])
+        apart = np.array([reduce_angle(moved[0] - there[0]), moved[1] - there[1]])
+        # A deviation of 1e-7 has a second order of 1e-7 of it, times that of the map.
+        grown = np.log(np.linalg.norm(apart) / 1e-7)
+        assert grown == pytest.approx(growth(path, 0)[: k + 1].sum(), abs=1e-4)
 
 
 def test_the_exponent_of_chaos_does_not_depend_on_the_start(balls):

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.time_histories import both_histories, contact_history
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import path
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.
@@ -88,15 +88,15 @@ def test_the_histories_of_fig_12_are_those_of_the_orbits_of_both_models(describe
     for ratio in BOTH["frequency_ratio"]:
         row = data.sel(frequency_ratio=ratio)
         # One cycle of the orbit, as in Fig. 7, from the start of its contact.
-        model = ContactModel(SpringDamper.from_restitution(parameters["restitution"], ratio))
-        orbit = n_t.orbit(model, n, lam)
+        model = SpringDamper.from_restitution(parameters["restitution"], ratio)
+        orbit = explicit_branch(model).orbit(n, lam)
         touching = row.contact.values
         ends = np.mod([orbit.phase, orbit.phase + orbit.contact_duration], turns)
         assert set(ends) <= set(phase[touching])
         gap = row.ball.values - lam * np.sin(phase)
         assert np.all(gap[touching] <= 1e-13) and np.all(gap[~touching] > 0)
         single = contact_history(parameters | {"frequency_ratio": ratio}, "displacement")
-        height, _ = orbit.path(single.time.values)
+        height, _ = path(orbit, single.time.values)
         assert single.ball.values == pytest.approx(height, abs=1e-13)
         # A plot of all curves over their coordinate is right: the ball flies freely.
         s = np.mod(phase - ends[1], turns)[~touching]

@@ -11,11 +11,11 @@ Next to the saddle-node the error changes with √p, so that the positions, p = 
 angles, are dense there, and at the period doubling as well.
 
 The orbits are points of the explicit branch
-(:mod:`bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`), whose parameter is the excess
-angle of the contact. From the free contact, whose excess angle is 0, a few steps of Newton's method lead
-to the Λ of the node: along the branch (X, Y) = Λ (cos φ, sin φ) is almost a straight line, on which
-the change of the angle to a given Λ solves a quadratic equation; the smaller solution belongs to
-the stable side of the saddle-node.
+(:mod:`bouncing_ball_beyond.periodic.one_impact.spring_damper_branch`), whose parameter is the
+excess angle of the contact. From the free contact, whose excess angle is 0, a few steps of Newton's
+method lead to the Λ of the node: along the branch (X, Y) = Λ (cos φ, sin φ) is almost a straight
+line, on which the change of the angle to a given Λ solves a quadratic equation; the smaller
+solution belongs to the stable side of the saddle-node.
 """
 
 from typing import Annotated, NamedTuple

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball_beyond.accuracy.simple_models import (
     SIMPLE,

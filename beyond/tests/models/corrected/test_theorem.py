@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import damping_ratio
@@ -11,8 +13,6 @@ from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-
-from bouncing_ball.numerics.elementary import reduce_angle
 
 R, LAM = 0.7, 1.3
 NAMES = ("displacement", "force", "hunt-crossley", "tsuji", "kuwabara-kono")

@@ -4,6 +4,10 @@ laws.
 
 import numpy as np
 import pytest
+from loaded_laws import Sharing
+from scipy.special import beta
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.laws.collocation import contacts, path
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
@@ -18,10 +22,6 @@ from bouncing_ball_beyond.models.laws.march import march
 from bouncing_ball_beyond.models.laws.panel import BallsInContact, Start
 from bouncing_ball_beyond.models.laws.sweeps import Sweeps
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from loaded_laws import Sharing
-from scipy.special import beta
-
-from bouncing_ball.errors import ModelError
 
 
 @pytest.mark.parametrize("law", [HuntCrossley(50.0, 0.0), Tsuji(50.0, 0.0), KuwabaraKono(50.0, 0)])

@@ -4,6 +4,7 @@ import runpy
 from pathlib import Path
 
 import numpy as np
+
 from bouncing_ball_beyond.models.laws.collocation import contacts
 
 OWN = Path(__file__).parents[2] / "contracts" / "hardening_spring.py"

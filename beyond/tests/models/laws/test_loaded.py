@@ -5,12 +5,13 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from loaded_laws import Sharing
+
 from bouncing_ball_beyond.models.laws.collocation import contacts
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.loaded import LoadedLaw, under
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.steady_contact import permanent_contact
-from loaded_laws import Sharing
 
 
 @dataclass(frozen=True, repr=False)

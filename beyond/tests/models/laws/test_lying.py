@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.laws import march as chapter
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.march import MOST_PANELS, march, march_through

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bouncing_ball_beyond.models.laws import march
 from bouncing_ball_beyond.models.laws.panel import BallsInContact, Panel, lever_of
 from bouncing_ball_beyond.models.laws.sweeps import LONGER

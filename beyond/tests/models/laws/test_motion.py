@@ -2,6 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from loaded_laws import Sharing
+
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.flight import Flight, land, table
 from bouncing_ball_beyond.models.history import motion_at
@@ -12,9 +16,6 @@ from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.orbits.stability import Side
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from loaded_laws import Sharing
 
 CASES = [
     # n, r, ϖ, Λ

@@ -4,6 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from loaded_laws import Sharing
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import (
@@ -14,9 +17,6 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 )
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from loaded_laws import Sharing
-
-from bouncing_ball.errors import ModelError
 
 RELEASES = LINEAR
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)

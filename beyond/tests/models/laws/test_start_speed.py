@@ -1,16 +1,16 @@
 """Laws whose damping is set by the speed at the start: energy, a second code, and derivatives."""
 
-import bouncing_ball_beyond
 import numpy as np
 import pytest
-from bouncing_ball_beyond.models.laws.collocation import contacts
-from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from side_by_side import VELOCITY, checked_deviations
 
+import bouncing_ball_beyond
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.laws.collocation import contacts
+from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
+from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
 
 KINDS = (LankaraniNikravesh, Flores)
 STIFFNESS = 800.0

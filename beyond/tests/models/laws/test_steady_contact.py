@@ -4,6 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from loaded_laws import Sharing
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
@@ -17,10 +21,6 @@ from bouncing_ball_beyond.models.laws.steady_contact import (
     permanent_contact,
 )
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from loaded_laws import Sharing
-from scipy.integrate import solve_ivp
-
-from bouncing_ball.errors import ModelError
 
 
 @pytest.mark.parametrize("kind", [HuntCrossley, Tsuji, KuwabaraKono])

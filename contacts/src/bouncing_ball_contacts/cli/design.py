@@ -9,11 +9,10 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball_beyond.cli.options import add_file
-
 from bouncing_ball.cli.options import Parser
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
+from bouncing_ball_beyond.cli.options import add_file
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
 from bouncing_ball_contacts.cli.design_text import contact_numbers
 from bouncing_ball_contacts.cli.options import add_optional, option

@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.quantities import Speed, quantities
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.units import doubts, in_si

@@ -7,14 +7,13 @@ to the value on the contact (:func:`~bouncing_ball_beyond.accuracy.errors.deviat
 import math
 from dataclasses import dataclass, replace
 
+from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball_beyond.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-
-from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.families import families
 from bouncing_ball_contacts.contact.hertz import reduced_modulus

@@ -5,12 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
-from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball_contacts.contact.quantities import (
     ContactTime,
     Damping,

@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 import numpy as np
 import scipy
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.rebounds import rises
 
 # The largest damping ratio of a fit: a contact with ζ ≥ 1 has no orbit on a vibrating table.

@@ -9,9 +9,8 @@ elastic bodies, the ball and the table (Hertz), ::
 
 import math
 
-from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
-
 from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import given
 from bouncing_ball_contacts.contact.table import TableMotion

@@ -14,7 +14,6 @@ from enum import Enum, auto
 from bouncing_ball_beyond.accuracy.errors import deviation
 from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.motions.motions import Kind
-
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.needed import Needed

@@ -10,10 +10,9 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
+from bouncing_ball.errors import ParameterError
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
-from bouncing_ball.errors import ParameterError
 from bouncing_ball_contacts.contact.contact import LOSSY, Contact
 from bouncing_ball_contacts.contact.drop_test import fitted_damping_ratio
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, given, single

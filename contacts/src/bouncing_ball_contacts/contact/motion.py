@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+
 from bouncing_ball_beyond.models.sequence import ImpactSequence
 from bouncing_ball_beyond.motions.basins import MotionName
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_beyond.periodic.one_impact import n_t
-
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 

@@ -3,11 +3,11 @@
 import math
 
 import numpy as np
+
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.named_laws import contact_in_words
 from bouncing_ball_beyond.periodic.one_impact import n_t
-
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.resolved import ResolvedContact

@@ -10,6 +10,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 import scipy
+
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.laws.march import march

@@ -15,6 +15,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+
+from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
@@ -25,8 +27,6 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
-
-from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball_contacts.contact.contact import STIFF, Contact
 from bouncing_ball_contacts.contact.hertz import hertz, reduced_modulus
 from bouncing_ball_contacts.contact.loss import loss, omega_of_time, same_omega

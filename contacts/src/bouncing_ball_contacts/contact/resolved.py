@@ -6,6 +6,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
+
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, models_of_law
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -15,8 +17,6 @@ from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.named_laws import model_name
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
-from numpy.typing import ArrayLike
-
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.rebounds import slowed

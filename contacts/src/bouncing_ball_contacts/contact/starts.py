@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
+
 from bouncing_ball_beyond.motions.basins import MotionName, basins
 from bouncing_ball_beyond.motions.motions import Kind
-
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.texts import shown

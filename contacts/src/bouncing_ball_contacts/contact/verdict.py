@@ -8,7 +8,6 @@ from bouncing_ball_beyond.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.judgement import Disagreement, OrbitJudgement
 from bouncing_ball_contacts.contact.needed import NO_ORBIT, Needed

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.motions.motions import Kind
-
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.judgement import Basis, MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion

@@ -8,10 +8,9 @@ Beside them are those with a retuned damping, and those of a softer contact with
 import math
 from dataclasses import dataclass, replace
 
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
-from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball_contacts.contact.assess import Assessment, assess
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import LONGEST, Description, description_of

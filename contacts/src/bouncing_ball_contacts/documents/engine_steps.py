@@ -12,6 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+
+from bouncing_ball.datasets.selection import index_of
+from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -19,9 +22,6 @@ from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-
-from bouncing_ball.datasets.selection import index_of
-from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball_contacts.engines.impacts import restitution_in_steps
 from bouncing_ball_contacts.engines.scheme import Scheme
 

@@ -32,14 +32,14 @@ from typing import Self
 
 import numpy as np
 import xarray as xr
+
+from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball_beyond.accuracy.error_law import VALID_BELOW, first_order, small_parameter
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import restitution_branch
-
-from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.measured.curves import CURVES

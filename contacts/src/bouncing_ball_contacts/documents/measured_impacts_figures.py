@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -24,6 +23,7 @@ from bouncing_ball.drawing.tables import (
     value,
     words,
 )
+from bouncing_ball_beyond.accuracy.errors import Quantity
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {

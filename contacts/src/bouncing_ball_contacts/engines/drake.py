@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 
 from bouncing_ball.errors import require
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_contacts.engines.engine import (
     ERROR,
     Engine,

@@ -10,10 +10,10 @@ from importlib.resources import files
 from typing import Any, ClassVar
 
 import numpy as np
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 
 from bouncing_ball.errors import ModelError, did_you_mean, require
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_contacts.engines.given_step import AtStep, at_step
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.physical import Physical

@@ -13,9 +13,8 @@ Source: the rigid solver of Genesis 1.4.5, and runs of it.
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball_beyond.models.damping import Release
-
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import Engine, EngineParameters, Physical
 from bouncing_ball_contacts.engines.mujoco import time_constant
 from bouncing_ball_contacts.engines.scheme import Scheme

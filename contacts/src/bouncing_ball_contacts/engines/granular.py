@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from bouncing_ball_beyond.models.damping import Release
-
 from bouncing_ball_contacts.engines.engine import Engine
 from bouncing_ball_contacts.engines.hertz_granular import LAWS, HertzLammps, HertzLiggghts
 from bouncing_ball_contacts.engines.proportional import Proportional

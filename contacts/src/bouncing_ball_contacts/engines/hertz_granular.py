@@ -14,9 +14,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from bouncing_ball_beyond.models.damping import Release
-
 from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import EngineParameters, Physical, twelve_digits
 from bouncing_ball_contacts.engines.proportional import Proportional
 from bouncing_ball_contacts.engines.scheme import Scheme

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
+from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 from bouncing_ball_contacts.engines.physical import free_duration
 from bouncing_ball_contacts.engines.scheme import Scheme
 from bouncing_ball_contacts.engines.steps import LinearStep, patience, until_outside

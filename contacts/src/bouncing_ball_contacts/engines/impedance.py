@@ -39,14 +39,14 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
+
+from bouncing_ball.errors import require
 from bouncing_ball_beyond.models.damping import Release, check_positive, damping_ratio
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
 from bouncing_ball_beyond.models.laws.force_law import NUMBER, Unit
 from bouncing_ball_beyond.models.laws.loaded import LoadedLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-
-from bouncing_ball.errors import require
 
 
 class _Piece(NamedTuple):

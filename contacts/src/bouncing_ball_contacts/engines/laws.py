@@ -2,7 +2,6 @@
 
 from bouncing_ball_beyond.models import named_laws as named
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
-
 from bouncing_ball_contacts.engines.impedance import Impedance
 
 LAWS = named.LAWS | named.by_name(Impedance)

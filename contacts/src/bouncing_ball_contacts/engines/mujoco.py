@@ -20,9 +20,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from bouncing_ball_beyond.models.damping import Release
 
 from bouncing_ball.errors import ModelError, shortened
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import Engine, Physical, at_speeds
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme

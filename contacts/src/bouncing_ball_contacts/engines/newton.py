@@ -21,9 +21,8 @@ Source: the kernels of Newton 1.8, read with the engine itself.
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball_beyond.models.damping import Release
-
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import EngineParameters, Physical
 from bouncing_ball_contacts.engines.mujoco import time_constant
 from bouncing_ball_contacts.engines.proportional import Proportional

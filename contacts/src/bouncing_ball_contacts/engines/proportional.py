@@ -10,9 +10,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball_beyond.models.damping import Release
-
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import Engine, EngineParameters, Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
 

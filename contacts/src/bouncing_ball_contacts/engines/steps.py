@@ -11,9 +11,9 @@ from functools import cached_property
 from typing import Protocol, Self
 
 import numpy as np
-from bouncing_ball_beyond.models.damping import Release
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated
 
 # A ball that has not left after so many steps, and as many times the duration of a contact, stays.

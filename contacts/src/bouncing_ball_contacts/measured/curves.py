@@ -15,6 +15,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError, one_of
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
@@ -27,9 +30,6 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 from bouncing_ball_beyond.models.laws.law_of_impact import reference
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from numpy.typing import ArrayLike
-
-from bouncing_ball.errors import ModelError, one_of
 from bouncing_ball_contacts.engines.laws import law_named
 
 # The logarithms of the groups that are searched for a restitution coefficient, which falls with

@@ -15,13 +15,13 @@ from typing import Any
 
 import numpy as np
 import scipy
-from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import (
     ModelError,
 )
+from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.table import Table

@@ -5,11 +5,11 @@ This module simulates and solves nothing.
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.parameters import Data
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
+from bouncing_ball.periodic.orbit import Bifurcation
 
 BOUNDS = tuple(map(str, Bifurcation))
 TOLERANCE = 0.01

@@ -7,23 +7,22 @@ linearised flight neglects the displacement of the table, as Holmes' map does.
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
-from bouncing_ball_beyond.models.linear_flow import ContactFlow
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.flight import flight_derivative, matrix_of
+from bouncing_ball.models.spring_damper import ContactState, SpringDamper, responses
+from bouncing_ball.numerics.corrector import solve_linear
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
+from bouncing_ball.periodic.explicit import branch_point, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit
 
 VARIABLES = {
     "rows": Variable("rows of the table that are compared", equation="Table 1"),
@@ -45,38 +44,17 @@ _SAMPLES = 401
 _REACH = 12.0
 
 
-def contact_end(orbit: Orbit, weight: float) -> ContactFlow:
+def contact_end(orbit: Orbit, weight: float) -> ContactState:
     """The ends of the contacts of orbits, in which the ball has this part of its weight.
 
     The part of the weight that is missing is that of a ball on a table at rest.
     """
-    time = np.asarray(orbit.contact_duration)
-    contact = orbit.law
-    flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, orbit.amplitude)
-    sag = contact.flow(time, 0.0, 0.0, 0.0, 0.0)
-    missing = 1 - weight
-    return ContactFlow(
-        displacement=flow.displacement - missing * sag.displacement,
-        velocity=flow.velocity - missing * sag.velocity,
-        acceleration=flow.acceleration - missing * sag.acceleration,
-    )
-
-
-def _by_start(orbit: Orbit) -> np.ndarray:
-    """Derivatives of δ and δ′ at the end of the contacts, at a fixed duration, shape (..., 2, 2).
-
-    The columns are those by the phase and by δ′ at the start. The flow is affine in δ′, Λ cos φ and
-    Λ sin φ (Eqs. 12-13), so that its derivatives are differences of flows.
-    """
-    time = np.asarray(orbit.contact_duration)
-    flow = orbit.law.flow
-    rest = flow(time, 0.0, 0.0, 0.0, 0.0)
-    moved = flow(time, 0.0, 0.0, orbit.phase + np.pi / 2, orbit.amplitude)
-    pushed = flow(time, 0.0, 1.0, 0.0, 0.0)
-    displacement = [each.displacement - rest.displacement for each in (moved, pushed)]
-    velocity = [each.velocity - rest.velocity for each in (moved, pushed)]
-    rows = np.stack(displacement, axis=-1), np.stack(velocity, axis=-1)
-    return np.stack(rows, axis=-2)
+    contact: Any = orbit.model
+    time = orbit.contact_duration
+    whole = contact.flow(time, orbit.phase, orbit.relative_impact_velocity, orbit.amplitude)
+    sag = contact.flow(time, 0.0, 0.0, 0.0)
+    pairs = zip(whole, sag, strict=True)
+    return ContactState(*(state - (1 - weight) * missing for state, missing in pairs))
 
 
 def weightless_orbits(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Orbit:
@@ -88,55 +66,60 @@ def weightless_orbits(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) ->
     flight = 2 * np.pi * np.asarray(n) - duration
 
     def orbit(u, x, y) -> Orbit:
-        model = ContactModel(contact)
-        return Orbit.of(model, n, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+        return Orbit(contact, n, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
 
     def defects(u, x, y) -> np.ndarray:
         tried = orbit(u, x, y)
         end = contact_end(tried, weight=0.0)
-        release = tried.release_phase
         bounce = tried.bounce_velocity
-        speed = end.velocity + tried.amplitude * np.cos(release) - bounce
-        height = end.displacement + tried.amplitude * np.sin(release) - y
+        speed = end.velocity + tried.amplitude * np.cos(tried.release_phase) - bounce
+        height = end.displacement + tried.amplitude * np.sin(tried.release_phase) - y
         landing = height + (bounce - flight / 2) * flight
         return np.stack([contact.frequency_ratio * end.displacement, speed, landing], axis=-1)
 
     constant = defects(0.0, 0.0, 0.0)
     columns = [defects(*unit) - constant for unit in np.eye(3)]
-    matrix = np.stack(columns, axis=-1)
-    solved = np.linalg.solve(matrix, -constant[..., np.newaxis])[..., 0]
+    solved = solve_linear(np.stack(columns, axis=-1), -constant)
     return orbit(*np.moveaxis(solved, -1, 0))
 
 
-def monodromy(orbit: Orbit, weight: float = 1.0, high_bounce: bool = False) -> np.ndarray:
+def altered_monodromy(orbit: Orbit, weight: float = 1.0, high_bounce: bool = False) -> np.ndarray:
     """Monodromy of orbits with an altered contact or flight, shape (..., 2, 2).
 
     ``weight`` is the part of the weight in contact. The flight ends at the table, or, with
     ``high_bounce``, as that of Holmes' map at the height at which it began, ``z′_b T - T²/2 = 0``
     in place of Eq. 25, so that ``dT = -T dz′_b/z′_i``.
     """
-
-    def column(values: ArrayLike) -> np.ndarray:
-        return np.asarray(values)[..., np.newaxis]
-
     end = contact_end(orbit, weight)
-    by_start = _by_start(orbit)
-    d_duration = -by_start[..., 0, :] / column(end.velocity)
-    d_velocity = by_start[..., 1, :] + column(end.acceleration) * d_duration
-    d_release = d_duration + np.array([1.0, 0.0])
-    d_bounce = d_velocity - column(orbit.amplitude * np.sin(orbit.release_phase)) * d_release
-    rise = column(orbit.flight_time) * d_bounce
-    arrival = np.asarray(orbit.impact_velocity)
-    if high_bounce:
-        d_flight = -rise / column(arrival)
-    else:
-        landing = orbit.amplitude * np.cos(orbit.phase)
-        leaving = orbit.amplitude * np.cos(orbit.release_phase)
-        rise = rise + column(leaving - landing) * d_release
-        d_flight = rise / column(landing - arrival)
-    d_landing = d_release + d_flight
-    table = column(orbit.amplitude * np.sin(orbit.phase))
-    return np.stack([d_landing, d_bounce - d_flight + table * d_landing], axis=-2)
+    contact: Any = orbit.model
+    time = orbit.contact_duration
+    found = responses(time, contact.frequency_ratio, contact.damping_ratio)
+    x = orbit.amplitude * np.cos(orbit.phase)
+    y = orbit.amplitude * np.sin(orbit.phase)
+    later_by_phase = -(x * found.in_phase - y * found.quadrature) / end.velocity
+    later_by_velocity = -found.impulse / end.velocity
+    rate_by_phase = x * (found.impulse - found.quadrature) - y * found.in_phase
+    of_contact = matrix_of(
+        1 + later_by_phase,
+        later_by_velocity,
+        rate_by_phase + end.acceleration * later_by_phase,
+        found.impulse_rate + end.acceleration * later_by_velocity,
+    )
+    flight = orbit.flight_time
+    release = orbit.release_phase
+    if not high_bounce:
+        landing = orbit.relative_impact_velocity
+        return flight_derivative(release, flight, landing, orbit.amplitude) @ of_contact
+    height = orbit.amplitude * np.sin(release)
+    longer_by_phase = flight * height / orbit.impact_velocity
+    longer_by_velocity = -flight / orbit.impact_velocity
+    of_flight = matrix_of(
+        1 + longer_by_phase,
+        longer_by_velocity,
+        -height - longer_by_phase + y * (1 + longer_by_phase),
+        1 - longer_by_velocity + y * longer_by_velocity,
+    )
+    return of_flight @ of_contact
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
@@ -194,13 +177,15 @@ def readings() -> dict[str, np.ndarray]:
     zeta = float(damping_ratio(RESTITUTION))
 
     def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
-        model = ContactModel(SpringDamper(omega, damping, release))
-        ends = [n_t.saddle_node(model, n).amplitude, n_t.period_doubling(model, n).amplitude]
-        return np.stack(ends, axis=-1)
+        branch = explicit_branch(SpringDamper(omega, damping, release))
+        return np.stack([branch.bifurcation(kind, n).amplitude for kind in Bifurcation], axis=-1)
 
     def altered(orbit_at: Callable, linearised: Callable) -> np.ndarray:
         contact = SpringDamper(omega.ravel(), zeta)
         return altered_ends(contact, n.ravel(), orbit_at, linearised).reshape(*n.shape, 2)
+
+    def exact(*given: Any) -> Orbit:
+        return branch_point(*given).orbit
 
     plain = of_model()
     printed_ends = [
@@ -213,8 +198,8 @@ def readings() -> dict[str, np.ndarray]:
         "damping as printed": of_model(PRINTED_DAMPING),
         "damping to first order": of_model(-np.log(RESTITUTION) / np.pi),
         "force release": of_model(release=Release.FORCE),
-        "no gravity in contact": altered(weightless_orbits, partial(monodromy, weight=0.0)),
-        "high-bounce stability": altered(orbits_on_branch, partial(monodromy, high_bounce=True)),
+        "no gravity in contact": altered(weightless_orbits, partial(altered_monodromy, weight=0.0)),
+        "high-bounce stability": altered(exact, partial(altered_monodromy, high_bounce=True)),
         "all rows from Eqs. 7-8": np.stack(printed_ends, axis=-1),
     }
 

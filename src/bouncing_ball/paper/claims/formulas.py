@@ -11,20 +11,17 @@ largest disagreement with the printed form (:mod:`bouncing_ball.paper.claims.for
 formula is reproduced only if both comparisons agree.
 """
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
-from bouncing_ball_beyond.models.restitution import RestitutionDynamics
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.sequence import Status
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.history import impacts_of, next_impact
+from bouncing_ball.models.model import Status
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import (
@@ -34,6 +31,7 @@ from bouncing_ball.paper.claims.formulas_in_use import (
     largest_defect,
     random_orbits,
 )
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, trace_and_determinant
 
 VARIABLES = {
     "formula": Variable("printed formula"),
@@ -94,8 +92,8 @@ def impact_cycle(phase, velocity, r, lam):
     The result is φ and v after the next impact, and the time between the impacts; arrays broadcast.
     """
     falling = (lam * np.cos(phase) - velocity) / r
-    cycle = RestitutionDynamics.of(r, lam).next_impact(phase, falling)
-    bounced = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
+    cycle = next_impact(RestitutionModel(r), phase, falling, lam)
+    bounced = lam * np.cos(cycle.phase) - r * cycle.velocity
     return cycle.phase, bounced, cycle.time
 
 
@@ -141,12 +139,13 @@ def _restitution_orbits(rng, r) -> Checks:
     # The orbit with φ = 0, where both sides of the fold meet, exists at this Λ only.
     fold = printed.saddle_node(n, r)
     fold_phase, fold_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
-    at_fold = Orbit.of(model, n, fold, 0.0 * r).trace_and_determinant()
+    at_fold = trace_and_determinant(Orbit(model, n, fold, 0.0 * r, 0.0 * r, -n * np.pi))
 
     doubling = printed.period_doubling(n, r)
     corrected = corrected_period_doubling(n, r)
     turned = np.arccos(along / corrected)
-    at_doubling = Orbit.of(model, n, corrected, turned).trace_and_determinant()
+    turned_orbit = Orbit(model, n, corrected, turned, 0.0 * r, -n * np.pi)
+    at_doubling = trace_and_determinant(turned_orbit)
     # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
     push = (1 + r) * np.sqrt(doubling**2 - along**2)
     holmes = Bifurcation.PERIOD_DOUBLING.test(1 + r - 2 * push, r)
@@ -171,7 +170,7 @@ def _restitution_orbits(rng, r) -> Checks:
 def _rest_on_the_table() -> Checks:
     """A ball at rest on two tables, with Λ slightly below and above the threshold of Eq. 9."""
     lam = 1 + np.array([-1, 1]) * ROUNDING
-    below, above = RestitutionModel(0.5).simulate(lam, 0.0, lam, 1).status
+    below, above = impacts_of(RestitutionModel(0.5), lam, 0.0, lam, 1).status
     stays = below == Status.PERMANENT_CONTACT and above == Status.BOUNCING
     return {"Eq. 9": check("lift-off of a ball at rest", float(not stays))}
 
@@ -182,8 +181,7 @@ def measured_restitution(r, frequency_ratio, velocity):
     The result is NaN where the ball stays on the table.
     """
     contact = SpringDamper(frequency_ratio, printed.damping_ratio(r))
-    still = LinearContactDynamics.of(contact, 0.0)
-    return still.next_impact(0.0, -velocity).relative_velocity / -velocity
+    return next_impact(contact, 0.0, -velocity, 0.0).velocity / -velocity
 
 
 def damping(rng, samples) -> Checks:
@@ -213,7 +211,7 @@ def static_error() -> xr.DataArray:
 def contact_orbits(rng, samples) -> Checks:
     """Checks of the definition of ϖ, and of Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
     orbit, lam = random_orbits(rng, samples)
-    contact = orbit.law
+    contact: Any = orbit.model
     omega = contact.frequency_ratio
     zeta = contact.damping_ratio
     n = orbit.n
@@ -221,12 +219,12 @@ def contact_orbits(rng, samples) -> Checks:
     impact = orbit.impact_velocity
     end = orbit.contact_duration
     u = orbit.relative_impact_velocity
-    again = orbit.model.cycle(lam, phase, u)
-    repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
+    again = next_impact(contact, phase, u, lam)
+    repeated = reduce_angle(again.phase - phase), again.velocity - u
 
     def simulated(time):
         """δ, δ′, height and velocity at a time after the impact."""
-        rise, rate, *_ = contact.flow(time, 0.0, u, phase, lam)
+        rise, rate = contact.in_contact(time, phase, u, lam)
         return rise, rate, rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
 
     time = end * rng.uniform(0.1, 1, end.size)
@@ -311,8 +309,9 @@ def _steady_motion(rng, omega, zeta) -> Checks:
     def steady(time):
         return printed.steady_displacement(time, omega, zeta, lam)
 
-    start = (steady(begin), slopes(steady, begin))
-    later = SpringDamper(omega, zeta).flow(end - begin, *start, begin, lam).displacement
+    contact = SpringDamper(omega, zeta)
+    rate = slopes(steady, begin)
+    later, _ = contact.in_contact(end - begin, begin, rate, lam, steady(begin))
     return {"Eq. 31": check("simulated contact", steady(end) - later)}
 
 

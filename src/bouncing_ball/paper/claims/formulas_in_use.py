@@ -7,40 +7,33 @@ printed form, so that a mistake in one of them is a disagreement in the row of i
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from bouncing_ball_beyond.accuracy.errors import Quantity, relative_errors
-from bouncing_ball_beyond.accuracy.simple_models import search
-from bouncing_ball_beyond.models import permanent_contact as threshold
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.contacts_and_flights import Impact
-from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball_beyond.models.flight import Flight
-from bouncing_ball_beyond.models.restitution import RestitutionDynamics
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as rigid
-from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import ImpactMap
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
+from bouncing_ball.accuracy.errors import Quantity, relative_errors
+from bouncing_ball.accuracy.thresholds import search
+from bouncing_ball.models import permanent_contact as threshold
+from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.flight import Flight
+from bouncing_ball.models.history import impacts_of, next_impact
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims import as_printed as printed
+from bouncing_ball.periodic import explicit
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.explicit import ImpactMap, explicit_branch
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, flight_path, trace_and_determinant
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
 _RATIOS = np.geomspace(1.0, 1e3, 31)
 _TOLERANCE = 0.01
 # The functions that solve Eqs. 21-26, from the contact to the bifurcations of its orbits.
 _OF_ORBITS = (
-    "models.contacts_and_flights.ContactsAndFlights.start",
-    "models.linear_contact.LinearContactDynamics.depart",
-    "periodic.orbits.problem.OrbitEquations.residual",
-    "periodic.one_impact.paper_unknowns.PaperUnknowns",
-    "periodic.one_impact.spring_damper_branch.branch_point",
-    "periodic.one_impact.spring_damper_bifurcations.saddle_node",
-    "periodic.one_impact.spring_damper_bifurcations.period_doubling",
+    "models.spring_damper.SpringDamper.impact",
+    "periodic.continuation.PaperEquations.residual",
+    "periodic.explicit.branch_point",
+    "periodic.explicit.SpringDamperBranch.bifurcation",
 )
 
 
@@ -82,11 +75,11 @@ def random_orbits(rng: np.random.Generator, samples: int) -> tuple[Orbit, np.nda
     omega = np.exp(rng.uniform(0.7, 5, samples))
     zeta = rng.uniform(0.01, 0.5, samples)
     n = rng.integers(1, 4, samples)
-    fold = n_t.saddle_node(ContactModel(SpringDamper(omega, zeta)), n).amplitude
+    branch = explicit_branch(SpringDamper(omega, zeta))
+    fold = branch.bifurcation(Bifurcation.SADDLE_NODE, n).amplitude
     there = np.isfinite(fold)
     lam = fold[there] + rng.uniform(0.05, 0.5, np.sum(there))
-    model = ContactModel(SpringDamper(omega[there], zeta[there]))
-    return n_t.orbit(model, n[there], lam), lam
+    return explicit_branch(SpringDamper(omega[there], zeta[there])).orbit(n[there], lam), lam
 
 
 def corrected_period_doubling(n, r):
@@ -128,31 +121,31 @@ def _impacts(rng, r) -> Rows:
     y = lam * np.sin(phase)
 
     time = rng.uniform(0.1, 2, r.size)
-    rise, rate, *_ = Flight(0.0, velocity - x, x, y, lam).gap(time)
+    rise, rate, *_ = Flight(phase, 0.0 * x, velocity - x, lam).gap(time)
     held = rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
     flight = np.array(printed.free_flight(phase + time, phase, y, velocity)) - held
 
-    dynamics = RestitutionDynamics.of(r, lam)
+    model = RestitutionModel(r)
     before = x - (velocity - x) / r
-    left = dynamics.depart(Impact.at_level(phase, before - x)).flight.velocity + x
-    cycle = dynamics.next_impact(phase, before - x)
-    rebound = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
+    left = model.impact(phase, before - x, lam).velocity + x
+    cycle = next_impact(model, phase, before - x, lam)
+    rebound = lam * np.cos(cycle.phase) - r * cycle.velocity
     landing = printed.landing_defect(phase, velocity, cycle.time, lam)
     bounced = printed.bounced_velocity(phase, velocity, cycle.time, lam, r) - rebound
 
     # At lift-off the table's downward acceleration, Λ sin φ, is that of gravity.
     above = 1 + lam
-    at_rest = RestitutionModel(r).simulate(above, 0.0, above, 1)
-    lift = above * np.sin(at_rest.release_phase[0]) - 1
+    at_rest = impacts_of(model, above, 0.0, above, 1)
+    lift = above * np.sin(at_rest.contact_duration[0]) - 1
     return {
         "Eq. 2": _used(
-            "models.restitution.RestitutionDynamics.depart",
+            "models.restitution.RestitutionModel.impact",
             defects=(printed.restitution_law(before, x, r) - left,),
         ),
         "Eq. 4": _used("models.flight.Flight", defects=(flight,)),
-        "Eq. 5": _used("models.restitution.RestitutionDynamics", defects=(landing, bounced)),
+        "Eq. 5": _used("models.history.next_impact", defects=(landing, bounced)),
         "Eq. 9": _used(
-            "models.sticking.lift_off_phase",
+            "models.restitution.lift_off_phase",
             "models.permanent_contact.RESTITUTION_THRESHOLD",
             defects=(lift, threshold.RESTITUTION_THRESHOLD - 1),
         ),
@@ -166,31 +159,30 @@ def _restitution_orbits(rng, r) -> Rows:
     fold = printed.saddle_node(n, r)
     lam = along * rng.uniform(1.01, 3, r.size)
     phase, velocity = printed.fixed_point(n, r, lam)
-    orbit = n_t.orbit(RestitutionModel(r), n, lam)
+    branch = explicit_branch(RestitutionModel(r))
+    orbit = branch.orbit(n, lam)
     corrected = corrected_period_doubling(n, r)
-    bifurcation = n_t.saddle_node(RestitutionModel(r), n).amplitude
-    doubling = n_t.period_doubling(RestitutionModel(r), n).amplitude
-    holmes = rigid.period_doubling(n, r, ImpactMap.HOLMES)
+    node, doubling = (branch.bifurcation(kind, n).amplitude for kind in Bifurcation)
+    holmes = explicit.restitution_period_doubling(n, r, ImpactMap.HOLMES)
     return {
         "Eq. 6": _used(
-            "periodic.one_impact.restitution_branch.phase",
-            defects=(
-                rigid.phase(n, r, lam) - phase,
-                orbit.phase - phase,
-                orbit.bounce_velocity - velocity,
-            ),
+            "periodic.explicit.RestitutionBranch.orbit",
+            defects=(orbit.phase - phase, orbit.bounce_velocity - velocity),
         ),
         "Eq. 7": _used(
-            "periodic.one_impact.restitution_branch.saddle_node",
-            defects=(rigid.saddle_node(n, r) - fold, bifurcation - fold),
+            "periodic.explicit.restitution_saddle_node",
+            defects=(explicit.restitution_saddle_node(n, r) - fold, node - fold),
         ),
         "Eq. 8, Holmes' map": _used(
-            "periodic.one_impact.restitution_branch.period_doubling",
+            "periodic.explicit.restitution_period_doubling",
             defects=(holmes - printed.period_doubling(n, r),),
         ),
         "Eq. 8, corrected": _used(
-            "periodic.one_impact.restitution_branch.period_doubling",
-            defects=(rigid.period_doubling(n, r) - corrected, doubling - corrected),
+            "periodic.explicit.restitution_period_doubling",
+            defects=(
+                explicit.restitution_period_doubling(n, r) - corrected,
+                doubling - corrected,
+            ),
         ),
     }
 
@@ -230,14 +222,14 @@ def _contact_orbits(rng, samples) -> Rows:
 
 def _motions(rng, orbit, lam) -> Rows:
     """Eqs. 12 to 15: the motions in contact and in flight, at random times within orbits."""
-    contact = orbit.law
+    contact: Any = orbit.model
     phase = orbit.phase
     impact = orbit.impact_velocity
     end = orbit.contact_duration
 
     time = end * rng.uniform(0.1, 1, end.size)
     closing = impact - lam * np.cos(phase)
-    rise, rate, *_ = contact.flow(time, 0.0, closing, phase, lam)
+    rise, rate = contact.in_contact(time, phase, closing, lam)
     held = rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
     omega = contact.frequency_ratio
     zeta = contact.damping_ratio
@@ -246,16 +238,16 @@ def _motions(rng, orbit, lam) -> Rows:
     aloft = end + orbit.flight_time * rng.uniform(0, 1, end.size)
     flown = np.array(printed.flight(aloft, end, orbit.bounce_velocity, lam, phase))
     return {
-        "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
+        "Eqs. 12-13": _used("models.spring_damper.flow", defects=(flow,)),
         "Eqs. 14-15": _used(
-            "periodic.orbits.orbit.Orbit.flight_path", defects=(flown - orbit.flight_path(aloft),)
+            "periodic.orbit.flight_path", defects=(flown - flight_path(orbit, aloft),)
         ),
     }
 
 
 def _orbit_equations(orbit, lam) -> Rows:
     """Eqs. 17 to 27: what holds on orbits, how they are solved, and their bifurcations."""
-    contact = orbit.law
+    contact: Any = orbit.model
     n = orbit.n
     phase = orbit.phase
     impact = orbit.impact_velocity
@@ -270,23 +262,19 @@ def _orbit_equations(orbit, lam) -> Rows:
     zeta = contact.damping_ratio
     height, _ = printed.contact_after_impact(end, omega, zeta, lam, phase, impact)
     level = lam * np.sin(phase + end)
-    dynamics = orbit.model.dynamics(lam)
-    ended = dynamics.depart(dynamics.start(phase, impact - lam * np.cos(phase))).duration
+    ended = contact.impact(phase, impact - lam * np.cos(phase), lam).duration
 
-    equations = PaperUnknowns.of(orbit)
-    point = equations.point(orbit)
-    node = n_t.saddle_node(orbit.model, n)
-    node_test = Bifurcation.SADDLE_NODE.test(*node.trace_and_determinant())
-    # Some of these contacts have no period doubling.
-    doubling = n_t.period_doubling(orbit.model, n)
-    doubling_test = Bifurcation.PERIOD_DOUBLING.test(*doubling.trace_and_determinant())
+    equations = PaperEquations(contact, n)
+    limits = [explicit_branch(contact).bifurcation(kind, n) for kind in Bifurcation]
+    pairs = zip(Bifurcation, limits, strict=True)
+    tests = np.array([kind.test(*trace_and_determinant(each)) for kind, each in pairs])
     return {
         "Eq. 17": _used(
-            "periodic.orbits.impacts.OrbitImpacts.apparent_restitution",
+            "periodic.orbit.Orbit.apparent_restitution",
             defects=(orbit.apparent_restitution - apparent,),
         ),
         "Eqs. 18-20": _used(
-            "periodic.orbits.impacts.OrbitImpacts.flight_time",
+            "periodic.orbit.Orbit.flight_time",
             defects=(orbit.flight_time - printed.flight_time(n, end),),
         ),
         "Eqs. 21-26": _used(
@@ -294,13 +282,13 @@ def _orbit_equations(orbit, lam) -> Rows:
             defects=(
                 height - level,
                 ended - end,
-                equations.residual(point),
-                node_test[np.isfinite(node_test)],
-                doubling_test[np.isfinite(doubling_test)],
+                equations.residual(equations.point(orbit)),
+                # Some of these contacts have no period doubling.
+                tests[np.isfinite(tests)],
             ),
         ),
         "Eq. 27": _used(
-            "periodic.orbits.impacts.OrbitImpacts.bounce_velocity",
+            "periodic.orbit.Orbit.bounce_velocity",
             defects=(bounce - printed.bounce_velocity(impact, n, end),),
         ),
     }
@@ -344,12 +332,11 @@ def _errors(rng, samples) -> Rows:
     r = rng.uniform(0.5, 0.95, samples)
     omega = np.exp(rng.uniform(2, 5, samples))
     lam = np.pi * (1 - r) / (1 + r) + rng.uniform(0.05, 0.5, samples)
-    exact = ContactModel(SpringDamper.from_restitution(r, omega))
+    exact = SpringDamper.from_restitution(r, omega)
     simple = RestitutionModel(r)
     compared = [Quantity.MAX_HEIGHT, Quantity.PERMANENT_CONTACT]
-    errors = np.abs(relative_errors(exact, [simple], 1, lam, compared)[0])
-    contact = n_t.orbit(exact, 1, lam)
-    impact = n_t.orbit(simple, 1, lam)
+    errors = np.abs(relative_errors(exact, simple, 1, lam, compared))
+    contact, impact = (explicit_branch(model).orbit(1, lam) for model in (exact, simple))
     limits = exact.permanent_contact_threshold(), simple.permanent_contact_threshold()
     thrown = [
         orbit.max_height - printed.greatest_height(orbit.bounce_velocity, orbit.bounce_height)
@@ -359,17 +346,18 @@ def _errors(rng, samples) -> Rows:
     found = search(
         0.0,
         Release.DISPLACEMENT,
+        1.0,
         1,
         1.0,
         ratios=_RATIOS,
-        tolerance=_TOLERANCE,
+        tolerances=[_TOLERANCE],
         quantities=[Quantity.PERMANENT_CONTACT],
     )
     return {
         "Eqs. 37-38": _used(
-            "periodic.orbits.orbit.Orbit.max_height",
+            "periodic.orbit.Orbit.max_height",
             "accuracy.errors.relative_errors",
-            "accuracy.simple_models.search",
+            "accuracy.thresholds.search",
             defects=(
                 *thrown,
                 errors[0] - printed.relative_error(contact.max_height, impact.max_height),

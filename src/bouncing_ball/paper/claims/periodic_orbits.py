@@ -7,7 +7,6 @@ from dataclasses import replace
 from itertools import product
 
 import xarray as xr
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.paper.claims import FORMULA, evidence, impact_models
@@ -15,6 +14,7 @@ from bouncing_ball.paper.claims.claim import Claim, claim, formula, of_formula
 from bouncing_ball.paper.claims.evidence import GRID, STIFF, TOLERANCE
 from bouncing_ball.paper.claims.verdict import above, at_least, at_most, below, largest_number
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, printed_text
+from bouncing_ball.periodic.orbit import Bifurcation
 
 # The orbits.
 

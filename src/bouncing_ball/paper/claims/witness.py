@@ -10,23 +10,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch
-from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
-    excess_angle,
-    nearest_excess,
-    orbits_on_branch,
-)
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.history import next_impact
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import vanishing
 from bouncing_ball.paper.claims import FORMULA
+from bouncing_ball.periodic.continuation import PaperEquations
+from bouncing_ball.periodic.explicit import RestitutionBranch, branch_point, nearest_excess
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, difference, trace_and_determinant
 
 VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),
@@ -64,8 +59,9 @@ def spring_damper_model_orbits(
     names += ["restitution", "frequency_ratio", "n"]
     names += [] if kind else ["impact_velocity"]
     duration, lam, phase, admissible, r, ratio, n, *velocity = _columns(data, *names)
-    model = ContactModel(SpringDamper.from_restitution(r, ratio, data.attrs["release"]))
-    return Shown(Orbit.of(model, n, lam, phase, duration, *velocity), admissible, kind)
+    model = SpringDamper.from_restitution(r, ratio, data.attrs["release"])
+    speed = velocity[0] if velocity else 0.0 * phase
+    return Shown(Orbit(model, n, lam, phase, duration, speed), admissible, kind)
 
 
 def restitution_model_orbits(
@@ -74,8 +70,8 @@ def restitution_model_orbits(
     """Orbits of the restitution model."""
     names = [prefix + name for name in ("phase", "amplitude", "admissible")]
     phase, lam, admissible, r, n = _columns(data, *names, "restitution", "n")
-    model = RestitutionModel(r)
-    return Shown(Orbit.of(model, n, lam, phase), admissible, kind)
+    orbit = Orbit(RestitutionModel(r), n, lam, phase, 0.0 * phase, -n * np.pi)
+    return Shown(orbit, admissible, kind)
 
 
 def all_orbits(name: str, data: xr.Dataset) -> Iterator[Shown]:
@@ -106,45 +102,61 @@ def nearest(orbit: Orbit) -> Orbit:
     The distance is that in (Λ cos φ, Λ sin φ), and in ε for the spring-damper model.
     """
     model: Any = orbit.model
-    x = orbit.amplitude * np.cos(orbit.phase)
-    y = orbit.amplitude * np.sin(orbit.phase)
     if isinstance(model, RestitutionModel):
-        fold = restitution_branch.saddle_node(orbit.n, model.restitution)
-        return Orbit.of(model, orbit.n, np.hypot(fold, y), np.arctan2(y, fold))
-    contact = model.law
-    excess = excess_angle(contact, orbit.contact_duration)
-    return orbits_on_branch(nearest_excess(contact, orbit.n, x, y, excess), contact, orbit.n)
+        return RestitutionBranch(model).at(orbit.n, orbit.amplitude * np.sin(orbit.phase))
+    return branch_point(nearest_excess(orbit), model, orbit.n).orbit
 
 
 def formula_and_equations(shown: Shown) -> np.ndarray:
     """Distance of each orbit from the closed form, plus that of the closed form from the equations.
 
-    The latter is the Newton step across the branch, or at a bifurcation the step to a zero of its
-    test function. Of a bifurcation a dataset has Λ and φ only.
+    For the spring-damper model the latter is the Newton step across the branch in the paper's
+    unknowns, or at a bifurcation the step to a zero of its test function. For the restitution model
+    it is the defect of Eq. 6 or of this function. Of a bifurcation a dataset has Λ and φ only.
     """
     orbit = shown.orbit
     near = nearest(orbit)
-    system = PaperUnknowns.of(near)
-    y = system.point(near)
-    condition = plane(null_vector(system.jacobian(y)), y)
-    distance = orbit.distance(near)
-    if shown.bifurcation:
-        kind = shown.bifurcation
-        condition = system.condition(lambda inner: system.equations.bifurcation(kind, inner))
-        turn = reduce_angle(orbit.phase - near.phase)
-        distance = np.maximum(abs(orbit.amplitude - near.amplitude), abs(turn))
+    turn = np.abs(reduce_angle(orbit.phase - near.phase))
+    kind = shown.bifurcation
+    distance = np.maximum(np.abs(orbit.amplitude - near.amplitude), turn)
+    if kind is None:
+        distance = difference(orbit, near)
+    model: Any = near.model
+    if isinstance(model, RestitutionModel):
+        r = model.restitution
+        push = (1 + r) * near.amplitude * np.cos(near.phase)
+        step = np.abs(near.bounce_velocity + r * near.impact_velocity - push)
+        tested = 0.0 if kind is None else np.abs(kind.test(*trace_and_determinant(near)))
+        return distance + step + tested
+    equations = PaperEquations(model, near.n)
+    y = equations.point(near)
+    if kind is None:
+        condition = plane(null_vector(equations.jacobian(y)), y)
+    else:
+        condition = vanishing(lambda point: equations.test(kind, point))
     with np.errstate(all="ignore"):
-        step = newton(system, y, condition, NewtonSettings(max_iterations=1)).step
-    return distance + step * (1 + np.linalg.norm(y, axis=-1))
+        step = newton(equations, y, condition, NewtonSettings(max_iterations=1)).step
+    step = step * (1 + np.linalg.norm(y, axis=-1))
+    # Eq. 12 has no A and B at the undamped resonance; its flow is regular there.
+    resonant = (model.damping_ratio == 0) & (model.frequency_ratio == 1)
+    return distance + np.where(resonant, _defect_of_flow(near), step)
+
+
+def _defect_of_flow(orbit: Orbit) -> np.ndarray:
+    """The largest defect of Eqs. 23-26, with the flow in contact in place of A and B."""
+    start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
+    gap, rate = orbit.model.released(*start, orbit.contact_duration)
+    landing = orbit.amplitude * np.sin(orbit.release_phase) - orbit.bounce_height
+    return np.max(np.abs([gap, rate - orbit.relative_bounce_velocity, landing]), axis=0)
 
 
 def simulation_returns(orbit: Orbit) -> np.ndarray:
     """Largest change of φ, δ′ and the period in one simulated cycle from each orbit."""
     speed = orbit.relative_impact_velocity
-    cycle = orbit.model.cycle(orbit.amplitude, orbit.phase, speed)
+    cycle = next_impact(orbit.model, orbit.phase, speed, orbit.amplitude)
     late = cycle.time - 2 * np.pi * orbit.n
     turned = reduce_angle(cycle.phase - orbit.phase)
-    return np.max(np.abs([late, turned, cycle.relative_velocity - speed]), axis=0)
+    return np.max(np.abs([late, turned, cycle.velocity - speed]), axis=0)
 
 
 def disagreements(name: str, data: xr.Dataset) -> list[np.ndarray]:

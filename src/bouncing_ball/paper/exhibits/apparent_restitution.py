@@ -4,22 +4,21 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.branches.observables import OBSERVED, columns
-from bouncing_ball_beyond.periodic.one_impact import n_t
 from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.datasets.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
     require_amplitude,
     require_any_orbit,
 )
+from bouncing_ball.periodic.branches import OBSERVED
+from bouncing_ball.periodic.explicit import explicit_branch
 
 VARIABLES = {
     "labelled": Variable("whether the figure marks this frequency ratio"),
@@ -105,13 +104,13 @@ def _sweep(
         If there is no orbit at all.
     """
     r, lam = np.broadcast_arrays(restitution, amplitude)
-    contact = SpringDamper.from_restitution(r[:, np.newaxis], ratios, release)
-    orbits = n_t.orbit(ContactModel(contact), n, lam[:, np.newaxis])
+    contacts = SpringDamper.from_restitution(r[:, np.newaxis], ratios, release)
+    orbits = explicit_branch(contacts).orbit(n, lam[:, np.newaxis])
     require_any_orbit(orbits.exists, n, lam, ratios)
-    found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
+    names = (*OBSERVED, "max_height", "stable", "admissible")
     return xr.Dataset(
-        {name: (dims, values) for name, values in found.items()},
+        {name: (dims, getattr(orbits, name)) for name in names},
         coords={
             "frequency_ratio": ratios,
             "restitution": ("case", r),
@@ -160,7 +159,7 @@ def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.
     r = parameters.restitution
     lam = np.array(parameters.amplitude)
     return _sweep(n, r, lam, ratios, release).assign(
-        restitution_phase=("case", n_t.orbit(RestitutionModel(r), n, lam).phase),
+        restitution_phase=("case", explicit_branch(RestitutionModel(r)).orbit(n, lam).phase),
         restitution_bounce_velocity=n * np.pi,
         restitution_impact_velocity=-n * np.pi,
     )

@@ -3,8 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets import LONG
-from bouncing_ball.datasets.selection import each, split_by_prefix
+from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.branches import (
     draw_both_phases,
     draw_rigid_branch,
@@ -19,11 +18,8 @@ from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import COLOURS
 from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, text, text_table, value
 
-
-def domains(data: xr.Dataset) -> Figure:
-    """Figs. 8 and 9: the spring-damper model's branches for each ϖ; a panel for each phase."""
-    first, second = split_by_prefix(data, LONG)
-    return over_amplitude(first, second if "amplitude" in second else None)
+domains = over_amplitude
+"""Figs. 8 and 9: the spring-damper model's branches for each ϖ; a panel for each phase."""
 
 
 def both_domains(data: xr.Dataset) -> Figure:

@@ -3,22 +3,21 @@
 from typing import Annotated
 
 import xarray as xr
-from bouncing_ball_beyond.accuracy.errors import Quantity
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
 from pydantic import Strict
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitErrors,
     OrbitsAlongRatio,
     require_any_orbit,
 )
+from bouncing_ball.periodic.explicit import explicit_branch
 
 VARIABLES = {
     "restitution_max_height": Variable(
@@ -27,15 +26,10 @@ VARIABLES = {
 }
 
 
-class ErrorsAlongRatio(OrbitsAlongRatio):
-    """One orbit along ϖ, and the quantities compared on it."""
+class ErrorThresholds(OrbitsAlongRatio):
+    """One orbit along ϖ, the quantities compared on it and the tolerated relative errors."""
 
     quantities: Many[Annotated[Quantity, Strict(False)]]
-
-
-class ErrorThresholds(ErrorsAlongRatio):
-    """One orbit, the quantities compared on it and the tolerated relative errors."""
-
     tolerances: Many[Tolerance]
 
 
@@ -84,11 +78,10 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
         tolerances=[parameters.tolerance],
     ).squeeze(["quantity", "tolerance"], drop=True)
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
-    orbit = n_t.orbit(ContactModel(contact), n, lam)
+    orbit = explicit_branch(contact).orbit(n, lam)
     require_any_orbit(orbit.exists, n, lam, ratios)
-    for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
+    for name in ("max_height", "phase", "contact_duration", "impact_velocity", "admissible"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
-    dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())
-    rigid = n_t.orbit(RestitutionModel(parameters.restitution), n, lam)
+    rigid = explicit_branch(RestitutionModel(parameters.restitution)).orbit(n, lam)
     dataset["restitution_max_height"] = rigid.max_height
     return describe(dataset, variables=VARIABLES)

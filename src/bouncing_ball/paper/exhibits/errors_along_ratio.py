@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.accuracy.errors import Quantity, modulus
-from bouncing_ball_beyond.accuracy.simple_models import search
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
-from bouncing_ball_beyond.models.rigid import RestitutionModel
+
+from bouncing_ball.accuracy.errors import Quantity, modulus
+from bouncing_ball.accuracy.thresholds import search
+from bouncing_ball.models.damping import Release, damping_ratio
 
 
 def errors_along_ratio(
@@ -19,7 +19,6 @@ def errors_along_ratio(
     ratios: np.ndarray,
     quantities: Sequence[Quantity],
     tolerances: Sequence[float],
-    compared_restitution: float | None = None,
 ) -> xr.Dataset:
     """Errors of the restitution model along ϖ, and the thresholds of tolerances.
 
@@ -34,8 +33,6 @@ def errors_along_ratio(
         Increasing grid of ϖ.
     quantities : sequence of Quantity
     tolerances : sequence of float
-    compared_restitution : float, optional
-        r of the restitution model, if it is not that of Eq. 16.
 
     Returns
     -------
@@ -43,24 +40,22 @@ def errors_along_ratio(
         ``relative_error`` (quantity, ϖ), moduli, infinite where a model lacks the quantity;
         ``error_threshold`` in ϖ and ``threshold_status``, both (quantity, tolerance).
     """
-    r = restitution if compared_restitution is None else compared_restitution
     found = search(
         damping_ratio(restitution),
         release,
+        restitution,
         n,
         amplitude,
         ratios=ratios,
-        tolerance=tolerances,
+        tolerances=tolerances,
         quantities=quantities,
-        simple=lambda contact: [RestitutionModel(r)],
     )
-    # There is one simple model, and one orbit.
     dims = ("quantity", "tolerance")
     return xr.Dataset(
         {
-            "relative_error": (("quantity", "frequency_ratio"), modulus(found.error[0, :, 0])),
-            "error_threshold": (dims, found.threshold[0, :, 0]),
-            "threshold_status": (dims, found.status[0, :, 0]),
+            "relative_error": (("quantity", "frequency_ratio"), modulus(found.error[:, 0])),
+            "error_threshold": (dims, found.threshold[:, 0]),
+            "threshold_status": (dims, found.status[:, 0]),
         },
         coords={
             "quantity": [str(quantity) for quantity in quantities],

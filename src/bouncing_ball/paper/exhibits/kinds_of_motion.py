@@ -1,10 +1,17 @@
-"""Periodic, subharmonic and chaotic motions of the restitution model, one ball for each.
+r"""Periodic, subharmonic and chaotic motions of the restitution model, one ball for each.
 
-A few balls that start alike are followed from impact to impact on tables of different Λ, until it
-is known after how many impacts their motions repeat (:mod:`bouncing_ball_beyond.motions.recurrence`). The
-simulation then shows whether a ball is back in its state up to rounding. If a motion does not
-repeat, a small deviation of the ball is mapped from impact to impact by the derivative of the map
-(:mod:`bouncing_ball_beyond.motions.lyapunov`); in a chaotic motion the deviation grows exponentially.
+A few balls that start alike are simulated on tables of different Λ. The first impacts belong to the
+way to a motion. Two questions are asked about the later ones:
+
+* After how many impacts is the ball back in its state up to rounding, again and again in the last
+  quarter of its impacts?
+* How fast does a small deviation of the ball grow in the last three quarters? The derivative of the
+  map takes it from impact to impact. The Lyapunov exponent is the sum of the logarithms of its
+  growth over the time passed. Its standard error follows from its scatter over blocks of impacts.
+
+Balls are followed with the operations + - × ÷ and √ only, see
+:mod:`bouncing_ball.numerics.elementary`, so that the same bits give the same chaotic motion on
+every processor.
 
 A ball that sticks leaves in a state that does not depend on its earlier motion, so that a motion
 that sticks again and again repeats in the end. The amplitudes of the run are chosen so that no ball
@@ -15,14 +22,14 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.sequence import ImpactSequence
-from bouncing_ball_beyond.motions.destination import final_motions
-from bouncing_ball_beyond.motions.motions import Kind, Motions
 
 from bouncing_ball.datasets.parameters import Amplitude, Many, Parameters, Restitution, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.flight import flight_derivative, table
+from bouncing_ball.models.history import ImpactSequence, impacts_of
+from bouncing_ball.models.model import Status
+from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.numerics.elementary import reduce_angle
 
 VARIABLES = {
@@ -30,6 +37,8 @@ VARIABLES = {
 }
 # Largest difference of two states, φ and δ′, that differ by rounding only.
 _ROUNDING = 1e-12
+# The number of impacts in a block over which the growth of a deviation is summed up.
+_BLOCK = 32
 
 
 class BallsAlike(Parameters):
@@ -49,42 +58,64 @@ class BallsAlike(Parameters):
     ]
 
 
-def _require_bouncing(found: Motions, amplitude: np.ndarray) -> None:
-    resting = np.flatnonzero(found.kind == Kind.PERMANENT_CONTACT)
-    if resting.size:
-        ball = resting[0]
-        raise ModelError(
-            f"the ball at Λ = {amplitude[ball]:g} comes to rest on the table after "
-            f"{found.followed[ball] + 1} impacts, and stays there: only above Λ = 1 does the table "
-            "throw it off"
-        )
-
-
-def is_back(sequence: ImpactSequence, impacts: np.ndarray) -> np.ndarray:
-    """Whether the last impact of each ball is the one so many impacts before, up to rounding.
+def period(phase: np.ndarray, velocity: np.ndarray) -> int:
+    """The smallest number of impacts after which the states of a ball repeat up to rounding, to the
+    end; 0 if they do not repeat twice.
 
     Examples
     --------
-    Flights of half a period, of an elastic ball on a table at rest:
-
-    >>> path = RestitutionModel(1.0).simulate(0.0, 0.0, np.full(2, -np.pi / 2), 5)
-    >>> is_back(path, np.array([1, 2])).tolist()
-    [False, True]
+    >>> period(np.array([0.1, 0.2, 0.1, 0.2, 0.1, 0.2]), np.full(6, -1.0))
+    2
     """
-    before = -1 - impacts
-    ball = np.arange(impacts.size)
-    turn = reduce_angle(sequence.phase[-1] - sequence.phase[before, ball])
-    change = sequence.relative_velocity[-1] - sequence.relative_velocity[before, ball]
-    return np.maximum(np.abs(turn), np.abs(change)) <= _ROUNDING
+
+    def apart(later: slice, earlier: slice) -> np.ndarray:
+        turned = np.abs(reduce_angle(phase[later] - phase[earlier]))
+        return np.maximum(turned, np.abs(velocity[later] - velocity[earlier]))
+
+    like_the_last = apart(slice(-1, None), slice(-2, -2 - len(phase) // 2, -1)) <= _ROUNDING
+    for count in 1 + np.flatnonzero(like_the_last):
+        if apart(slice(count, None), slice(None, -count)).max() <= _ROUNDING:
+            return int(count)
+    return 0
+
+
+def growth(path: ImpactSequence, ball: int) -> np.ndarray:
+    """The logarithms of the growth of a deviation (dφ, dδ′) from each impact to the next."""
+    phase = path.phase[:, ball]
+    velocity = path.relative_velocity[:, ball]
+    lam = path.amplitude[ball]
+    time = np.diff(path.time[:, ball])
+    of_impact = path.model.derivative(phase[:-1], velocity[:-1], lam, 0.0)
+    maps = flight_derivative(phase[:-1], time, velocity[1:], lam) @ of_impact
+    deviation = np.array([1.0, 0.0])
+    found = np.empty(len(maps))
+    for k, each in enumerate(maps):
+        deviation = each @ deviation
+        length = np.linalg.norm(deviation)
+        deviation /= length
+        found[k] = np.log(length)
+    return found
+
+
+def exponent(path: ImpactSequence, ball: int) -> tuple[float, float]:
+    """The Lyapunov exponent per period of the table, with its standard error: that of a ratio of
+    means over blocks, of which the first quarter is left out.
+    """
+    blocks = 3 * (len(path.time) - 1) // (4 * _BLOCK)
+    grown = growth(path, ball)[-blocks * _BLOCK :].reshape(blocks, _BLOCK).sum(axis=1)
+    passed = np.diff(path.time[-blocks * _BLOCK - 1 :: _BLOCK, ball]) / (2 * np.pi)
+    rate = grown.sum() / passed.sum()
+    scatter = np.sum((grown - rate * passed) ** 2) * blocks / (blocks - 1)
+    return rate, np.sqrt(scatter) / passed.sum()
 
 
 def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
     """Whether the motion of each ball repeats, and how fast its neighbours separate from it.
 
     The dataset has, over ``amplitude``, ``impacts`` and ``periods`` of the table until the motion
-    repeats up to rounding, 0 if it does not; ``stickings``, after how many impacts the ball sticks
-    before its motion is known; and ``lyapunov_exponent`` with its error
-    ``lyapunov_error``, per period of the table, NaN for a motion that repeats or sticks.
+    repeats up to rounding, 0 if it does not; ``stickings``, after how many impacts the ball sticks;
+    and ``lyapunov_exponent`` with its error ``lyapunov_error``, per period of the table, NaN
+    for a motion that repeats or sticks.
 
     Raises
     ------
@@ -92,21 +123,32 @@ def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
         If a ball comes to rest on the table for ever.
     """
     amplitude = np.array(parameters.amplitude)
+    velocity, _ = table(np.array(parameters.phase), amplitude)
+    velocity = velocity - parameters.impact_speed
     model = RestitutionModel(parameters.restitution)
-    velocity = amplitude * np.cos(parameters.phase) - parameters.impact_speed
-    start = amplitude, parameters.phase, velocity
-    found = final_motions(model, *start, impacts=parameters.impacts)
-    _require_bouncing(found, amplitude)
-    sequence = model.simulate(*start, parameters.impacts + 1)
-    repeats = (found.impacts > 0) & is_back(sequence, found.impacts)
-    wanders = (found.impacts == 0) & (found.times_stuck == 0)
+    path = impacts_of(model, amplitude, parameters.phase, velocity, parameters.impacts)
+    if np.any(path.status == Status.PERMANENT_CONTACT):
+        ball = int(np.argmax(path.status == Status.PERMANENT_CONTACT))
+        raise ModelError(
+            f"the ball at Λ = {amplitude[ball]:g} comes to rest on the table after "
+            f"{int(np.isfinite(path.time[:, ball]).sum())} impacts, and stays there: only above "
+            "Λ = 1 does the table throw it off"
+        )
+    settled = 3 * parameters.impacts // 4
+    balls = range(amplitude.size)
+    states = path.phase[settled:], path.relative_velocity[settled:]
+    impacts = np.array([period(*(x[:, k] for x in states)) for k in balls])
+    lasts = path.time[settled + impacts, balls] - path.time[settled]
+    stickings = np.sum(path.contact_duration > 0, axis=0)
+    found = [(np.nan, np.nan) if impacts[k] or stickings[k] else exponent(path, k) for k in balls]
+    rate, error = np.array(found).T
     return described(
         {
-            "impacts": ("amplitude", np.where(repeats, found.impacts, 0)),
-            "periods": ("amplitude", np.where(repeats, found.periods, 0)),
-            "stickings": ("amplitude", found.times_stuck),
-            "lyapunov_exponent": ("amplitude", np.where(wanders, found.exponent, np.nan)),
-            "lyapunov_error": ("amplitude", np.where(wanders, found.exponent_error, np.nan)),
+            "impacts": ("amplitude", impacts),
+            "periods": ("amplitude", np.rint(lasts / (2 * np.pi)).astype(int)),
+            "stickings": ("amplitude", stickings),
+            "lyapunov_exponent": ("amplitude", rate),
+            "lyapunov_error": ("amplitude", error),
         },
         coords={"amplitude": amplitude},
         variables=VARIABLES,

@@ -8,12 +8,6 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import saddle_node
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
@@ -30,6 +24,10 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.explicit import explicit_branch, restitution_saddle_node
+from bouncing_ball.periodic.orbit import Side
 
 # The next frequency ratio that has an orbit is sought among so many, up to the largest, and then
 # so many times between two of them, which gives six digits.
@@ -55,7 +53,7 @@ def require_amplitude(amplitude: float, n: int, restitution: float) -> float:
     >>> require_amplitude(1.0, 1, 0.85)
     1.0
     """
-    lowest = float(saddle_node(n, restitution))
+    lowest = float(restitution_saddle_node(n, restitution))
     if amplitude < lowest:
         raise ValueError(
             f"must be at least {lowest:.6g}, the saddle-node of the {n}-T restitution orbit at "
@@ -109,13 +107,13 @@ class OrbitsOfContacts(NamedTuple):
         [False, True]
         """
         column = np.asarray(ratios)[:, np.newaxis]
-        model = ContactModel(SpringDamper.from_restitution(self.restitution, column, self.release))
-        stable = n_t.orbit(model, self.n, self.amplitudes)
+        contacts = SpringDamper.from_restitution(self.restitution, column, self.release)
+        branch = explicit_branch(contacts)
+        stable = branch.orbit(self.n, self.amplitudes)
         if self.admissible:
-            found = stable.exists & stable.is_admissible()
+            found = stable.admissible
         else:
-            unstable = n_t.orbit(model, self.n, self.amplitudes, Side.UNSTABLE)
-            found = stable.exists | unstable.exists
+            found = stable.exists | branch.orbit(self.n, self.amplitudes, Side.UNSTABLE).exists
         return found.any(axis=-1)
 
     def next_stiffer(self, ratio: float) -> float:
@@ -220,7 +218,7 @@ class OrbitsAlongRatio(OrbitParameters):
 
 
 class OrbitErrors(OrbitsAlongRatio):
-    """One orbit along ϖ, and the tolerated relative error of a simple model."""
+    """One orbit along ϖ, and the tolerated relative error of the restitution model."""
 
     tolerance: Tolerance
 

@@ -1,16 +1,16 @@
 """Thresholds of permanent contact along ϖ (Figs. 11 and 16)."""
 
 import xarray as xr
-from bouncing_ball_beyond.accuracy.errors import Quantity
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
-from bouncing_ball_beyond.models.permanent_contact import (
+
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.datasets.parameters import Parameters, Restitution, Span, Tolerance
+from bouncing_ball.datasets.variables import Variable, describe, described
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.permanent_contact import (
     RESTITUTION_THRESHOLD,
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-
-from bouncing_ball.datasets.parameters import Parameters, Restitution, Span, Tolerance
-from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 
 VARIABLES = {

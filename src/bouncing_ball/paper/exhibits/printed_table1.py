@@ -6,7 +6,8 @@ The exponent of the first frequency ratio is unreadable and taken as 4.
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
+
+from bouncing_ball.periodic.orbit import Bifurcation
 
 AXES: dict[str, list] = {
     "frequency_ratio": [1e4, 10.0, 2.0],

@@ -4,17 +4,19 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as orbits
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import ImpactMap
-from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.special import Special
 
 from bouncing_ball.datasets.parameters import Samples, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
+from bouncing_ball.periodic.explicit import (
+    ImpactMap,
+    RestitutionBranch,
+    period_doubling_lift,
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
+from bouncing_ball.periodic.orbit import path
 
 VARIABLES = {
     "grazing_amplitude": Variable(
@@ -33,14 +35,6 @@ class RestitutionHistory(OrbitParameters):
     samples: Samples
 
 
-def _grazing(model: RestitutionModel, n: int, top: float) -> np.ndarray:
-    """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
-    for each in whole_branch(model, n, top).special:
-        if each.kind == Special.GRAZING_FLIGHT:
-            return np.array([each.phase, each.amplitude])
-    return np.full(2, np.nan)
-
-
 def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     """φ against Λ for several families of the restitution model (Fig. 3).
 
@@ -56,22 +50,21 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     n = np.array(parameters.n)
     r = parameters.restitution
     top = parameters.amplitude_max
-    fold = orbits.saddle_node(n, r)
-    amplitude, phase = orbits.branch_points(n, r, top, parameters.points)
-    model = RestitutionModel(r)
-    shown = Orbit.of(model, n[:, np.newaxis], amplitude, phase)
-    grazing = np.array([_grazing(model, family, top) for family in parameters.n])
+    branch = RestitutionBranch(RestitutionModel(r))
+    shown = branch.along(n, top, parameters.points)
+    grazing = [branch.grazing(family, top) for family in parameters.n]
+    fold = restitution_saddle_node(n, r)
     maps = list(ImpactMap)
-    doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
-    lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
+    doubling = [restitution_period_doubling(n, r, kind) for kind in maps]
+    lift = np.array([[float(period_doubling_lift(r, kind))] for kind in maps])
     return described(
         {
-            "amplitude": (("n", "point"), amplitude),
-            "phase": (("n", "point"), phase),
-            "stable": (("n", "point"), shown.is_stable()),
-            "admissible": (("n", "point"), shown.is_admissible()),
-            "grazing_amplitude": ("n", grazing[:, 1]),
-            "grazing_phase": ("n", grazing[:, 0]),
+            "amplitude": (("n", "point"), shown.amplitude),
+            "phase": (("n", "point"), shown.phase),
+            "stable": (("n", "point"), shown.stable),
+            "admissible": (("n", "point"), shown.admissible),
+            "grazing_amplitude": ("n", [float(each.amplitude) for each in grazing]),
+            "grazing_phase": ("n", [float(each.phase) for each in grazing]),
             "saddle_node_amplitude": ("n", fold),
             "saddle_node_phase": ("n", np.zeros_like(fold)),
             "period_doubling_amplitude": (("impact_map", "n"), doubling),
@@ -95,9 +88,9 @@ def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
     """
     n = parameters.n
     lam = parameters.amplitude
-    orbit = n_t.require_orbit(RestitutionModel(parameters.restitution), n, lam)
+    orbit = RestitutionBranch(RestitutionModel(parameters.restitution)).required(n, lam)
     time = np.linspace(0.0, parameters.periods * 2 * np.pi * n, parameters.samples)
-    height, velocity = orbit.path(time)
+    height, velocity = path(orbit, time)
     return described(
         {
             "ball": ("time", height),

@@ -2,17 +2,16 @@
 
 import numpy as np
 import xarray as xr
-from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.parameters import Many, Samples
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import ContactRatio, OrbitParameters
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import Orbit, contact_path, flight_path, path
 
 VARIABLES = {
     "table_phase": Variable("phase of the table, whose height is Λ sin τ", symbol="τ", units="rad"),
@@ -41,14 +40,22 @@ class Histories(OrbitParameters):
     samples: Samples
 
 
-def _orbit(
-    parameters: ContactHistory | Histories, ratio: ArrayLike, release: Release
-) -> tuple[Orbit, dict[str, float]]:
-    """The orbit on one contact, which is admissible, and the numbers of its dataset."""
+def _orbit(parameters: OrbitParameters, ratio: float, release: Release) -> Orbit:
+    """The orbit on one contact.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none, or if it is inadmissible.
+    """
     contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-    model = ContactModel(contact)
-    orbit = n_t.require_admissible(model, parameters.n, parameters.amplitude)
-    return orbit, {name: float(getattr(orbit, name)) for name in _STATE}
+    orbit = explicit_branch(contact).required(parameters.n, parameters.amplitude)
+    if not orbit.admissible:
+        raise NoOrbitError(
+            f"the {parameters.n}-T orbit at Λ = {parameters.amplitude:g} for {contact.label} is "
+            "inadmissible: an earlier impact or release occurs"
+        )
+    return orbit
 
 
 def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
@@ -64,7 +71,7 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist or is inadmissible.
     """
-    orbit, state = _orbit(parameters, parameters.frequency_ratio, release)
+    orbit = _orbit(parameters, parameters.frequency_ratio, release)
     half = parameters.samples // 2
     during = np.linspace(0.0, orbit.contact_duration, half)
     flight = np.linspace(
@@ -72,7 +79,7 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
     )
     # The end of the contact is its last sample.
     after = flight[1:]
-    ball, velocity = np.hstack([orbit.contact_path(during), orbit.flight_path(after)])
+    ball, velocity = np.hstack([contact_path(orbit, during), flight_path(orbit, after)])
     time = np.concatenate([during, after])
     return described(
         {
@@ -81,7 +88,7 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
             "table": ("time", parameters.amplitude * np.sin(time + orbit.phase)),
             "contact": ("time", np.arange(parameters.samples) < half),
             "frequency_ratio": parameters.frequency_ratio,
-            **state,
+            **{name: float(getattr(orbit, name)) for name in _STATE},
         },
         coords={"time": time},
         variables=VARIABLES,
@@ -106,26 +113,22 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     lam = parameters.amplitude
     period = 2 * np.pi * n
     ratios = sorted(parameters.frequency_ratio)
-    orbits, states = zip(*(_orbit(parameters, ratio, release) for ratio in ratios), strict=True)
-    rigid = n_t.require_orbit(RestitutionModel(parameters.restitution), n, lam)
+    orbits = [_orbit(parameters, ratio, release) for ratio in ratios]
+    rigid = explicit_branch(RestitutionModel(parameters.restitution)).required(n, lam)
     corners = [rigid.phase, *(x for one in orbits for x in (one.phase, one.release_phase))]
     phase = np.union1d(np.linspace(0.0, period, parameters.samples), np.mod(corners, period))
     # The start of a contact is at the time 0 and not, by rounding, at the end of the cycle.
     since = [np.mod(phase - one.phase + _ROUNDING, period) - _ROUNDING for one in orbits]
+    pairs = zip(orbits, since, strict=True)
+    touching = [time <= one.contact_duration + _ROUNDING for one, time in pairs]
     return described(
         {
-            "ball": (_CURVES, [one.path(time)[0] for one, time in zip(orbits, since, strict=True)]),
-            "contact": (
-                _CURVES,
-                [
-                    time <= one.contact_duration + _ROUNDING
-                    for one, time in zip(orbits, since, strict=True)
-                ],
-            ),
-            "restitution_ball": ("table_phase", rigid.path(phase - rigid.phase)[0]),
+            "ball": (_CURVES, [path(*pair)[0] for pair in zip(orbits, since, strict=True)]),
+            "contact": (_CURVES, touching),
+            "restitution_ball": ("table_phase", path(rigid, phase - rigid.phase)[0]),
             "table": ("table_phase", lam * np.sin(phase)),
             "restitution_phase": ((), float(rigid.phase)),
-            **{name: ("frequency_ratio", [one[name] for one in states]) for name in _STATE},
+            **{name: ("frequency_ratio", [getattr(x, name) for x in orbits]) for name in _STATE},
         },
         coords={"frequency_ratio": ratios, "table_phase": phase},
         variables=VARIABLES,

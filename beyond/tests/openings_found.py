@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+
 from bouncing_ball_beyond.exhibits.cascade_of_flights import stiff_openings
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio

@@ -1,0 +1,13 @@
+"""The n-T orbits of both models: one impact in n periods of the table (Eqs. 6-8, 18-27).
+
+========================= ====================================================================
+:mod:`.orbit`             an n-T orbit: its observables, its motion, stability, admissibility
+:mod:`.explicit`          all orbits in closed form, at given Λ and at both bifurcations
+:mod:`.continuation`      a branch by continuation in the paper's six unknowns (Eqs. 21-26)
+:mod:`.branches`          branches with their special orbits as datasets; the call ``branch``
+:mod:`.calls`             the calls ``orbit``, ``orbits`` and ``limits``
+========================= ====================================================================
+
+There are two routes to an orbit, which share the equations of the impact and of the flight alone:
+its branch in closed form, and continuation. A simulation of the ball is the third.
+"""

@@ -1,0 +1,120 @@
+"""Impacts with a restitution coefficient: exact answers, chattering, rest, lift-off."""
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.models.history import impacts_of, motion_at
+from bouncing_ball.models.model import Status
+from bouncing_ball.models.restitution import RestitutionModel, chattering, lift_off_phase
+
+EPS = np.finfo(float).eps
+
+
+def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
+    found = impacts_of(RestitutionModel(1.0), 0.0, 0.3, -2.0, 1000)
+    assert np.all(found.impact_velocity == -2) and np.all(np.diff(found.time, axis=0) == 4)
+
+
+@pytest.mark.parametrize("r", [0.1, 0.5, 0.9, 0.99])
+def test_chattering_on_a_table_at_rest_is_a_geometric_series(r):
+    speed = 3.0
+    found = impacts_of(RestitutionModel(r), 0.0, 0.0, -speed / r, 3000)
+    count = int(np.sum(np.isfinite(found.time)))
+    assert found.status == Status.PERMANENT_CONTACT and count > 4
+    index = np.arange(count - 1)
+    # Rounding of each impact adds up, of at most 1500 of them.
+    np.testing.assert_allclose(
+        found.relative_velocity[1:count, 0], -speed * r**index, rtol=1500 * EPS
+    )
+    # The rest of the bounces is summed up from the last impact.
+    rest = -2 * r * found.relative_velocity[count - 1, 0] / (1 - r)
+    whole = found.time[count - 1, 0] + rest
+    assert whole == pytest.approx(2 * speed / (1 - r), rel=1500 * EPS)
+
+
+def summed(r, lam, phase, speed):
+    """How long a ball bounces that leaves with a relative speed, bounce by bounce in 40 digits."""
+    with mpmath.workdps(40):
+        tau = mpmath.mpf(phase)
+        u = mpmath.mpf(speed)
+        time = mpmath.mpf(0)
+        while u > 1e-20:
+
+            def gap(s, tau=tau, u=u):
+                table = mpmath.sin(tau + s) - mpmath.sin(tau) - s * mpmath.cos(tau)
+                return u - s / 2 - lam * table / s
+
+            s = mpmath.findroot(gap, 2 * u / (1 - lam * mpmath.sin(tau)))
+            u = r * (s - u + lam * (mpmath.cos(tau + s) - mpmath.cos(tau)))
+            tau += s
+            time += s
+        return float(time)
+
+
+@pytest.mark.parametrize(
+    ("r", "lam", "phase"), [(0.5, 0.8, -1.0), (0.3, 1.4, -1.0), (0.8, 0.0, 0.3), (0.6, 3.0, 2.9)]
+)
+def test_the_time_of_chattering_is_that_of_all_its_bounces(r, lam, phase):
+    gravity = 1 - lam * np.sin(phase)
+    speed = 4e-6 * (1 - r) * gravity**2 / max(lam, 1)
+    x, y = lam * np.cos(phase), lam * np.sin(phase)
+    rows = (np.full(1, each) for each in (speed, r, x, y, lam))
+    sticks, time = chattering(*rows)
+    assert sticks[0]
+    exact = summed(r, lam, phase, speed)
+    # The first term that the sum leaves out is some 1e-10 of the whole, far below the second.
+    assert time[0] == pytest.approx(exact, rel=1e-9)
+    first = 2 * speed / (gravity * (1 - r))
+    if abs(x) > 0.1:
+        assert abs(time[0] - exact) < 1e-3 * abs(first - exact)
+
+
+@pytest.mark.parametrize("lam", [1.0001, 1.2, 2.0, 3.0])
+def test_a_ball_at_rest_lifts_off_where_the_table_falls_with_gravity(lam):
+    found = impacts_of(RestitutionModel(0.3), lam, -0.4, lam * np.cos(-0.4), 2)
+    duration = float(found.contact_duration[0, 0])
+    assert duration == pytest.approx(0.4 + np.arcsin(1 / lam), abs=1e-14)
+    assert found.relative_bounce_velocity[0, 0] == 0
+    # It lands where the free flight from there meets the table.
+    start = float(lift_off_phase(lam))
+    s = float(found.time[1, 0]) - duration
+    gap = 1 + s * lam * np.cos(start) - s * s / 2 - lam * np.sin(start + s)
+    assert s > 4 * np.cos(start) and abs(gap) < 1e-14 * (1 + s * s)
+
+
+def test_a_table_below_gravity_keeps_the_ball():
+    found = impacts_of(RestitutionModel(0.5), [0.0, 0.5, 1.0], 0.0, -6.0, 300)
+    assert np.all(found.status == Status.PERMANENT_CONTACT)
+    assert np.sum(np.isinf(found.contact_duration), axis=0).tolist() == [1, 1, 1]
+    assert np.all(np.isnan(found.relative_bounce_velocity[np.isinf(found.contact_duration)]))
+
+
+@given(st.floats(0.05, 1.0), st.floats(0.0, 6.0), st.floats(-3.2, 3.2), st.floats(0.0, 8.0))
+def test_the_ball_stays_above_the_table_and_each_impact_obeys_the_law(r, lam, phase, speed):
+    found = impacts_of(RestitutionModel(r), lam, phase, lam * np.cos(phase) - speed, 25)
+    last = np.max(found.time[np.isfinite(found.time)])
+    motion = motion_at(found, 0, np.linspace(0, last, 3000))
+    # The rounding of the clock, of up to some hundred units, times the velocity.
+    assert np.nanmin(motion.height - motion.table) >= -1e-12
+    bounced = found.contact_duration == 0
+    expected = -r * found.relative_velocity[bounced]
+    assert np.array_equal(found.relative_bounce_velocity[bounced], expected)
+    going = np.isfinite(found.relative_velocity)
+    assert np.all(found.relative_velocity[going] <= 0)
+
+
+def test_the_derivative_of_an_impact_and_its_determinant():
+    model = RestitutionModel([0.3, 0.9])
+    found = model.derivative(np.zeros(2), np.array([-1.0, -2.0]), 1.0, 0.0)
+    assert found.tolist() == [[[1.0, 0.0], [0.0, -0.3]], [[1.0, 0.0], [0.0, -0.9]]]
+    assert model.contraction(0.0) == pytest.approx([0.09, 0.81], rel=4 * EPS)
+
+
+@pytest.mark.parametrize("value", ["x", "0.5", True, None, ["1"], [[0.5], [0.5, 0.6]], 0.0, 1.01])
+def test_what_is_no_restitution_coefficient_is_refused_where_the_model_is_made(value, refusal):
+    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in (0, 1]"):
+        RestitutionModel(value)

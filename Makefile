@@ -1,6 +1,7 @@
-# make        set up and make every figure, table and the paper in results/
-# make test   set up and run the tests; make test-cluster runs the test with Slurm
-# make quick  the tests of the computations, for use during development
+# make            set up and make every figure, table and the paper in results/
+# make test       set up and run the tests
+# make everything the other houses too, beyond/ and contacts/; make test-everything tests all three
+# make quick      the tests of the computations, for use during development
 # The environment is .venv/, from the hashed lock files.
 
 PYTHON ?= python3
@@ -14,34 +15,46 @@ endif
 COMMA := ,
 # The target that every other target needs first; empty if another venv exists already.
 SETUP ?= setup
+SETUP_EVERYTHING ?= setup-everything
 # Print the files made, how many steps are done, and errors; the rest is in .snakemake/log.
 QUIETLY := --quiet host rules reason
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+PATHS := $(abspath $(BIN))
+HOUSES := beyond contacts
+# The only package of the locks without a wheel.
+SOURCES := connection-pool
 
 # Sixty jobs import the same modules, so that compiled modules are kept whatever the shell sets.
 unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all replication setup lint test quick speed test-cluster test-long test-processors setup-engines test-engines docs test-docs gallery diff accept report clean ci setup-newest newest config-docs readme lock
+.PHONY: all replication setup lint test quick diff accept report clean ci test-cluster test-long test-processors everything setup-everything lint-everything test-everything diff-everything setup-engines test-engines docs test-docs gallery speed setup-newest newest config-docs readme lock
+
+# The replication.
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
 	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
 
-# The paper alone, and its comparison with the record: results/diff/index.html.
+# The same, and its comparison with the record: results/diff/index.html.
 replication: $(SETUP)
 	$(BIN)/snakemake --cores 2 replication diff $(QUIETLY)
 
 setup: $(VENV)/.installed
 
+# After a copy or a move of the checkout, the programs in .venv are those of the other folder: it is
+# made anew, unless .installed names this folder.
+ifneq ($(filter-out $(CURDIR),$(shell cat $(VENV)/.installed 2>/dev/null)),)
+$(shell rm -f $(VENV)/.installed $(VENV)/.everything $(VENV)/.docs)
+endif
 $(VENV)/.installed: requirements-build.lock requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python 3.11 or newer is needed, this is %d.%d: make PYTHON=python3.12" % sys.version_info[:2])'
-	$(PYTHON) -m venv $(VENV)
+	$(PYTHON) -m venv --clear $(VENV)
 	$(PIP) --require-hashes --only-binary :all: --requirement requirements-build.lock
-	$(PIP) --require-hashes --no-build-isolation --requirement requirements.lock
+	$(PIP) --require-hashes --only-binary :all: --no-binary $(SOURCES) --no-build-isolation --requirement requirements.lock
 	$(PIP) --no-deps --no-build-isolation --editable .
-	@touch $@
+	@echo $(CURDIR) > $@
 
 # Style, types, the floors of the house, and the linter of Snakemake.
 lint: $(SETUP)
@@ -58,77 +71,35 @@ lint: $(SETUP)
 # results of `make all` if they are of this commit. Each worker has one thread, because further
 # threads would compete for the same processors.
 THREADS ?= 1
-PYTEST = OMP_NUM_THREADS=$(THREADS) $(BIN)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
+PYTEST = OMP_NUM_THREADS=$(THREADS) $(PATHS)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
 
-# The results of one run of the pipeline are compared with the record and are not computed again.
 test: $(SETUP)
-	$(PYTEST) --deselect tests/beyond/exhibits/test_against_the_record.py
+	$(PYTEST)
 
 # The tests of the computations, without runs of the pipeline, pictures and tests that take seconds.
 # Some of them read the accepted record, so that a new artifact fails here until it is accepted.
 quick: $(SETUP)
-	$(PYTEST) $(addprefix --ignore=tests/,workflow drawing) --deselect tests/beyond/exhibits/test_against_the_record.py -m "not long and not slow and not cluster and not engines and not docs"
-
-# One table of times against other programs: docs/speed.md. AUTO-07p is optional: `pip install
-# bifpy` in the environment, with gfortran. COLD=--cold adds a cold run of the pipeline.
-speed: $(SETUP)
-	OMP_NUM_THREADS=1 $(BIN)/python tests/speed/side_by_side.py $(COLD)
+	$(PYTEST) $(addprefix --ignore=tests/,workflow drawing) -m "not long and not slow and not cluster and not docs"
 
 # Two stages with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
 test-cluster: $(SETUP)
 	$(BIN)/python -m pytest -m cluster tests/workflow
 
-# Long tests, and tests that repeat the assertions of others for more models and laws. They run on
-# schedule in CI, and before a release.
-test-long: $(SETUP)
+# Long tests. They run on schedule in CI, and before a release.
+test-long: $(SETUP_EVERYTHING)
 	$(PYTEST) -m long --durations 20
+	for house in $(HOUSES); do (cd $$house && $(PYTEST) -m long --durations 20) || exit; done
 
 # All tests again as on processors without AVX-512, and as on processors without AVX2, the latter
 # with two threads. numpy may only leave out code for instructions that this processor has: those
 # beyond X86_V3, which is AVX2, and all.
-BEYOND = import numpy._core._multiarray_umath as cpu; print(*(x for x in cpu.__cpu_dispatch__ if cpu.__cpu_features__[x] and x != "$(1)"))
-as_on = NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(call BEYOND,$(1))')" OPENBLAS_CORETYPE=$(2)
-test-processors: $(SETUP)
+PAST = import numpy._core._multiarray_umath as cpu; print(*(x for x in cpu.__cpu_dispatch__ if cpu.__cpu_features__[x] and x != "$(1)"))
+as_on = NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(call PAST,$(1))')" OPENBLAS_CORETYPE=$(2)
+test-processors: $(SETUP_EVERYTHING)
 	@failed=0; \
-	$(call as_on,X86_V3,Haswell) $(MAKE) test SETUP= || failed=1; \
-	$(call as_on,none,Nehalem) $(MAKE) test SETUP= THREADS=2 || failed=1; \
+	$(call as_on,X86_V3,Haswell) $(MAKE) test-everything SETUP= SETUP_EVERYTHING= || failed=1; \
+	$(call as_on,none,Nehalem) $(MAKE) test-everything SETUP= SETUP_EVERYTHING= THREADS=2 || failed=1; \
 	exit $$failed
-
-# The physics engines of the extra that have a wheel for this machine; the lock does not have them.
-ENGINES = import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])
-setup-engines: $(SETUP)
-	@missing=""; \
-	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
-	    $(PIP) --only-binary :all: --no-binary pygltflib "$$engine" || missing="$$missing $$engine"; done; \
-	echo "Engines without a wheel for this machine:$${missing:- none}."; \
-	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt, physx; docs/bounces/javascript.mjs has the last two."; \
-	$(BIN)/python -c "import torch" 2> /dev/null || \
-	    echo "Genesis needs torch, of gigabytes, and is skipped without it: $(PIP) torch"
-
-# Run the snippets of `design --engine` in the installed engines: ten minutes of processor time.
-# The datasets are engines.nc, ext_bounces.nc, ext_bounce_settings.nc and bounce_drivers.nc in
-# results/config; `make accept ONLY=engines` accepts one of them.
-test-engines: $(SETUP)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/contacts/engines
-	$(BIN)/python docs/bounces/threads.py
-
-# The site from the docs, the docstrings, the article and the explorer: results/site/index.html.
-docs: $(SETUP) $(VENV)/.docs
-	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -c docs . results/site
-	@echo "The site: results/site/index.html"
-
-$(VENV)/.docs: requirements-docs.lock
-	$(PIP) --require-hashes --only-binary :all: --requirement requirements-docs.lock
-	@touch $@
-
-# Check links, pictures and errors of every page of the site in Chromium. It runs weekly in CI.
-test-docs: docs
-	$(BIN)/python -m pytest -m docs tests/test_site.py
-
-# The pictures of the gallery and of the lesson.
-gallery: $(SETUP)
-	cd docs/gallery && for script in *.py; do $(abspath $(BIN))/python $$script || exit; done
-	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
 
 # Compare the results with the accepted record; the page is results/diff/index.html. With
 # ONLY=fig14, only this artifact is made and compared.
@@ -145,31 +116,106 @@ report: all
 	$(BIN)/snakemake --report results/report.html
 
 clean:
-	rm -rf results .snakemake
+	rm -rf results .snakemake beyond/results beyond/.snakemake
 
 # The steps of continuous integration.
 ci:
 	.ci/run
 
+# The other houses: beyond/, which makes its own results, and contacts/, which makes none.
+
+setup-everything: $(VENV)/.everything
+
+$(VENV)/.everything: $(VENV)/.installed requirements-everything.lock
+	$(PIP) --require-hashes --only-binary :all: --no-binary $(SOURCES) --no-build-isolation --requirement requirements-everything.lock
+	$(PIP) --no-deps --no-build-isolation --editable ./beyond --editable ./contacts
+	@touch $@
+
+everything: all $(SETUP_EVERYTHING)
+	cd beyond && $(PATHS)/snakemake --cores 2 $(QUIETLY)
+	@echo "Results of what goes past the paper: beyond/results/"
+
+diff-everything: $(SETUP_EVERYTHING) diff
+	cd beyond && $(PATHS)/snakemake --cores 2 diff $(QUIETLY)
+
+lint-everything: $(SETUP_EVERYTHING) lint
+	$(BIN)/mypy --package bouncing_ball_beyond --package bouncing_ball_contacts
+	for house in $(HOUSES); do (cd $$house && $(PATHS)/lint-imports --no-logo --no-cache) || exit; done
+	@said="$$(cd beyond && $(PATHS)/snakemake --lint 2>&1)" && case "$$said" in *"in a good condition!"*) ;; \
+	    *) false;; esac || { echo "$$said"; echo "snakemake --lint did not end"; exit 1; }
+
+# The tests of all three houses, each whatever the others say.
+test-everything: $(SETUP_EVERYTHING)
+	@failed=0; \
+	$(MAKE) test SETUP= || failed=1; \
+	for house in $(HOUSES); do (cd $$house && $(PYTEST)) || failed=1; done; \
+	exit $$failed
+
+# The physics engines of the contacts' extra that have a wheel for this machine; no lock has them.
+ENGINES = import tomllib; print(*tomllib.load(open("contacts/pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])
+setup-engines: $(SETUP_EVERYTHING)
+	@missing=""; \
+	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
+	    $(PIP) --only-binary :all: --no-binary pygltflib "$$engine" || missing="$$missing $$engine"; done; \
+	echo "Engines without a wheel for this machine:$${missing:- none}."; \
+	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt, physx; contacts/docs/bounces/javascript.mjs has the last two."; \
+	$(BIN)/python -c "import torch" 2> /dev/null || \
+	    echo "Genesis needs torch, of gigabytes, and is skipped without it: $(PIP) torch"
+
+# Run the snippets of `design --engine` in the installed engines: ten minutes of processor time.
+# The datasets are those in contacts/docs/data that only engines can make.
+test-engines: $(SETUP_EVERYTHING)
+	cd contacts && OMP_NUM_THREADS=1 $(PATHS)/python -m pytest -m engines tests/engines
+	$(BIN)/python contacts/docs/bounces/threads.py
+
+# One table of times against other programs: beyond/docs/speed.md. AUTO-07p is optional: `pip
+# install bifpy` in the environment, with gfortran.
+speed: $(SETUP_EVERYTHING)
+	OMP_NUM_THREADS=1 $(BIN)/python beyond/tests/speed/side_by_side.py $(COLD)
+
+# One site for all houses, from their docs, docstrings, articles and the explorer:
+# results/site/index.html.
+docs: $(SETUP_EVERYTHING) $(VENV)/.docs
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -c docs . results/site
+	@echo "The site: results/site/index.html"
+
+$(VENV)/.docs: requirements-docs.lock
+	$(PIP) --require-hashes --only-binary :all: --requirement requirements-docs.lock
+	@touch $@
+
+# Check links, pictures and errors of every page of the site in Chromium. It runs weekly in CI.
+test-docs: docs
+	$(BIN)/python -m pytest -m docs tests/test_site.py
+
+# The pictures of the galleries and of the lesson.
+gallery: $(SETUP_EVERYTHING)
+	for folder in docs beyond/docs contacts/docs; do \
+	    (cd $$folder/gallery && for script in *.py; do $(PATHS)/python $$script || exit; done) || exit; done
+	cd docs/lesson && $(PATHS)/python -m doctest -o ELLIPSIS ../lesson.md
+
 # The newest versions that pyproject.toml allows, without the lock, in a separate venv. The
 # pipeline from clean, the diff and the tests run there, each even if another fails.
 setup-newest:
 	$(PYTHON) -m venv --clear $(NEWEST)
-	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]'
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]' \
+	    --editable './beyond[test]' --editable './contacts[test]'
 
 newest: setup-newest clean
-	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
+	$(MAKE) --keep-going all diff test-everything VENV=$(NEWEST) SETUP= SETUP_EVERYTHING=
 
 config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
-# The verdicts and Table 1 in README.md, what time steps cost in docs/engines.md, and the lists of
-# files in figures/, from the accepted record.
+# The verdicts and Table 1 in README.md, and the list of files in figures/, from the accepted
+# record.
 readme: $(SETUP)
 	$(BIN)/snakemake --cores 1 readme $(QUIETLY)
 
-# Renew the lock files, for maintainers; this needs uv.
+# Renew the lock files, for maintainers; this needs uv. The second has what the other houses need,
+# with the versions of the first.
+LOCK := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade
 lock:
-	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
-	uv pip compile pyproject.toml --extra docs --constraint requirements.lock --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-docs.lock
-	printf 'flit_core\nsetuptools\nwheel\n' | uv pip compile - --constraint requirements.lock --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-build.lock
+	$(LOCK) pyproject.toml --extra test --extra pdf --extra lint --extra slurm --output-file requirements.lock
+	$(LOCK) beyond/pyproject.toml contacts/pyproject.toml --extra test --constraint requirements.lock --no-emit-package bouncing-ball --no-emit-package bouncing-ball-beyond --output-file requirements-everything.lock
+	$(LOCK) pyproject.toml --extra docs --constraint requirements-everything.lock --output-file requirements-docs.lock
+	printf 'flit_core\nsetuptools\nwheel\n' | $(LOCK) - --constraint requirements.lock --output-file requirements-build.lock

@@ -21,4 +21,4 @@ def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
     for each in artifacts:
         if each.study:
             studies[each.part][each.name] = function(each.module, each.study)
-    return configuration_model(studies, {})
+    return configuration_model(studies)

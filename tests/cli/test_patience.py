@@ -8,16 +8,16 @@ import time
 from pathlib import Path
 
 import pytest
-from bouncing_ball.models.dynamics import Dynamics
 
 import bouncing_ball
+from bouncing_ball.cli import balls
 from bouncing_ball.cli import patience as module
 from bouncing_ball.cli.main import main
 from bouncing_ball.cli.patience import told_if_slow
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
-LONG = "simulate --amplitude 1.1 --law tsuji --restitution 0.85 --duration 0.1 --impacts 100000"
+LONG = "simulate --amplitude 1.1 --frequency-ratio 10 --restitution 0.85 --impacts 100000"
 
 
 @pytest.fixture
@@ -27,13 +27,13 @@ def hasty(monkeypatch):
 
 
 def test_a_command_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monkeypatch):
-    simulate = Dynamics.simulate
+    simulate = balls.impacts_of
 
     def slow(*given):
         time.sleep(0.5)
         return simulate(*given)
 
-    monkeypatch.setattr(Dynamics, "simulate", slow)
+    monkeypatch.setattr(balls, "impacts_of", slow)
     main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
     out, err = capfd.readouterr()
     assert out.startswith("status")
@@ -60,8 +60,8 @@ def test_a_call_of_the_library_starts_no_thread(monkeypatch):
 
     monkeypatch.setattr(threading.Thread, "start", started)
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
-    bouncing_ball.motion_of(ball, amplitude=[0.9, 1.0])
-    bouncing_ball.follow(bouncing_ball.orbit(ball, amplitude=1.0), to=1.1)
+    bouncing_ball.simulate(ball, amplitude=[0.9, 1.0])
+    bouncing_ball.branch(ball, amplitude_max=1.1)
 
 
 def test_a_command_that_fails_ends_its_lines(hasty, capfd):
@@ -82,7 +82,7 @@ def test_an_interrupt_of_a_command_is_one_line(capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Dynamics, "simulate", interrupted)
+    monkeypatch.setattr(balls, "impacts_of", interrupted)
     with pytest.raises(SystemExit) as end:
         main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
     assert end.value.code == 130

@@ -11,12 +11,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from bouncing_ball.contacts.named_laws import LAWS
-from bouncing_ball.models.makers import spring_damper
 
 import bouncing_ball
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.options import meanings
+from bouncing_ball.models.spring_damper import spring_damper
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
@@ -30,10 +29,8 @@ def program(*arguments, **options):
 def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     shown = "".join(said("orbit", "--help").split()).replace("-", "")
     texts = meanings(spring_damper)
-    # Tables and flights are objects of Python.
-    for name in set(inspect.signature(spring_damper).parameters) - {"table", "flight"}:
+    for name in inspect.signature(spring_damper).parameters:
         assert "".join(texts[name].split()).replace("-", "") in shown
-    assert f"Laws: {', '.join(LAWS)}." in " ".join(said("design", "--help").split())
     assert "(default: -3.142)" in said("simulate", "--help")
     assert said("--version") == f"bouncing-ball {bouncing_ball.__version__}\n"
 
@@ -63,8 +60,10 @@ def test_what_is_not_imported():
         "--help": "numpy",
         "bounce": "numpy",
         "": "numpy",
-        # Only units need it.
-        "design --mass 1 --frequency 1 --acceleration 5 --restitution 0.9 --n 1": "pint",
+        # A single ball needs no labels.
+        "orbit --restitution 0.8 --frequency-ratio 10 --amplitude 1": "xarray",
+        "limits --restitution 0.8": "xarray",
+        "simulate --restitution 0.8 --amplitude 1": "xarray",
     }
     # Each of them imports no more than the one before it.
     code = (
@@ -101,19 +100,14 @@ def test_diff_for_nobody_who_reads(tmp_path):
 @pytest.mark.parametrize(
     "example",
     [
-        # A Hertz contact for each family takes seconds.
-        pytest.param(
-            each,
-            id=each.split(" --mass")[0],
-            marks=pytest.mark.long if "--radius" in each else (),
-        )
+        each
         for name, about in COMMANDS.items()
         for each in about.examples
         # The comparison needs a run; its calls are tested with it.
         if name != "diff"
     ],
 )
-def test_the_examples_of_the_help_run(example, said, monkeypatch, short_runs):
+def test_the_examples_of_the_help_run(example, said, monkeypatch):
     monkeypatch.chdir(ROOT)
     command, *given = shlex.split(example)
     assert said(command, *given)
@@ -127,25 +121,16 @@ def test_every_command_is_explained_and_its_symbols_are(said):
         assert "Eq. 16" not in shown or "exp(-πζ/√(1 - ζ²))" in " ".join(shown.split())
 
 
-@pytest.mark.parametrize(
-    ("call", "computes"),
-    [
-        ("diagram --restitution 0.5 --amplitude 1 2 --plot", "long_run.motion_of.orbit_diagram"),
-        ("design --plot", "cli.design.answer_design"),
-        ("diff figures results --html", "cli.diff.compare_folders"),
-    ],
-)
-def test_a_file_is_refused_before_its_contents_are_computed(refused, monkeypatch, call, computes):
-    module, name = f"bouncing_ball.{computes}".rsplit(".", 1)
-    computation = getattr(importlib.import_module(module), name)
+def test_a_file_is_refused_before_its_contents_are_computed(refused, monkeypatch):
+    module = importlib.import_module("bouncing_ball.cli.diff")
 
     # The options of the command are made from the signature.
-    @functools.wraps(computation)
+    @functools.wraps(module.compare_folders)
     def computed(*given, **more):
         pytest.fail("computed before the file was refused")
 
-    monkeypatch.setattr(f"bouncing_ball.{computes}", computed)
-    status, line = refused(*call.split(), "/dev/null/a.svg")
+    monkeypatch.setattr(module, "compare_folders", computed)
+    status, line = refused("diff", "figures", "results", "--html", "/dev/null/a.svg")
     assert status == 2 and "/dev/null/a.svg cannot be written: /dev/null is no folder" in line
 
 
@@ -169,11 +154,3 @@ def test_a_page_replaces_nothing_but_a_regular_file(refused, tmp_path, kind):
     assert sorted(tmp_path.rglob("*")) == before
     if kind == "a link":
         assert target.is_symlink() and target.read_text(encoding="utf-8") == "kept"
-
-
-def test_a_phase_beyond_a_turn_is_noted(ask):
-    ball = ("--restitution", "0.5", "--amplitude", "0.5")
-    note = "phase 400 is in radians, 63.66 turns of the table; 400 degrees are 6.981"
-    for command in ("motion", "simulate"):
-        assert ask(command, *ball, "--phase", "400", "--impacts", "10")["note"] == note
-        assert "note" not in ask(command, *ball, "--phase", "6.28", "--impacts", "10")

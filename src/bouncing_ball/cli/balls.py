@@ -31,9 +31,8 @@ from bouncing_ball.models.history import impacts_of
 from bouncing_ball.models.model import Model, Status
 from bouncing_ball.models.restitution import rigid
 from bouncing_ball.models.spring_damper import SpringDamper, spring_damper, the_loss
-from bouncing_ball.periodic import branches, calls
-from bouncing_ball.periodic.continuation import PaperEquations
-from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Orbit, multipliers
+from bouncing_ball.periodic import calls
+from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Orbit, defect, multipliers
 
 Answer = dict[str, Any]
 SideOrAll = Literal["stable", "unstable", "all"]
@@ -159,19 +158,12 @@ def orbit(*, n: int, amplitude: float, side: SideOrAll, index: int | None, **imp
 
 def _orbit(found: Orbit) -> Answer:
     """The observables of an orbit, its stability, and the largest defect of its equations."""
-    model = found.model
-    if isinstance(model, SpringDamper):
-        equations = PaperEquations(model, found.n)
-        defects = equations.residual(equations.point(found))
-    else:
-        gap, rate = model.released(found.phase, found.relative_impact_velocity, 0.0, 0.0)
-        defects = np.array([gap, rate - found.relative_bounce_velocity])
     return {
         **{name: float(getattr(found, name)) for name in OBSERVABLES if name != "amplitude"},
         "multipliers": [[x.real, x.imag] for x in multipliers(found).tolist()],
         "is_stable": bool(found.stable),
         "is_admissible": bool(found.admissible),
-        "residual": _known(np.max(np.abs(defects))),
+        "residual": _known(defect(found)),
     }
 
 
@@ -210,6 +202,8 @@ def limits(*, n: int, **impact: Any) -> Answer:
 
 def branch_options(parser: Parser) -> None:
     """Add the options of :func:`branch`."""
+    from bouncing_ball.periodic import branches  # It needs xarray, and no other command does.
+
     texts = meanings(branches.branch)
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude_max", POSITIVE, texts["amplitude_max"])
@@ -224,6 +218,8 @@ def branch(*, n: int, amplitude_max: float | None, **impact: Any) -> Answer:
     NoOrbitError
         If there is no branch up to this Λ, or if it cannot be followed.
     """
+    from bouncing_ball.periodic import branches
+
     ball = ball_of(**impact)
     found = branches.branch(ball, n, amplitude_max=amplitude_max)
     special = [

@@ -38,7 +38,7 @@ from bouncing_ball.periodic.continuation import (
     follow_branches,
 )
 from bouncing_ball.periodic.explicit import RestitutionBranch
-from bouncing_ball.periodic.orbit import Bifurcation, Orbit, multipliers
+from bouncing_ball.periodic.orbit import Bifurcation, Orbit, defect, multipliers
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),
@@ -138,12 +138,8 @@ def restitution_dataset(
     branch = RestitutionBranch(model)
 
     def points(orbits: Orbit) -> _Points:
-        # Eq. 6, of which the velocity after the impact is nπ.
-        speed = n * np.pi
-        push = (1 + model.restitution) * orbits.amplitude * np.cos(orbits.phase)
-        defect = np.abs(speed + model.restitution * (speed - 2 * np.pi * n) - push)
-        place = (getattr(orbits, name) for name in ("phase", "amplitude"))
-        return _Points(orbits, np.stack([*place], axis=-1), defect)
+        place = (orbits.phase, orbits.amplitude)
+        return _Points(orbits, np.stack(place, axis=-1), defect(orbits))
 
     fine = branch.along(n, amplitude_max, _FINE)
     passed = np.cumsum(np.hypot(np.diff(fine.phase), np.diff(fine.amplitude)))

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball import datasets
 from bouncing_ball.errors import ModelError, require, shortened
-from bouncing_ball.models.flight import flight_derivative, lowest_minimum, table
+from bouncing_ball.models.flight import Flight, flight_derivative, lowest_minimum, table
 from bouncing_ball.models.history import next_impact
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, in_words
@@ -309,6 +309,28 @@ def path(orbit: Orbit, time: ArrayLike) -> tuple[Any, Any]:
     inside = contact_path(orbit, np.where(touching, since, 0.0))
     outside = flight_path(orbit, np.where(touching, duration, since))
     return np.where(touching, inside[0], outside[0]), np.where(touching, inside[1], outside[1])
+
+
+def defect(orbit: Orbit) -> np.ndarray:
+    """The largest defect of the three conditions of orbits: that of the release (Eq. 23), and those
+    of the height and of the velocity of the next impact (Eqs. 25 and 26).
+
+    Examples
+    --------
+    >>> from bouncing_ball import rigid
+    >>> orbit = Orbit(rigid(restitution=1.0), 1, 0.5, np.pi / 2, 0.0, -np.pi)
+    >>> bool(defect(orbit) < 1e-14)
+    True
+    """
+    closing = orbit.relative_impact_velocity
+    duration = orbit.contact_duration
+    gap, rate = orbit.model.released(orbit.phase, closing, orbit.amplitude, duration)
+    landed, at_landing, *_ = Flight(orbit.release_phase, gap, rate, orbit.amplitude).gap(
+        orbit.flight_time
+    )
+    of_release = gap + orbit.model.lag * rate
+    parts = np.broadcast_arrays(of_release, landed, at_landing - closing)
+    return np.max(np.abs(parts), axis=0)
 
 
 # Stability.

@@ -139,7 +139,8 @@ def test_a_contact_that_just_reaches_its_release_ends_and_one_that_just_misses_i
 def test_a_ball_at_rest_on_the_table_starts_at_once():
     """δ = δ′ = 0: pressed against the table, or left behind by it."""
     phase = np.array([-0.5, 1.0])
-    pressed, thrown = landing(2 * np.sin(phase), 2 * np.cos(phase), phase, 2.0)
+    x, y = table(phase, 2.0)
+    pressed, thrown = landing(y, x, phase, 2.0)
     assert pressed == 0
     assert thrown > 1
     cycle = LinearContactDynamics.of(SpringDamper(10.0, 0.1), 2.0).next_impact(1.0, 0.0)

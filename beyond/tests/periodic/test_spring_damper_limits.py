@@ -12,6 +12,7 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import (
     orbit_at,
     orbits_at,
+    period_doubling,
     saddle_node,
 )
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
@@ -89,6 +90,23 @@ def test_a_required_orbit_that_does_not_exist_is_refused_with_its_reason(refusal
         n_t.require_orbit(
             ContactModel(SpringDamper(2.0, float(damping_ratio(0.85)))), 1, 1.3, Side.UNSTABLE
         )
+
+
+@every_release
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_the_doubling_of_an_undamped_contact_is_at_half_an_oscillation(n, release):
+    """Its middle is at the phase ±π/2 there, so that Λ = |1 - 1/ϖ²|/|cos(π/2ϖ)|. There is none if
+    half an oscillation is longer than n periods. If it is as long, all multipliers tend to -1 as
+    the flight vanishes, and rounding errors decide on the sign of the test function.
+    """
+    # At ϖ = 1/3 and 1/5 the doubling is at infinity.
+    ratio = np.concatenate([np.linspace(0.17, 0.97, 41), [0.5, 0.25, 1 / 6], [1.3, 3.0, 20.0]])
+    contact = SpringDamper(ratio, 0.0, release)
+    found = branch_point(period_doubling(contact, n), contact, n).amplitude
+    exact = np.abs((1 - 1 / ratio**2) / np.cos(np.pi / (2 * ratio)))
+    exact[2 * n * ratio < 1 + EPS * 4] = np.nan
+    # The cosine is above 0.05.
+    assert found == pytest.approx(exact, rel=100 * EPS, nan_ok=True)
 
 
 def test_a_branch_without_a_fold_has_a_single_side():

@@ -36,6 +36,10 @@ _SCAN_START = 1e-3
 # 10⁶, and ends at contacts that fill the cycle except for a millionth of it.
 _SHORTEST = 1e-3
 _FULL = 1e-6
+# A value of a test function that is a rounding error: those of compliant contacts are 1e-13. At the
+# end of the scan a test function may be the fourth power of the flight time, and a zero may lie at a
+# point of the scan.
+_ROUNDING = 1e-12
 # Number of contacts searched at the same time, so that a scan takes some ten megabytes.
 _BLOCK = 1024
 # Steps of the search for all orbits, in radians of the contact's oscillation and of the
@@ -123,15 +127,18 @@ class _Curves(NamedTuple):
         """First zero of a test function with known values along a grid, or NaN.
 
         A test function also changes sign at a pole. As the bracket shrinks onto a pole, the value
-        in it grows beyond the values at both ends, whereas it becomes smaller at a zero. The two
-        are therefore distinguished without a tolerance.
+        in it grows beyond the values at both ends, whereas it becomes smaller at a zero, or a
+        rounding error. At the end of the range a rounding error is no change of sign.
         """
+        _, end = self.ends()
+        values = np.where((grid >= end) & (np.abs(values) <= _ROUNDING), np.nan, values)
         interval, found = _bracket(values)
         root = self.root(test, grid, interval, found)
         contacts = np.arange(self.n.size)
         left = np.abs(values[interval, contacts])
         right = np.abs(values[interval + 1, contacts])
-        is_zero = np.abs(test(self.point(root))) <= np.minimum(left, right)
+        smaller = np.maximum(np.minimum(left, right), _ROUNDING)
+        is_zero = np.abs(test(self.point(root))) <= smaller
         return np.where(is_zero, root, np.nan)
 
     def fold(self) -> np.ndarray:

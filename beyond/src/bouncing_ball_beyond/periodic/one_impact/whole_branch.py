@@ -212,11 +212,16 @@ def _up_to_its_ends(found: Followed | ContinuationError) -> Followed | Continuat
 
 
 def _default_top(model: Model, n: int) -> float:
-    """The largest Λ if none is given; without a period doubling it follows from the fold."""
+    """The largest Λ if none is given; without a period doubling it follows from the fold, and
+    without a fold from the threshold of permanent contact, with which the orbits merge.
+    """
     fold = n_t.saddle_node(model, n).amplitude
     doubling = n_t.period_doubling(model, n).amplitude
     low = fold if fold > 0 else 0.0
-    return _BEYOND_DOUBLING * (doubling if doubling > low else max(2 * low, 1.0))
+    if doubling > low:
+        return _BEYOND_DOUBLING * doubling
+    begins = 2 * low if low > 0 else model.permanent_contact_threshold()
+    return _BEYOND_DOUBLING * float(np.fmax(begins, 1.0))
 
 
 def _starts(

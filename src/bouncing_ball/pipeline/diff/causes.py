@@ -35,8 +35,8 @@ def touched_files() -> frozenset[str]:
 
 
 def suspects(made: Sequence[Mapping[str, Any]], touched: Collection[str]) -> list[str]:
-    """The files of code that made an artifact and differ, if its parameters do not; of many files
-    those of the present change.
+    """The files of code that made an artifact and differ, if its parameters do not: those of the
+    present change first, and of many files only these.
 
     ``made`` is the provenance in the record and the new one.
 
@@ -51,7 +51,7 @@ def suspects(made: Sequence[Mapping[str, Any]], touched: Collection[str]) -> lis
     files = changed_files(*(side.get("code", "") for side in made))
     first = [file for file in files if file in touched]
     others = [file for file in files if file not in touched]
-    return first if first and len(files) > _FILES else first + others
+    return first if len(files) > _FILES else first + others
 
 
 def some(names: Sequence[str]) -> str:
@@ -91,13 +91,14 @@ def causes(
         told = ", ".join(row.told for row in changed)
         return [f"parameter{'s' if len(changed) > 1 else ''} changed, {told}"]
     found = [f"made from {some(inputs)}"] if inputs else []
-    if 0 < len(code) <= _FILES:
+    files = changed_files(*(side.get("code", "") for side in made))
+    if code:
         found.append(f"changed code, {some(code)}")
-    elif code and not inputs:
+    elif files and not inputs:
         since = f"{made[0].get('commit')}..HEAD"
         age = git(REPOSITORY, "rev-list", "--count", "--end-of-options", since) or "many"
         record = f"the record, which is {age.strip()} commits old"
-        found.append(f"changed code, {len(code)} files since {record}")
+        found.append(f"changed code, {len(files)} files since {record}")
     for name in _LIBRARIES:
         old, now = (side.get("versions", {}).get(name) for side in made)
         if old and now and old != now:

@@ -141,6 +141,7 @@ class _Comparison:
         if whole.outcome in _CAUSES:
             told = next(row.told for x in moved for row in x.parts if row.outcome is whole.outcome)
             found = [", ".join(filter(None, [_CAUSES[whole.outcome], told]))]
+            code = []
         return replace(whole, cause="; ".join(found), code=tuple(code))
 
 

@@ -13,16 +13,12 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from bouncing_ball.contacts.law_balls import _RANGES as OF_LAWS
-from bouncing_ball.contacts.named_laws import LAWS
-from bouncing_ball.contacts.units import SIParameter, in_si
-from bouncing_ball.models.makers import LOSSES
 from declared_arguments import Declared, arguments
 from hypothesis import strategies as st
 
 import bouncing_ball as bb
-from bouncing_ball.datasets.arguments import FINITE
 from bouncing_ball.errors import Range
+from bouncing_ball.models.spring_damper import LOSSES
 
 Draw = Callable[[st.SearchStrategy], Any]
 
@@ -71,21 +67,10 @@ def numbers(allowed: Range) -> st.SearchStrategy:
     return found.filter(lambda number: number in allowed)
 
 
-def quantities(kind: SIParameter) -> st.SearchStrategy:
-    """Quantities with their unit or as plain numbers, near the example or of any size."""
-    example = in_si("example", kind.example, kind)
-    near = st.floats(-3, 3).map(lambda x: example * math.exp(x)).filter(kind.allowed.__contains__)
-    number = near | near | numbers(kind.allowed)
-    text = number.map(lambda x: f"{x:.4g} {kind.name}".rstrip())
-    return st.just(kind.example) | number | text
-
-
 def allowed_by(declared: Declared) -> st.SearchStrategy:
     """Values that a declaration allows."""
     if isinstance(declared, Range):
         return numbers(declared)
-    if isinstance(declared, SIParameter):
-        return quantities(declared)
     return st.sampled_from(declared)
 
 
@@ -150,11 +135,10 @@ class Calls:
     # Balls.
 
     def ball(self) -> Any:
-        """A ball made by one of the four functions."""
+        """A ball made by one of the two functions."""
         if self.with_mistakes and self.draw(sometimes(20)):
             return self.draw(ODD)
-        makers = (self.rigid, self.spring, self.on_law, self.corrected)
-        return self.draw(st.sampled_from(makers))()
+        return self.draw(st.sampled_from((self.rigid, self.spring)))()
 
     def rigid(self) -> Any:
         return self.random("rigid", needed=("restitution",))
@@ -167,18 +151,3 @@ class Calls:
         others = {name: allowed[name] for name in allowed.keys() - of_loss.keys()}
         given = self.some(others, "frequency_ratio")
         return self.call("spring_damper", **given, **{loss: self.value(of_loss[loss])})
-
-    def on_law(self) -> Any:
-        """A ball on a law with its parameters, or with a free impact."""
-        law = self.draw(st.sampled_from(sorted(LAWS)))
-        if self.draw(st.booleans()):
-            loss = self.value(arguments("rigid")["restitution"])
-            allowed = {k: v for k, v in arguments("contact_law").items() if k != "release"}
-            given = self.some(allowed, "duration", restitution=loss)
-            return self.call("contact_law", law, **given)
-        names = LAWS[law].parameter_names()
-        fields = {name: self.value(OF_LAWS.get(name, FINITE)) for name in names}
-        return self.call("contact_law", law, **fields)
-
-    def corrected(self) -> Any:
-        return self.call("corrected", self.draw(st.sampled_from([self.spring, self.on_law]))())

@@ -6,11 +6,12 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
-from bouncing_ball.periodic.one_impact import n_t
 from scipy.optimize import brentq
 
 import bouncing_ball as bb
 from bouncing_ball.drawing.result import Result
+from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.orbit import path
 
 CONTACT = bb.spring_damper(restitution=0.85, frequency_ratio=10.0)
 RIGID = bb.rigid(restitution=0.85)
@@ -22,7 +23,7 @@ def test_a_ball_started_on_its_orbit_follows_the_path_of_the_orbit():
         CONTACT, amplitude=0.9, phase=orbit.phase, velocity=orbit.impact_velocity, periods=3.0
     )
     # Stable: rounding of the start does not grow.
-    np.testing.assert_allclose(found.ball, orbit.path(found.time.values)[0], atol=1e-12)
+    np.testing.assert_allclose(found.ball, path(orbit, found.time.values)[0], atol=1e-12)
     share = float(found.contact.mean())
     # A sample at either end of a contact is in it or not by rounding.
     assert share == pytest.approx(orbit.contact_duration / (2 * np.pi), abs=2 / 200)
@@ -68,17 +69,17 @@ def test_a_ball_let_go_on_the_table_stays_behind_where_it_recedes_faster_than_th
     np.testing.assert_allclose(found.ball, 2 - found.time**2 / 2, rtol=1e-14)
 
 
-@pytest.mark.parametrize("ball", [CONTACT, RIGID, bb.corrected(CONTACT)])
+@pytest.mark.parametrize("ball", [CONTACT, RIGID])
 def test_a_branch_holds_the_orbits_and_limits_of_the_model(ball):
     found = bb.branch(ball, 2, points=60)
     known = [limit.amplitude for limit in bb.limits(ball, 2)]
     np.testing.assert_allclose(found.special_amplitude, known, rtol=1e-9)
     assert float(found.residual.max()) < 1e-12
     upper = found.isel(point=slice(int(found.amplitude.values.argmin()) + 2, None))
-    exact = n_t.orbit(ball, 2, upper.amplitude.values)
+    exact = explicit_branch(ball).orbit(2, upper.amplitude.values)
     # At equal Λ the phase is so much less certain as the branch is steep there.
     np.testing.assert_allclose(upper.phase, exact.phase, atol=1e-9)
-    assert upper.stable.values.tolist() == exact.is_stable().tolist()
+    assert upper.stable.values.tolist() == exact.stable.tolist()
     assert float(found.amplitude.max()) == pytest.approx(1.4 * known[1], rel=1e-12)
 
 
@@ -162,8 +163,8 @@ def test_the_plot_of_thresholds_of_permanent_contact_has_a_line_for_each_damping
 def test_the_plot_of_error_thresholds_has_a_mark_for_each_quantity(tmp_path):
     found = bb.error_thresholds(bb.rigid(restitution=0.65), amplitude=1.0)
     lines, _ = _drawn(found, tmp_path / "shown.png")
-    shown = lines["restitution model"].get_xdata()
-    np.testing.assert_array_equal(shown, found.error_threshold.sel(simple="restitution"))
+    shown = [line.get_xdata() for line in lines.values()]
+    assert any(np.array_equal(x, found.error_threshold, equal_nan=True) for x in shown)
 
 
 @pytest.mark.parametrize(
@@ -179,8 +180,6 @@ def test_the_plot_of_error_thresholds_has_a_mark_for_each_quantity(tmp_path):
             bb.spring_damper(restitution=[0.5, 0.6], frequency_ratio=[5.0, 10.0])
         ),
         lambda: bb.error_thresholds(RIGID, [1, 2], amplitude=1.0),
-        lambda: bb.motion_of(RIGID, amplitude=[0.9, 1.0], phase=[1.0, 1.1]),
-        lambda: bb.lyapunov_exponent(RIGID, amplitude=[0.9, 1.0], phase=[1.0, 1.1]),
     ],
 )
 def test_a_part_of_a_result_draws_the_figure_of_the_whole(call):
@@ -234,10 +233,6 @@ HALF = bb.rigid(restitution=0.5)
             lambda: bb.drop(HALF, height=0.5, amplitude=1.0, phase=1.0),
             "height = 0.5 is not at or above",
         ),
-        (
-            lambda: bb.contact_law("tsuji", restitution=[0.5, 0.6], duration=0.1),
-            "restitution must be a single numb",
-        ),
         (lambda: bb.branch(HALF, 0), "n = 0 is not a whole number from 1 to 1000"),
         (lambda: bb.branch(HALF, amplitude_max=0.1), "no 1-T orbit up to Λ = 0.1"),
         (lambda: bb.drop(HALF, height=9.0).plot("x.txt"), "'x.txt' does not end in .pdf or"),
@@ -247,17 +242,6 @@ HALF = bb.rigid(restitution=0.5)
 def test_a_mistake_is_one_line(call, text, refusal):
     with refusal(ValueError, text):
         call()
-
-
-def test_balls_on_a_law_are_followed_at_the_speeds_of_their_first_impacts():
-    durations = [0.1, 0.2]
-    balls = bb.contact_law("tsuji", restitution=0.8, duration=durations)
-    found = bb.simulate(balls, amplitude=0.5, velocity=[-2.0, -3.0], impacts=2)
-    assert found.time.dims == ("velocity", "duration", "impact")
-    for k, duration in enumerate(durations):
-        ball = bb.contact_law("tsuji", restitution=0.8, duration=duration, speed=0.5 + 3.0)
-        one = bb.simulate(ball, amplitude=0.5, velocity=-3.0, impacts=2)
-        np.testing.assert_allclose(found.time[1, k], one.time, rtol=1e-12)
 
 
 def test_the_plot_of_a_branch_shows_all_that_its_dataset_has():

@@ -315,7 +315,7 @@ class RestitutionBranch(Branch):
         if np.any(below):
             family, least = (x[below][0] for x in np.broadcast_arrays(n, level))
             raise NoOrbitError(
-                f"no {family}-T orbit at Λ = {amplitude_max:g}: below the saddle-node at "
+                f"no {family}-T orbit up to Λ = {amplitude_max:g}: below the saddle-node at "
                 f"Λ = {least:.6g}"
             )
         end = np.sqrt((amplitude_max - level) * (amplitude_max + level))

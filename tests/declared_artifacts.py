@@ -7,10 +7,9 @@ from pathlib import Path
 
 import xarray as xr
 from adapter import function
-from bouncing_ball.beyond.exhibits.budgets import BUDGETS as BEYOND
 
 from bouncing_ball.datasets.variables import budgeted
-from bouncing_ball.paper.exhibits.budgets import BUDGETS as PAPER
+from bouncing_ball.paper.exhibits.budgets import BUDGETS
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.diff.outcome import Row
@@ -50,7 +49,6 @@ STUDIES = {
     each.name: function(each.module, each.study) for each in ARTIFACTS.values() if each.study
 }
 """The study of each artifact that has one."""
-BUDGETS = {**PAPER, **BEYOND}
 
 
 def compare_artifact(name: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bouncing_ball.pipeline.diff.budgets import PIXEL
-from bouncing_ball.pipeline.diff.folders import read_picture
 from bouncing_ball_beyond.exhibits import (
     cascade_of_flights_figures,
     certified_verdicts_figures,
@@ -22,6 +20,8 @@ from matplotlib.contour import ContourSet
 
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import style
+from bouncing_ball.pipeline.diff.budgets import PIXEL
+from bouncing_ball.pipeline.diff.folders import read_picture
 from bouncing_ball.pipeline.provenance import read_attributes
 
 pytestmark = pytest.mark.slow

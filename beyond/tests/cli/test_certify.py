@@ -36,7 +36,7 @@ def test_fewer_digits_are_the_rounded_ones(ask):
     [
         (GIVEN[:3], "required: --frequency-ratio"),
         ((*GIVEN, "--digits", "3"), "from 10 to 100"),
-        ((*GIVEN, "--model", "corrected"), "--model corrected: it is an option of law-orbit"),
+        ((*GIVEN, "--model", "corrected"), "--model corrected: it is an option of"),
         ((*GIVEN, "--release", "force"), "--release force: it is an option of"),
         (("certify", "--frequency-ratio", "10"), "required: --restitution"),
         (

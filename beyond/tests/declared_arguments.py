@@ -1,4 +1,4 @@
-"""What public functions declare of their arguments: ranges, names and units of quantities."""
+"""What public functions declare of their arguments: ranges and names."""
 
 import typing
 from collections.abc import Callable, Mapping
@@ -11,9 +11,8 @@ import bouncing_ball_beyond as bb
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import Range
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
-from bouncing_ball_contacts.contact.units import SIParameter
 
-Declared = Range | SIParameter | tuple[str, ...]
+Declared = Range | tuple[str, ...]
 # What is imported for type checkers only.
 LATER = {
     "DataArray": xr.DataArray,
@@ -26,12 +25,12 @@ LATER = {
 
 
 def declared(hint: typing.Any) -> Declared | None:
-    """The range, the unit or the names of an argument with this annotation."""
+    """The range or the names of an argument with this annotation."""
     origin = typing.get_origin(hint)
     if origin is typing.Literal:
         return typing.get_args(hint)
     if origin is typing.Annotated:
-        known = (each for each in hint.__metadata__ if isinstance(each, Range | SIParameter))
+        known = (each for each in hint.__metadata__ if isinstance(each, Range))
         return next(known, None)
     if origin in (typing.Union, UnionType):
         return next(filter(None, map(declared, typing.get_args(hint))), None)
@@ -40,7 +39,7 @@ def declared(hint: typing.Any) -> Declared | None:
 
 @cache
 def declared_by(function: Callable) -> Mapping[str, Declared]:
-    """The arguments of a function, or the fields of a class, that have a range, a unit or names."""
+    """The arguments of a function that have a range or names."""
     hints = typing.get_type_hints(function, localns=LATER, include_extras=True)
     found = {name: declared(hint) for name, hint in hints.items()}
     return {name: allowed for name, allowed in found.items() if allowed}

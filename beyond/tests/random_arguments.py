@@ -22,7 +22,6 @@ from bouncing_ball.errors import Range
 from bouncing_ball_beyond.models.makers import LOSSES
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS
-from bouncing_ball_contacts.contact.units import SIParameter, in_si
 
 Draw = Callable[[st.SearchStrategy], Any]
 
@@ -71,21 +70,10 @@ def numbers(allowed: Range) -> st.SearchStrategy:
     return found.filter(lambda number: number in allowed)
 
 
-def quantities(kind: SIParameter) -> st.SearchStrategy:
-    """Quantities with their unit or as plain numbers, near the example or of any size."""
-    example = in_si("example", kind.example, kind)
-    near = st.floats(-3, 3).map(lambda x: example * math.exp(x)).filter(kind.allowed.__contains__)
-    number = near | near | numbers(kind.allowed)
-    text = number.map(lambda x: f"{x:.4g} {kind.name}".rstrip())
-    return st.just(kind.example) | number | text
-
-
 def allowed_by(declared: Declared) -> st.SearchStrategy:
     """Values that a declaration allows."""
     if isinstance(declared, Range):
         return numbers(declared)
-    if isinstance(declared, SIParameter):
-        return quantities(declared)
     return st.sampled_from(declared)
 
 

@@ -1,6 +1,6 @@
 """Random calls end with an answer or with one line: no traceback, no warning, nothing printed.
 
-Arguments are drawn from the ranges, names and units that the functions declare. A call that takes
+Arguments are drawn from the ranges and names that the functions declare. A call that takes
 long is ended.
 """
 
@@ -11,19 +11,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from declared_arguments import arguments, declared_by
+from declared_arguments import arguments
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from random_arguments import Calls, TimeOver, numbers, sometimes
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.datasets.arguments import FINITE, POSITIVE, RESTITUTION
+from bouncing_ball.datasets.arguments import FINITE, POSITIVE
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.periodic.orbits.special import Special
-from bouncing_ball_contacts.contact.contact import LOSSY, STIFF
-from bouncing_ball_contacts.engines.choice import ENGINES
-from bouncing_ball_contacts.measured.curves import CURVES
 
 # Random calls of each function, of all functions in the long test.
 SOME = 8
@@ -112,90 +109,10 @@ def grazing_form(calls: Calls) -> Any:
     return calls.call("grazing_form", special(calls, calls.draw(st.sampled_from(SPECIAL))))
 
 
-# Contacts of engineers.
-
-
-def made(calls: Calls, kind: str, names: list[str], **given: Any) -> Any:
-    """An object of a class of contacts with values of these fields."""
-    allowed = declared_by(getattr(bb, kind))
-    return calls.call(kind, **{name: calls.value(allowed[name]) for name in names}, **given)
-
-
-def table(calls: Calls) -> Any:
-    """One frequency and one amplitude, now and then gravity, and by mistake one too many."""
-    fields = list(declared_by(bb.Table))
-    chosen = [calls.draw(st.sampled_from(part)) for part in (fields[:3], fields[3:5])]
-    more = ["gravity"] if calls.draw(sometimes(3)) else []
-    more += [name for name in fields if calls.with_mistakes and calls.draw(sometimes(6))]
-    return made(calls, "Table", [*{*chosen, *more}])
-
-
-def contact(calls: Calls, *, is_stiff: bool) -> Any:
-    """A ball with one loss, its companions, and a stiffness unless it is to be chosen."""
-    # The damping needs the stiffness.
-    loss = calls.draw(st.sampled_from(LOSSY if is_stiff else LOSSY[1:]))
-    names = ["mass", loss, *(["drop_height"] if loss == "rebound_height" else [])]
-    if is_stiff:
-        stiff = calls.draw(st.sampled_from(STIFF))
-        names += [stiff, *(["radius"] if stiff.endswith("modulus") else [])]
-        of_materials = ["poissons_ratio", "table_youngs_modulus", "table_poissons_ratio"]
-        names += of_materials if stiff == "youngs_modulus" else []
-    names += ["release"] if calls.draw(sometimes(4)) else []
-    return made(calls, "Contact", names)
-
-
-def question(calls: Calls) -> Any:
-    allowed = declared_by(bb.Question)
-    names = st.sampled_from(list(map(str, Quantity)))
-    more = {"quantity": calls.draw(names)} if calls.draw(st.booleans()) else {}
-    return calls.call("Question", **calls.some(allowed), **more)
-
-
-def describe_contact(calls: Calls) -> Any:
-    if calls.draw(st.booleans()):
-        return calls.random("describe_contact", contact(calls, is_stiff=True))
-    pair = calls.draw(st.tuples(numbers(POSITIVE), numbers(POSITIVE)))
-    given: dict[str, Any] = {"from_engine": "mujoco", "solref": "-{:g} -{:g}".format(*pair)}
-    if calls.draw(st.booleans()):
-        shape = calls.draw(st.lists(numbers(RESTITUTION), min_size=1, max_size=5))
-        given["solimp"] = " ".join(f"{x:g}" for x in shape)
-    return calls.random("describe_contact", made(calls, "Contact", ["mass"], **given))
-
-
-def assess_contact(calls: Calls) -> Any:
-    given = table(calls), contact(calls, is_stiff=True), question(calls)
-    return calls.call("assess_contact", *given)
-
-
-def choose_contact(calls: Calls) -> Any:
-    given = table(calls), contact(calls, is_stiff=False), question(calls)
-    return calls.call("choose_contact", *given)
-
-
-def write_contact(calls: Calls) -> Any:
-    of_setup = calls.some(declared_by(bb.EngineSetup))
-    engine = calls.draw(st.sampled_from(sorted(ENGINES)))
-    setup = calls.call("EngineSetup", **{**of_setup, "engine": engine})
-    there = table(calls) if calls.draw(st.booleans()) else None
-    return calls.call("write_contact", contact(calls, is_stiff=True), setup, there)
-
-
-def fit_contact(calls: Calls) -> Any:
-    count = calls.draw(st.sampled_from([1, 2, 3, 8]))
-    columns = [[calls.value(allowed) for _ in range(count)] for allowed in (POSITIVE, RESTITUTION)]
-    mass = declared_by(bb.Contact)["mass"]
-    declared = {"durations": POSITIVE, "uncertainties": POSITIVE, "mass": mass}
-    laws = st.lists(st.sampled_from(sorted(CURVES)), min_size=1, max_size=2)
-    more = {"laws": calls.draw(laws)} if calls.draw(sometimes(3)) else {}
-    more["absolute_uncertainties"] = not calls.draw(sometimes(3))
-    return calls.call("fit_contact", *columns, **calls.some(declared), **more)
-
-
 CALLS: dict[str, Callable[[Calls], Any]] = {
     each.__name__: each
     for each in (
         orbit, error_thresholds, follow, normal_form, grazing_form,
-        describe_contact, assess_contact, choose_contact, write_contact, fit_contact,
     )
 } | {
     name: with_ball(name, *needed)
@@ -207,7 +124,7 @@ CALLS: dict[str, Callable[[Calls], Any]] = {
     )
 }  # fmt: skip
 """A function for each public function, which draws its arguments and calls it."""
-QUICK = ("orbit", "limits", "permanent_contact", "error_thresholds", "write_contact")
+QUICK = ("orbit", "limits", "permanent_contact", "error_thresholds")
 
 
 def check(name: str, data: Any) -> None:

@@ -18,7 +18,7 @@ def test_the_exponents_of_an_orbit_are_those_of_its_multipliers(amplitude):
         ball, amplitude=amplitude, phase=1.0, velocity=-3.0
     )
     expected = np.log(np.abs(orbit.multipliers())) / orbit.periods
-    # The ball is within 1e-7 of the orbit, see long_run.lyapunov.NEAR.
+    # The ball is within 1e-7 of the orbit, see motions.lyapunov.NEAR.
     assert float(found.lyapunov_exponent) == pytest.approx(expected[0], abs=1e-6)
     assert float(found.second_exponent) == pytest.approx(expected[1], abs=1e-6)
     assert float(found.exponent_sum) == pytest.approx(

@@ -81,7 +81,7 @@ def error_thresholds(
     --------
     The paper's threshold of Fig. 14, printed as "≈ 82":
 
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = error_thresholds(rigid(restitution=0.65), amplitude=1.0, quantities=["max_height"])
     >>> found.error_threshold.values.round(3).tolist()
     [[82.177], [2.29]]

@@ -2,10 +2,11 @@
 
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.datasets.arguments import FAMILY, FREQUENCY_RATIO, RESTITUTION
-from bouncing_ball.errors import count, extra
+from bouncing_ball.errors import count
 from bouncing_ball_beyond.cli.periodic import Answer
 from bouncing_ball_beyond.models.makers import spring_damper
 from bouncing_ball_beyond.periodic import orbits_of_ball
+from bouncing_ball_beyond.proofs.installed import proofs_extra
 
 _DIGITS = count(100, low=10)
 _DEFAULT = 30
@@ -31,7 +32,7 @@ def certify(*, n: int, restitution: float, frequency_ratio: float, digits: int) 
     ModelError
         If something cannot be certified; the message gives the reason.
     """
-    with extra("proofs"):
+    with proofs_extra():
         from bouncing_ball_beyond.proofs import certificates
         from bouncing_ball_beyond.proofs.balls import exactly
         from bouncing_ball_beyond.proofs.problem import RationalProblem

@@ -51,7 +51,7 @@ VARIABLES = {
     "certified_bits": Variable("bits of the balls in the proof"),
     "certified_what": Variable("what the proof shows, or why there is none"),
     "certified_approximation": Variable("the certified number in double precision"),
-    "certified_claim": Variable("claim of the paper whose number it is, empty if it is of none"),
+    "certified_claim": Variable("claim of the paper whose number it is"),
 }
 # The parameters with which the numbers are those that the paper prints.
 _TABLE_1 = 0.85

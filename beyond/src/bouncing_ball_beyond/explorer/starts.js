@@ -6,7 +6,7 @@
 // reach an orbit. A ball this near to a stable orbit ends there.
 const STARTS = 12, IMPACTS_OF_START = 300, FEW = 0.1, ON_ORBIT = 1e-4;
 
-// A relative speed above which every impact slows the ball: long_run.basins.
+// A relative speed above which every impact slows the ball: motions.basins.
 function fastest(contact, amplitude) {
   const r = ownRestitution(contact);
   return (1 + r) * Math.max(amplitude, 1) / Math.max(1 - r, 0.05);

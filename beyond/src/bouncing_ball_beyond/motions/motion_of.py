@@ -77,7 +77,7 @@ def motion_of(
     --------
     A ball that sticks to the table and is thrown off again, each time in the same way:
 
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = motion_of(rigid(restitution=0.6), amplitude=3.0)
     >>> found.kind.item(), found.periods.item()
     ('locked', 13)
@@ -124,7 +124,7 @@ def lyapunov_exponent(
     --------
     The multipliers of the 1-T orbit are complex, of modulus r:
 
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = lyapunov_exponent(rigid(restitution=0.85), amplitude=1.0, phase=1.1)
     >>> abs(round(float(found.lyapunov_exponent) - math.log(0.85), 6))
     0.0
@@ -178,7 +178,7 @@ def orbit_diagram(
     --------
     Below and above the period doubling, for the ball that starts near the 1-T orbit:
 
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = orbit_diagram(rigid(restitution=0.5), amplitude=[1.5, 1.6], impacts=200)
     >>> found.impacts.isel(start=6).values.tolist()
     [1, 2]
@@ -235,7 +235,7 @@ def basins(
 
     Examples
     --------
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = basins(rigid(restitution=0.5), amplitude=1.2, starts=20)
     >>> set(found.motion_kind.values.tolist()) == {"orbit", "locked"}, float(found.share.sum())
     (True, 1.0)

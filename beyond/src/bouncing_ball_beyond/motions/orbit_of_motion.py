@@ -49,7 +49,7 @@ def orbit_of_motion(
 
     Examples
     --------
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> orbit_of_motion(rigid(restitution=0.5), amplitude=1.6)
     Orbit
       impacts               2

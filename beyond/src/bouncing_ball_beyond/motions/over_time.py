@@ -122,7 +122,7 @@ def simulate(
 
     Examples
     --------
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = simulate(rigid(restitution=0.5), amplitude=0.0, velocity=-4.0, impacts=3)
     >>> found.time.values.tolist(), found.status.item()
     ([0.0, 4.0, 6.0], 'bouncing')
@@ -174,7 +174,7 @@ def history(
 
     Examples
     --------
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> elastic = rigid(restitution=1.0)
     >>> found = history(elastic, amplitude=0.0, velocity=[-1.0, -2.0], periods=1.0, samples=4)
     >>> found.ball.dims, found.ball_velocity.isel(time=1).values + math.pi / 2
@@ -229,7 +229,7 @@ def drop(
     --------
     From h a ball falls for √(2h), and rises to r²h:
 
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = drop(rigid(restitution=0.5), height=8.0, periods=1.0, samples=1000)
     >>> round(float(found.ball.where(found.time > 4.0).max()), 4)
     2.0

@@ -73,7 +73,7 @@ def branch(
     Examples
     --------
     >>> import math
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = branch(rigid(restitution=0.85), points=50)
     >>> found.special_kind.values.tolist()
     ['saddle-node', 'period doubling']

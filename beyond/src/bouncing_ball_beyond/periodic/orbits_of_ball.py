@@ -74,7 +74,7 @@ def orbit(
 
     Examples
     --------
-    >>> from bouncing_ball import spring_damper
+    >>> from bouncing_ball_beyond import spring_damper
     >>> orbit(spring_damper(restitution=0.85, frequency_ratio=10.0), amplitude=1.0)
     Orbit
       n                     1
@@ -135,7 +135,7 @@ def orbits(
     --------
     A compliant contact has a second stable orbit, of long contact:
 
-    >>> from bouncing_ball import spring_damper
+    >>> from bouncing_ball_beyond import spring_damper
     >>> found = orbits(spring_damper(restitution=0.85, frequency_ratio=2.0), amplitude=0.9)
     >>> [(round(each.contact_duration, 3), each.is_stable()) for each in found]
     [(1.602, True), (2.249, False), (5.182, True)]
@@ -172,7 +172,7 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
 
     Examples
     --------
-    >>> from bouncing_ball import rigid
+    >>> from bouncing_ball_beyond import rigid
     >>> found = limits(rigid(restitution=0.85))
     >>> round(found.saddle_node.amplitude, 6), round(found.period_doubling.amplitude, 6)
     (0.254724, 1.038304)
@@ -215,7 +215,7 @@ def permanent_contact(ball: Ball) -> float | Result:
 
     Examples
     --------
-    >>> from bouncing_ball import spring_damper
+    >>> from bouncing_ball_beyond import spring_damper
     >>> permanent_contact(spring_damper(frequency_ratio=2.0, damping_ratio=0.0))
     0.75
     """

@@ -19,10 +19,11 @@ from typing import Any
 
 import scipy
 
-from bouncing_ball.errors import ModelError, extra
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.proofs.installed import proofs_extra
 
-with extra("proofs"):
+with proofs_extra():
     from flint import arb, ctx
 
 DIGITS = 15

@@ -140,7 +140,7 @@ class OrbitImpacts(Batch):
 
         Examples
         --------
-        >>> from bouncing_ball import read_orbits
+        >>> from bouncing_ball_beyond import read_orbits
         >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
         >>> from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
         >>> orbit = Orbit.of(RestitutionModel(0.5), 1, 1.5, 0.7)

@@ -33,7 +33,7 @@ from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 # Fixtures that tests of several folders use: a reference integration, and all texts.
-pytest_plugins = ["taylor_ball", "article_texts"]
+pytest_plugins = ["taylor_ball", "article_texts", "beyond_texts"]
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -92,15 +92,32 @@ def test_pandoc_numbers_citations_and_lists_the_works(tmp_path):
     assert holmes.startswith('1. P. J. Holmes, "The dynamics of repeated impacts')
     assert holmes.endswith("Vibration 84 (1982) 173–189. (Not read.)")
     assert paper.endswith("doi:10.1115/DETC2011-47870 (DOI not checked).")
+    # A folder may add works to the list of a shared one.
+    more = tmp_path / "more"
+    more.mkdir()
+    listed = "references:\n- {id: own2026, type: book, title: A title}\n"
+    (more / "references.yaml").write_text(listed, encoding="utf-8")
+    text = '[@own2026; @holmes1982]\n\n<div id="refs"></div>\n'
+    found = with_citations(text, more, tmp_path)
+    assert found.startswith("[1, 2]\n") and "A title" in found and "P. J. Holmes" in found
     with pytest.raises(ModelError, match="nobody not found"):
         with_citations("[@nobody]\n", tmp_path)
 
 
-def test_every_reference_is_cited():
-    known = yaml.safe_load((TEMPLATES / "references.yaml").read_text(encoding="utf-8"))
-    texts = "".join(path.read_text(encoding="utf-8") for path in TEMPLATES.glob("*.md.j2"))
+def works_of(folder):
+    """The works cited by the templates of a folder, and those in its list."""
+    known = yaml.safe_load((folder / "references.yaml").read_text(encoding="utf-8"))
+    texts = "".join(path.read_text(encoding="utf-8") for path in folder.glob("*.md.j2"))
     cited = re.findall(r"@(\w+)", " ".join(re.findall(r"\[@[^]]+\]", texts)))
-    assert {work["id"] for work in known["references"]} == set(cited)
+    return {*cited}, {work["id"] for work in known["references"]}
+
+
+def test_every_reference_is_cited_and_is_in_one_list():
+    cited, known = works_of(TEMPLATES)
+    assert known == cited
+    # The other article adds to this list.
+    cited_beyond, known_beyond = works_of(ROOT / "beyond" / "report")
+    assert known_beyond == cited_beyond - known
 
 
 def test_nan_is_printed_as_a_dash():

@@ -4,6 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from beyond_texts import READ
+from declared_artifacts import ARTIFACTS
 from docutils.utils.math.latex2mathml import tex2mathml
 
 from bouncing_ball.paper.claims.claims import CLAIMS
@@ -11,8 +13,8 @@ from bouncing_ball.pipeline.article import sections_of
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[3]
-FOLDER = ROOT / "workflow" / "report" / "paper"
-TEMPLATES = sorted(FOLDER.glob("*.md.j2"))
+FOLDERS = (ROOT / "workflow" / "report" / "paper", ROOT / "beyond" / "report")
+TEMPLATES = [path for folder in FOLDERS for path in sorted(folder.glob("*.md.j2"))]
 
 JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)
 DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
@@ -54,7 +56,7 @@ def literals(text: str) -> list[str]:
     return [number for part in code for number in re.findall(r"\d+\.\d+|\d+e-?\d+", part)]
 
 
-@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: path.name)
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_no_number_is_typed(template):
     text = template.read_text(encoding="utf-8")
     assert typed_numbers(text) == []
@@ -66,10 +68,17 @@ def test_no_number_is_typed_into_an_explanation():
         assert typed_numbers(why.__doc__) == [], why
 
 
-@pytest.mark.parametrize("name", ["article", "supplement"])
-def test_the_site_can_typeset_every_formula(accepted, name):
+@pytest.fixture(scope="module")
+def articles(accepted, beyond_accepted):
+    """The texts by name."""
+    texts = {name: accepted[name] for name in ("article", "supplement")}
+    return texts | {"beyond": beyond_accepted["article"]}
+
+
+@pytest.mark.parametrize("name", ["article", "supplement", "beyond"])
+def test_the_site_can_typeset_every_formula(articles, name):
     # With an unknown command the site would not be built.
-    formulas = [part.strip("$") for part in mathematics(accepted[name])]
+    formulas = [part.strip("$") for part in mathematics(articles[name])]
     assert len(formulas) > 10
     for formula in formulas:
         assert tex2mathml(formula).startswith("<math"), formula
@@ -95,12 +104,12 @@ def test_each_table_and_figure_of_the_supplement_is_named_once(accepted):
     assert len({*captions}) == len(captions) and named == {*captions}
 
 
-@pytest.mark.parametrize("name", ["article", "supplement"])
-def test_no_statement_rests_on_a_work_that_was_not_read(accepted, name):
+@pytest.mark.parametrize("name", ["article", "supplement", "beyond"])
+def test_no_statement_rests_on_a_work_that_was_not_read(articles, name):
     """Such a work may be named where the text says that it was not read, or why it is named."""
-    text, _, works = accepted[name].partition("## References")
+    text, _, works = articles[name].partition("## References")
     unread = set(re.findall(r"^(\d+)\. .*\((?:Not read)[^)]*\)", works, re.MULTILINE))
-    assert unread
+    assert unread or name == "supplement"
     said = r"could not read|found (no|neither) text|because the paper refers to|nothing is said of"
     for sentence in text.splitlines():
         cited = {*re.findall(r"\d+", " ".join(re.findall(r"\[(\d[\d, ]*)\]", sentence)))}
@@ -118,6 +127,22 @@ def test_the_abstract_and_the_body_are_of_the_length_of_an_article(accepted):
     prose = [part for part in body.split("\n\n") if not re.match(r"\||!\[|\*\*Table", part.strip())]
     assert words(head.partition("## Abstract")[2]) <= 200
     assert sum(map(words, prose)) <= 4500
+
+
+def test_the_replication_has_nothing_of_what_goes_past_the_paper(accepted):
+    """One sentence points to it."""
+    texts = accepted["article"] + accepted["supplement"]
+    of_beyond = r"ext_|certifi|atlas|engine|contact law|Tsuji|Kuwabara|Hunt and Crossley|beyond/"
+    (sentence,) = (line for line in texts.splitlines() if re.search(of_beyond, line))
+    assert "(`beyond/`)" in sentence
+
+
+def test_the_article_beyond_shows_all_figures_of_its_studies(beyond_accepted):
+    shown = re.findall(
+        r"^!\[[^]]*\]\(\.\./(figures/beyond/\w+)\.png\)", beyond_accepted["article"], re.M
+    )
+    drawn = [each.place for name in READ if (each := ARTIFACTS[name]).drawing]
+    assert sorted(shown) == sorted(drawn)
 
 
 def test_the_article_says_where_its_code_is(accepted):

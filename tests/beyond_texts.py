@@ -26,7 +26,7 @@ TABLES = {
 
 
 def texts_beyond(data):
-    """The tables in all formats, and the article; the verdicts by certified intervals are derived."""
+    """The tables in all formats, and the article; the certified verdicts are derived."""
     data = {**data, "ext_verdicts": certified_verdicts(data)}
     templates = {"article": REPORT / "article.md.j2"}
     return rendered(templates, data, TABLES, ARTIFACTS, shared=TEMPLATES)

@@ -57,7 +57,7 @@ def test_a_printed_number_follows_its_dataset(render):
 def test_a_printed_verdict_follows_the_claims(render):
     text = '{{ claims("contact").verdict }} {{ claims.count("reproduced") }}/{{ claims.count() }}'
     assert render(text) == "contradicted 1/2"
-    assert render(text, ledger=claims(verdict=["close", "close"])) == "close 0/2"
+    assert render(text, ledger=claims(verdict=["undecidable"] * 2)) == "undecidable 0/2"
 
 
 def test_an_unknown_claim_is_an_error(render):
@@ -65,11 +65,11 @@ def test_an_unknown_claim_is_an_error(render):
         render('{{ claims("height") }}')
 
 
-def test_restatements_are_not_counted_among_the_claims():
-    shown = Claims(claims(group=["number", "restatement"]))
-    assert (shown.count(), shown.count(group="all")) == (1, 2)
-    assert (shown.count("contradicted"), shown.count("contradicted", group="all")) == (0, 1)
-    assert (shown.count(group="restatement"), shown.count(group="statement")) == (1, 0)
+def test_claims_are_counted_by_verdict_group_and_table():
+    shown = Claims(claims(group=["number", "statement"], printed_table=["Table 1", ""]))
+    assert (shown.count(), shown.count("contradicted")) == (2, 1)
+    assert (shown.count(group="number"), shown.count("contradicted", group="number")) == (1, 0)
+    assert (shown.count(table="Table 1"), shown.count("contradicted", table="Table 1")) == (1, 0)
 
 
 def test_other_parameters_are_reported_once():

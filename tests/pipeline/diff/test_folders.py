@@ -384,12 +384,12 @@ def test_words_that_changed_are_counted_and_named(pair):
     data = pair.dataset("table1")
     record, new = (
         xr.Dataset({"verdict": ("claim", words)}, {"claim": ["a", "b, c"]})
-        for words in (["close", "close"], ["close", "contradicted"])
+        for words in (["reproduced"] * 2, ["reproduced", "contradicted"])
     )
     for folder, content in ((pair.record, record), (pair.new, new)):
         write_dataset(content.assign_attrs(data.attrs), folder / "figures" / "claims.nc")
     assert summary_of_changes(pair.compare()) == [
-        "claims: 1 changed in verdict: b, c: close → contradicted"
+        "claims: 1 changed in verdict: b, c: reproduced → contradicted"
     ]
 
 

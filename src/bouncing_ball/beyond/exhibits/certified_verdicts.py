@@ -79,7 +79,7 @@ def interval_against_print(interval: Iterable[float], printed: str) -> Finding:
     least = (Fraction(low) - Fraction(printed)) / unit
     most = (Fraction(high) - Fraction(printed)) / unit
     nearest = max(least, -most, Fraction(0))
-    verdict = agreement(nearest, max(-least, most))
+    verdict = agreement(nearest, max(-least, most), printed)
     return replace(against_print(value, printed), verdict=verdict, low=low, high=high)
 
 

@@ -41,7 +41,6 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
 @pytest.mark.parametrize(
     ("page", "least"),
     [
-        ("README.md", 3),
         ("docs/python.md", 14),
         ("docs/error-law.md", 8),
         ("docs/periodic-orbits.md", 14),

@@ -145,6 +145,26 @@ def test_the_article_beyond_shows_all_figures_of_its_studies(beyond_accepted):
     assert sorted(shown) == sorted(drawn)
 
 
+def plain(text):
+    """A text without the signs of formulas."""
+    return " ".join(text.replace("$", "").replace(r"\varpi", "ϖ").split())
+
+
+def test_each_article_has_a_file_with_its_title_keywords_and_abstract(articles):
+    texts = {"metadata.yaml": articles["article"], "beyond/metadata.yaml": articles["beyond"]}
+    for file, text in texts.items():
+        about = read_yaml(ROOT / file)
+        assert text.startswith(f"# {about['title']}\n")
+        assert f"\nKeywords: {about['keywords']}.\n" in text
+        abstract = text.partition("## Abstract\n")[2].partition("\n## 1. ")[0]
+        assert plain(abstract) == about["abstract"]
+        # One can read it without looking up what the numbers are.
+        assert len({*re.findall(r"\d+(?:\.\d+)?", abstract)}) <= 7
+    citation = read_yaml(ROOT / "CITATION.cff")
+    assert citation["abstract"] == read_yaml(ROOT / "metadata.yaml")["abstract"]
+    assert ", ".join(citation["keywords"]) == read_yaml(ROOT / "metadata.yaml")["keywords"]
+
+
 def test_the_article_says_where_its_code_is(accepted):
     said = r"The code and all data, version (\S+) of (\S+), are in the repository (.*)\.\n"
     version, date, place = re.search(said, accepted["article"]).groups()

@@ -1,4 +1,4 @@
-"""The commands and the scripts of docs/engines.md and docs/bounces.md print what these pages say."""
+"""The commands and the scripts of docs/engines.md and docs/bounces.md print what the pages say."""
 
 import io
 import math

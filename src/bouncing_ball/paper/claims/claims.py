@@ -214,7 +214,11 @@ def _counted(decided: xr.Dataset) -> str:
     """How many claims have each verdict, and how many have no explanation."""
     verdicts = decided.verdict.values
     found = [one for one in Verdict if str(one) in verdicts]
-    counts = [f"{np.sum(verdicts == str(one))} {one}" for one in found]
+    numbers = [int(np.sum(verdicts == str(one))) for one in found]
+    counts = [
+        f"{number} {one if number == 1 else one.replace('differs', 'differ')}"
+        for number, one in zip(numbers, found, strict=True)
+    ]
     unexplained = int(np.sum(~decided.explained.values.astype(bool)))
     counts += [f"{unexplained} without explanation"] if unexplained else []
     return ", ".join(counts)

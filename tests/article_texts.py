@@ -26,6 +26,7 @@ TABLES = {
     "witness": rows.witness,
     "claims": rows.claims,
 }
+DERIVED = ("claims", "ext_verdicts")
 # All texts cite the same works in the same order, for which pandoc runs once.
 PANDOC = functools.cache(article.pandoc)
 
@@ -83,17 +84,19 @@ def rendered(templates, data, tables, artifacts, shared=None):
 
 
 def all_texts(data):
-    """All tables of the paper in all formats, the article and its supplement."""
+    """All tables of the paper in all formats, the article and its supplement.
+
+    They are made from the artifacts of the paper alone, whatever else is given.
+    """
+    data = {name: data[name] for name, each in OF_PAPER.items() if each.study and name in data}
     templates = {name: TEMPLATES / f"{name}.md.j2" for name in ("supplement", "article")}
     return rendered(templates, {**data, "claims": claims(data)}, TABLES, OF_PAPER)
 
 
 @pytest.fixture(scope="session")
 def record(recorded):
-    """The accepted datasets of the paper that are computed, not read off others."""
-    return {
-        name: recorded[name] for name, each in OF_PAPER.items() if each.study and name != "claims"
-    }
+    """The accepted datasets that are computed, not read off others."""
+    return {name: data for name, data in recorded.items() if name not in DERIVED}
 
 
 @pytest.fixture(scope="session")

@@ -85,8 +85,12 @@ def percent_at_most(share: float, digits: int) -> str:
     --------
     >>> rounded_percent(0.00345, 1), percent_at_most(0.00345, 1), percent_at_most(0.03, 2)
     ('0.3 %', '0.4 %', '3 %')
+    >>> percent_at_most(float("nan"), 2)
+    '– %'
     """
     value = 100 * abs(float(share))
+    if math.isnan(value):
+        return rounded_percent(value)
     step = 10.0 ** (math.floor(math.log10(value)) - digits + 1) if value else 1.0
     # A share that has so few digits itself is not raised by its rounding error.
     return f"{short(step * math.ceil(value / step * (1 - 1e-9)), digits)} %"

@@ -18,7 +18,7 @@ from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
-pytest_plugins = ["shared_fixtures"]
+pytest_plugins = ["shared_fixtures", "article_texts"]
 
 
 def pytest_collection_modifyitems(items):

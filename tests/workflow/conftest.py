@@ -43,7 +43,7 @@ SHORTER = {
 TEXTS = ("paper.md", "supplement.md", "motions.md")
 # What a whole run leaves: its results, and what Snakemake has noted about them.
 MADE = (
-    *(f"results/{name}" for name in ("figures", "code", "logs", "tally.txt", *TEXTS)),
+    *(f"results/{name}" for name in ("figures", "beyond", "code", "logs", "tally.txt", *TEXTS)),
     *(f".snakemake/{name}" for name in ("metadata", "incomplete")),
 )
 

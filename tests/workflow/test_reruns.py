@@ -49,6 +49,7 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
             "claims",
             "Setting claims",
             "Writing results/paper.md and results/supplement.md",
+            "Writing results/beyond/article.md",
         ),
     }
 

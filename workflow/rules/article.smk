@@ -1,5 +1,5 @@
-# The replication article with its supplement, in which every number comes from a dataset, and the
-# page and the tally of the claims.
+# The replication article with its supplement, in which every number comes from a dataset of the
+# paper, and the page and the tally of the claims.
 
 ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 TEMPLATES = sorted(map(str, Path(ARTICLE).glob("*.md.j2")))
@@ -25,6 +25,7 @@ rule set_claims:
             labels={"table": "claims"},
         ),
         md="results/figures/claims.md",
+        tally="results/tally.txt",
     params:
         words=WORDS[0],
         title=ARTIFACTS["claims"].title,
@@ -36,6 +37,10 @@ rule set_claims:
         "../scripts/claims.py"
 
 
+# The artifacts of the paper, from which its article is made.
+OF_PAPER = [each for each in ARTIFACTS.values() if each.part == "paper"]
+
+
 rule paper:
     message:
         "Writing results/paper.md and results/supplement.md"
@@ -44,18 +49,18 @@ rule paper:
             "paper",
             "paper.py",
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
-            data=ACCEPTED,
         ),
         citation=os.path.relpath(Path(ROOT, "CITATION.cff")),
-        data=[each.dataset for each in ARTIFACTS.values() if each.dataset],
-        tables=[f"results/{each.place}.md" for each in ARTIFACTS.values() if each.table],
+        data=[each.dataset for each in OF_PAPER if each.dataset],
+        tables=[f"results/{each.place}.md" for each in OF_PAPER if each.table],
     output:
-        paper="results/paper.md",
+        # The supplement is the first, because the article refers to its sections.
         supplement="results/supplement.md",
-        tally="results/tally.txt",
+        paper="results/paper.md",
     params:
-        templates=ARTICLE,
-        artifacts=ARTIFACTS,
+        templates=[f"{ARTICLE}/supplement.md.j2", f"{ARTICLE}/article.md.j2"],
+        shared=None,
+        artifacts={each.name: each for each in OF_PAPER},
     log:
         "results/logs/paper.log",
     conda:
@@ -80,7 +85,7 @@ rule paper_pdf:
             rules.paper.output.paper,
             rules.paper.output.supplement,
         ],
-        figures=[f"results/{each.place}.svg" for each in ARTIFACTS.values() if each.drawing],
+        figures=[f"results/{each.place}.svg" for each in OF_PAPER if each.drawing],
     output:
         "results/paper.pdf",
         "results/supplement.pdf",

@@ -31,7 +31,7 @@ rule config_docs:
 # From the accepted record, so that it has no inputs that a run makes.
 rule readme:
     message:
-        "Writing the generated parts of README.md and docs/engines.md, and the pages of figures/"
+        "Writing the generated parts of README.md, and the pages of figures/"
     params:
         artifacts=ARTIFACTS,
     log:

@@ -1,4 +1,4 @@
-"""The claims as CSV, and in Markdown with words before the table."""
+"""The claims as CSV, in Markdown with words before the table, and their tally."""
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import tables_by_suffix
@@ -13,5 +13,6 @@ with logged(snakemake) as lines:
     words = render_article(snakemake.params.words, {"claims": data}, {}, Claims(data), {})
     write_text(snakemake.output.csv, table[".csv"])
     write_text(snakemake.output.md, f"{words}\n{table['.md']}")
+    write_text(snakemake.output.tally, tally(data) + "\n")
     lines += [*snakemake.output, tally(data)]
     print(tally(data), flush=True)

@@ -95,7 +95,7 @@ def test_the_certified_verdicts_are_those_of_the_ledger(data, recorded, printed,
     found = described(certified_verdicts({"ext_proofs": data, "claims": recorded["claims"]}))
     assert found.claim.values.tolist() == printed
     assert (found.verdict == recorded["claims"].verdict.sel(claim=found.claim)).all()
-    assert {*found.verdict.values} == {"reproduced", "close", "contradicted"}
+    assert {*found.verdict.values} == {"reproduced", "differs in the last digits", "contradicted"}
     header, body = ext_verdicts(found)
     assert len(body) == len(printed) and len(header) == 6
 
@@ -112,9 +112,11 @@ def test_the_verdicts_are_those_of_the_record(recorded):
 
 def test_a_verdict_that_differs_from_the_ledger_stops_the_run(data, recorded):
     verdict = recorded["claims"].verdict.copy()
-    verdict.loc["height threshold"] = "close"
+    verdict.loc["height threshold"] = "contradicted"
     ledger = recorded["claims"].assign(verdict=verdict)
-    said = "'height threshold': reproduced by its certified interval, but close in the ledger"
+    said = (
+        "'height threshold': reproduced by its certified interval, but contradicted in the ledger"
+    )
     with pytest.raises(ModelError, match=said):
         certified_verdicts({"ext_proofs": data, "claims": ledger})
 

@@ -150,7 +150,7 @@ def test_each_claim_is_counted_in_its_group(data):
     assert row(right, data)["verdict"] == "reproduced"
     assert [
         row(claim, data)["group"] for claim in (right, height_threshold, rising, two_readings)
-    ] == [*("restored formula", "number", "statement", "restatement")]
+    ] == [*("restored formula", "number", "statement", "statement")]
 
 
 @pytest.mark.parametrize("name", ["disagreement", "disagreement_in_use"])
@@ -217,13 +217,14 @@ def test_what_is_missing_is_an_error_in_one_line(data, change, said, one_line):
     assert str(error.value).startswith(("'rises': ", "'it turns': "))
 
 
-def test_the_tally_counts_verdicts_by_group_without_restatements(data):
+def test_the_tally_counts_verdicts_by_group(data):
     some = [rising, two_readings, height_threshold, right]
     formulas = "1 formulas: 1 reproduced"
-    lines = [formulas, "1 printed numbers: 1 reproduced", "1 statements: 1 contradicted"]
+    statements = "2 statements: 1 contradicted, 1 undecidable"
+    lines = [formulas, "1 printed numbers: 1 reproduced", statements]
     assert tally(judged(some, data)).splitlines() == lines
     data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
     assert tally(judged(some, data)).endswith(", 1 without explanation")
     data["fig"].attrs["n"] = 2
-    of_figure = ["1 printed numbers: 1 not asked", "1 statements: 1 not asked"]
+    of_figure = ["1 printed numbers: 1 not asked", "2 statements: 2 not asked"]
     assert tally(judged(some, data)).splitlines() == [formulas, *of_figure]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
@@ -127,19 +127,45 @@ def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):
 
 
 def test_distances_are_those_of_the_differences(study):
-    assert study.sizes["reading"] == 8
+    assert study.sizes["reading"] == 9
     difference = (study.computed - study.printed) / 0.001
     np.testing.assert_allclose(study.difference, difference, atol=1e-9)
     soft = difference.sel(frequency_ratio=[10.0, 2.0])
     for rows_name, part in (("all rows", difference), ("compliant rows", soft)):
-        flat = part.values.reshape(8, -1)
+        flat = part.values.reshape(9, -1)
         at = study.sel(rows=rows_name)
         np.testing.assert_allclose(at.rms_difference, np.sqrt((flat**2).mean(1)))
         np.testing.assert_allclose(at.largest_difference, np.abs(flat).max(1))
         assert at.reproduced.values.tolist() == (np.abs(flat) <= 0.5).sum(1).tolist()
         assert at.entries.item() == flat.shape[1]
     order = study.rms_difference.sel(rows="compliant rows").values
-    assert (np.diff(order) > 0).all() and study["rank"].values.tolist() == list(range(1, 9))
+    assert (np.diff(order) > 0).all() and study["rank"].values.tolist() == list(range(1, 10))
+
+
+def test_the_stable_width_tells_which_stability_was_used(study):
+    width = study.stable_width
+    np.testing.assert_allclose(width.sel(reading="all rows from Eqs. 7-8"), 1, rtol=1e-12)
+    exact = 2 * (1 + 0.85**2) / (1 + 0.85) ** 2
+    stiff = width.sel(frequency_ratio=1e4)
+    np.testing.assert_allclose(stiff.sel(reading="equations as they stand"), exact, rtol=1e-4)
+    np.testing.assert_allclose(stiff.sel(reading=HIGH_BOUNCE), 1, rtol=1e-4)
+    # Both ends rounded the worst way, that is to opposite sides.
+    ends = study.printed.sel(frequency_ratio=2.0, n=3).values
+    worst = np.sqrt((ends[1] + 0.0005) ** 2 - (ends[0] - 0.0005) ** 2)
+    change = study.printed_stable_width_rounding.sel(frequency_ratio=2.0, n=3).item()
+    assert worst - study.printed_stable_width.sel(frequency_ratio=2.0, n=3).item() == (
+        pytest.approx(change, rel=1e-2)
+    )
+
+
+def test_the_force_release_at_equal_r_has_the_damping_of_this_release(study):
+    zeta = study.attrs["force_damping_ratio"]
+    turned = (np.pi - 2 * np.arcsin(zeta)) / np.sqrt(1 - zeta**2)
+    assert np.exp(-zeta * turned) == pytest.approx(0.85, rel=1e-12)
+    branch = explicit_branch(SpringDamper(10.0, zeta, Release.FORCE))
+    node = branch.bifurcation(Bifurcation.SADDLE_NODE, 3).amplitude
+    found = study.computed.sel(reading="force release, equal r", bound="saddle-node")
+    assert float(found.sel(frequency_ratio=10, n=3)) == pytest.approx(float(node), rel=1e-12)
 
 
 def test_digits_cut_off_and_what_no_orbit_reaches(study):
@@ -153,6 +179,6 @@ def test_digits_cut_off_and_what_no_orbit_reaches(study):
 
 def test_the_table_has_a_row_for_each_reading(study):
     header, body = rows(study)
-    assert len(body) == 8 and {len(line) for line in body} == {len(header)}
+    assert len(body) == 9 and {len(line) for line in body} == {len(header)}
     stand = next(line for line in body if line[1] == "equations as they stand")
     assert stand[2:] == ["6.30", "3.34", "5.44", "2.88", "4 of 18", "1 of 12", "3"]

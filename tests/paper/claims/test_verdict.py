@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.verdict import (
-    CLOSE_UNITS,
+    LAST_DIGITS,
     Verdict,
     above,
     against_print,
@@ -24,14 +24,15 @@ from bouncing_ball.paper.claims.verdict import (
 def test_a_number_is_judged_by_units_of_its_last_digit(digits, decimals, off):
     text = f"{digits / 10**decimals:.{decimals}f}"
     unit = 10.0**-decimals
-    if min(abs(abs(off) - 0.5), abs(abs(off) - CLOSE_UNITS)) < 1e-6:
+    last_digits = float(LAST_DIGITS) * abs(digits)
+    if min(abs(abs(off) - 0.5), abs(abs(off) - last_digits)) < 1e-6:
         return
     found = against_print(float(text) + off * unit, text)
     expected = (
         Verdict.REPRODUCED
         if abs(off) < 0.5
-        else Verdict.CLOSE
-        if abs(off) < CLOSE_UNITS
+        else Verdict.DIFFERS
+        if abs(off) < last_digits
         else Verdict.CONTRADICTED
     )
     assert found.verdict is expected
@@ -44,8 +45,10 @@ def test_a_number_is_judged_by_units_of_its_last_digit(digits, decimals, off):
     ("value", "printed", "verdict"),
     [
         (0.2545, "0.255", Verdict.REPRODUCED),  # half a unit
-        (0.2575, "0.255", Verdict.CONTRADICTED),
-        (0.253, "0.255", Verdict.CLOSE),  # two units
+        (0.2576, "0.255", Verdict.CONTRADICTED),
+        (0.25755, "0.255", Verdict.DIFFERS),  # a hundredth
+        (6.4, "6", Verdict.REPRODUCED),  # half a unit is more than a hundredth
+        (6.6, "6", Verdict.CONTRADICTED),
         (-1.26, "-1.3", Verdict.REPRODUCED),
     ],
 )

@@ -4,6 +4,15 @@ import re
 from pathlib import Path
 
 import pytest
+from article_checks import (
+    DISPLAY,
+    INLINE,
+    check_metadata,
+    literals,
+    mathematics,
+    statements_on_unread_works,
+    typed_numbers,
+)
 from docutils.utils.math.latex2mathml import tex2mathml
 
 from bouncing_ball.paper.claims.claims import CLAIMS
@@ -13,45 +22,6 @@ from bouncing_ball.pipeline.yaml_files import read_yaml
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "workflow" / "report" / "paper"
 TEMPLATES = sorted(FOLDER.glob("*.md.j2"))
-
-JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)
-DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
-INLINE = re.compile(r"\$[^$]+\$")
-CITATION = re.compile(r"\[@[^\]]+\]")
-CODE = re.compile(r"`[^`\n]*`")
-SPAN = r"R?\d+(?:[-–]\d+)?"
-NAMED = re.compile(rf"\b(?:Eq|Fig|Figure|Table|Eqs|Figs)s?\.? {SPAN}(?:(?:,| and|, and) {SPAN})*")
-FAMILY = re.compile(r"\b\d-T\b")
-HEADING = re.compile(r"^#+ .*$", re.MULTILINE)
-
-
-def prose(text: str) -> str:
-    """The text of a template without the parts that may hold a digit."""
-    for pattern in (JINJA, DISPLAY, INLINE, CODE, CITATION, NAMED, FAMILY):
-        text = pattern.sub(" ", text)
-    return text
-
-
-def mathematics(text: str) -> list[str]:
-    text = JINJA.sub(" ", text)
-    display = DISPLAY.findall(text)
-    return [NAMED.sub(" ", part) for part in (*display, *INLINE.findall(DISPLAY.sub(" ", text)))]
-
-
-def typed_numbers(text: str) -> list[str]:
-    """Numbers in the prose, and numbers in formulas that no formula needs."""
-    found = re.findall(r"\S*\d\S*", prose(text))
-    for formula in mathematics(text):
-        # Exponents and factors are single digits; numbers of equations are in \text.
-        bare = re.sub(r"\\text\{[^}]*\}", " ", formula)
-        found += re.findall(r"\d+\.\d+|\d{2,}|[5-9]", bare)
-    return found
-
-
-def literals(text: str) -> list[str]:
-    """Decimal numbers written inside expressions, but for labels in quotes."""
-    code = [re.sub(r"\"[^\"]*\"", " ", part) for part in JINJA.findall(text)]
-    return [number for part in code for number in re.findall(r"\d+\.\d+|\d+e-?\d+", part)]
 
 
 @pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: path.name)
@@ -97,14 +67,7 @@ def test_each_table_and_figure_of_the_supplement_is_named_once(accepted):
 
 @pytest.mark.parametrize("name", ["article", "supplement"])
 def test_no_statement_rests_on_a_work_that_was_not_read(accepted, name):
-    """Such a work may be named where the text says that it was not read, or why it is named."""
-    text, _, works = accepted[name].partition("## References")
-    unread = set(re.findall(r"^(\d+)\. .*\((?:Not read)[^)]*\)", works, re.MULTILINE))
-    assert unread
-    said = r"could not read|found (no|neither) text|because the paper refers to|nothing is said of"
-    for sentence in text.splitlines():
-        cited = {*re.findall(r"\d+", " ".join(re.findall(r"\[(\d[\d, ]*)\]", sentence)))}
-        assert not cited & unread or re.search(said, sentence), sentence
+    assert statements_on_unread_works(accepted[name]) == []
 
 
 def test_the_abstract_and_the_body_are_of_the_length_of_an_article(accepted):
@@ -118,6 +81,21 @@ def test_the_abstract_and_the_body_are_of_the_length_of_an_article(accepted):
     prose = [part for part in body.split("\n\n") if not re.match(r"\||!\[|\*\*Table", part.strip())]
     assert words(head.partition("## Abstract")[2]) <= 200
     assert sum(map(words, prose)) <= 4500
+
+
+def test_the_replication_has_nothing_of_what_goes_past_the_paper(accepted):
+    """One sentence points to it."""
+    texts = accepted["article"] + accepted["supplement"]
+    of_beyond = r"ext_|certifi|atlas|engine|contact law|Tsuji|Kuwabara|Hunt and Crossley|beyond/"
+    (sentence,) = (line for line in texts.splitlines() if re.search(of_beyond, line))
+    assert "(`beyond/`)" in sentence
+
+
+def test_the_article_has_a_file_with_its_title_keywords_and_abstract(accepted):
+    assert check_metadata(accepted["article"], ROOT / "metadata.yaml") <= 6
+    about, citation = (read_yaml(ROOT / name) for name in ("metadata.yaml", "CITATION.cff"))
+    assert citation["abstract"] == about["abstract"]
+    assert ", ".join(citation["keywords"]) == about["keywords"]
 
 
 def test_the_article_says_where_its_code_is(accepted):

@@ -24,7 +24,9 @@ VARIABLES = {
     "item": Variable("figure, table or equation of the paper"),
     "statement": Variable("what the claim says"),
     "printed_text": Variable("the number as printed"),
-    "verdict": Variable("reproduced, close, contradicted, not decided or not certified"),
+    "verdict": Variable(
+        "reproduced, differs in the last digits, contradicted, not decided or not certified"
+    ),
     "found": Variable("decimal number in the certified interval"),
     "low": Variable("lower limit of the certified interval"),
     "high": Variable("upper limit of the certified interval"),
@@ -41,8 +43,8 @@ class Verdict(StrEnum):
 
     REPRODUCED = "reproduced"
     """The whole interval is within half a unit of the last printed digit."""
-    CLOSE = "close"
-    """The whole interval is farther away, but within the ``close_units`` of the ledger."""
+    DIFFERS = "differs in the last digits"
+    """The whole interval is farther away, but within the share ``last_digits`` of the ledger."""
     CONTRADICTED = "contradicted"
     """The whole interval is farther away than that."""
     NOT_DECIDED = "not decided"
@@ -82,7 +84,7 @@ def certified_interval(proofs: xr.Dataset, claim: str) -> Certified | None:
     return Certified(float(text), np.nextafter(low, -np.inf), np.nextafter(high, np.inf))
 
 
-def interval_against_print(interval: Iterable[float], printed: str, close_units: float) -> Verdict:
+def interval_against_print(interval: Iterable[float], printed: str, last_digits: float) -> Verdict:
     """The verdict that all numbers between two limits have; the limits are compared exactly.
 
     Parameters
@@ -91,8 +93,8 @@ def interval_against_print(interval: Iterable[float], printed: str, close_units:
         A number, and the limits between which it certainly lies.
     printed : str
         The number as printed.
-    close_units : float
-        The largest distance at which a number is close, in units of its last printed digit.
+    last_digits : float
+        The largest relative distance from the printed number at which only last digits differ.
 
     Raises
     ------
@@ -101,7 +103,7 @@ def interval_against_print(interval: Iterable[float], printed: str, close_units:
 
     Examples
     --------
-    >>> [str(interval_against_print([82.4, 82.3, x], "82", 2)) for x in (82.5, 82.6)]
+    >>> [str(interval_against_print([82.4, 82.3, x], "82", 0.01)) for x in (82.5, 82.6)]
     ['reproduced', 'not decided']
     """
     value, low, high = map(float, interval)
@@ -114,9 +116,10 @@ def interval_against_print(interval: Iterable[float], printed: str, close_units:
     farthest = max(-least, most)
     if farthest <= _ROUNDED:
         return Verdict.REPRODUCED
-    if nearest > _ROUNDED and farthest <= close_units:
-        return Verdict.CLOSE
-    if nearest > close_units:
+    bound = Fraction(str(last_digits)) * abs(Fraction(printed)) / unit
+    if nearest > _ROUNDED and farthest <= bound:
+        return Verdict.DIFFERS
+    if nearest > max(bound, _ROUNDED):
         return Verdict.CONTRADICTED
     return Verdict.NOT_DECIDED
 
@@ -126,7 +129,7 @@ def _last_digit(printed: str) -> Fraction:
     return Fraction(1, 10 ** len(printed.partition(".")[2]))
 
 
-def _decided(claim: xr.Dataset, proofs: xr.Dataset, close_units: float) -> dict[str, Any]:
+def _decided(claim: xr.Dataset, proofs: xr.Dataset, last_digits: float) -> dict[str, Any]:
     """The entries of the dataset for one printed number."""
     name = claim.claim.item()
     printed = claim.printed_text.item()
@@ -135,7 +138,7 @@ def _decided(claim: xr.Dataset, proofs: xr.Dataset, close_units: float) -> dict[
     if interval is None:
         missing = dict.fromkeys((*Certified._fields, "deviation_units", "deviation"), np.nan)
         return row | missing | {"verdict": str(Verdict.NOT_CERTIFIED)}
-    verdict = interval_against_print(interval, printed, close_units)
+    verdict = interval_against_print(interval, printed, last_digits)
     ledger = claim.verdict.item()
     if verdict != ledger:
         raise ModelError(
@@ -174,8 +177,8 @@ def certified_verdicts(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """
     ledger = data["claims"]
     printed = ledger.isel(claim=np.flatnonzero(ledger.printed_text.values != ""))
-    close_units = float(ledger.attrs["close_units"])
-    rows = [_decided(one, data["ext_proofs"], close_units) for one in each(printed, "claim")]
+    last_digits = float(ledger.attrs["last_digits"])
+    rows = [_decided(one, data["ext_proofs"], last_digits) for one in each(printed, "claim")]
     return described(
         {name: ("claim", np.array([row[name] for row in rows])) for name in rows[0]},
         coords={"claim": printed.claim.values},

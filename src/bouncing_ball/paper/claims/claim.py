@@ -119,7 +119,7 @@ class Claim:
     explanation : callable, optional
         The reason why the claim is not reproduced: named conditions on the datasets.
     restates : Claim, optional
-        The claim that this claim repeats; the tally counts repetitions separately.
+        The claim that this claim repeats, with other digits or in words.
     """
 
     id: str

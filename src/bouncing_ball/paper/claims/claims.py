@@ -16,7 +16,7 @@ from bouncing_ball.paper.claims import (
 )
 from bouncing_ball.paper.claims.claim import Claim, checks_hold, defined_in, name_of, paragraphs
 from bouncing_ball.paper.claims.parameters import PAPER, Data, Digests, PaperData
-from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
+from bouncing_ball.paper.claims.verdict import LAST_DIGITS, Verdict
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
 VARIABLES = {
@@ -58,24 +58,21 @@ VARIABLES = {
     "deviation_units": Variable("deviation in units of the last printed digit", budget=math.inf),
     "deviation": Variable("relative deviation", budget=math.inf),
     "verdict": Variable(
-        "reproduced, definition, in one reading, close, contradicted, undecidable or not asked"
+        "reproduced, definition, in one reading, differs in the last digits, contradicted, "
+        "undecidable or not asked"
     ),
     "printed_table": Variable("the printed table whose entry the claim is"),
-    "unit_bound": Variable("bound in units of the last printed digit"),
-    "numbers_beyond": Variable(
-        "printed numbers farther from the computed one than the bound, without restatements"
-    ),
     "explained_by": Variable("name of the explanation"),
-    "explained": Variable("neither close nor contradicted, or explained by checks that hold"),
-    "explanation": Variable("explanation of claims that are close or contradicted"),
+    "explained": Variable("needs no explanation, or is explained by checks that hold"),
+    "explanation": Variable(
+        "explanation of claims that are contradicted or differ in the last digits"
+    ),
     "explanation_text": Variable("the explanation in words"),
     "explanation_checks": Variable(
         "the checks of the explanation, with the numbers found", budget=math.inf
     ),
     "explanation_holds": Variable("whether the checks of the explanation hold"),
 }
-# Bounds of close numbers that might have been chosen, in units of the last printed digit.
-_BOUNDS = (0.5, 1.0, float(CLOSE_UNITS), 2.5, 5.0)
 _CHAPTERS = (impact_models, periodic_orbits, both_models)
 CLAIMS: tuple[Claim, ...] = tuple(claim for chapter in _CHAPTERS for claim in defined_in(chapter))
 """Every claim of the paper that can be decided, in the order of the paper."""
@@ -89,14 +86,14 @@ def _row(
     """The entries of the dataset for one claim; ``holding`` names the explanations that hold."""
     finding, reason = claim.verdict(asked)
     explained_by = name_of(claim.explanation) if claim.explanation else ""
-    needs_none = finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED)
+    needs_none = finding.verdict not in (Verdict.DIFFERS, Verdict.CONTRADICTED)
     return {
         "item": claim.item,
         "statement": claim.statement,
         "remark": claim.remark,
         "condition": claim.condition,
         "answer": claim.answer,
-        "group": "restatement" if claim.restates else claim.kind,
+        "group": claim.kind,
         "restates": claim.restates.id if claim.restates else "",
         "printed_text": claim.printed,
         "decided_by": ", ".join(asked.used),
@@ -138,30 +135,6 @@ def judged_claims(
     )
 
 
-def numbers_beyond(decided: xr.Dataset, bounds: Sequence[float]) -> list[int]:
-    """How many printed numbers are farther from the computed ones than each bound.
-
-    Restatements, and numbers that are not asked for, are left out.
-
-    Parameters
-    ----------
-    decided : Dataset
-        ``group`` and ``deviation_units`` over ``claim``.
-    bounds : sequence of float
-        Bounds in units of the last printed digit.
-
-    Examples
-    --------
-    >>> groups = ["number", "number", "restatement", "statement"]
-    >>> decided = xr.Dataset({"group": ("claim", groups),
-    ...                       "deviation_units": ("claim", [-2.1, 0.3, 6.0, math.nan])})
-    >>> numbers_beyond(decided, [0.5, 2.5])
-    [1, 0]
-    """
-    units = abs(decided.deviation_units.where(decided.group == "number"))
-    return [int((units > bound).sum()) for bound in bounds]
-
-
 def claims(data: Data) -> xr.Dataset:
     """The verdict on every claim of the paper, and the numbers that the article prints with them.
 
@@ -175,7 +148,8 @@ def claims(data: Data) -> xr.Dataset:
     xarray.Dataset
         The dataset of :func:`judged_claims`, and results of
         :mod:`~bouncing_ball.paper.claims.evidence` under the names of the functions. The
-        attributes are the paper's limits and the bound within which a number is close.
+        attributes are the paper's limits and the relative difference up to which a number differs
+        in its last digits.
 
     Raises
     ------
@@ -193,11 +167,9 @@ def claims(data: Data) -> xr.Dataset:
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
     verdicts = judged_claims(CLAIMS, data)
-    beyond = {"numbers_beyond": ("unit_bound", numbers_beyond(verdicts, _BOUNDS))}
-    bounds = described(beyond, coords={"unit_bound": list(_BOUNDS)}, variables=VARIABLES)
     evident = described(numbers, variables=VARIABLES)
-    return xr.merge([verdicts, bounds, evident]).assign_attrs(
-        close_units=CLOSE_UNITS,
+    return xr.merge([verdicts, evident]).assign_attrs(
+        last_digits=float(LAST_DIGITS),
         tolerance=evidence.TOLERANCE,
         stiff_frequency_ratio=evidence.STIFF,
         permanent_contact_frequency_ratio=PERMANENT_CONTACT,
@@ -212,7 +184,7 @@ _GROUPS = {
 
 
 def tally(decided: xr.Dataset) -> str:
-    """The numbers of claims and of verdicts, one line for each group, without restatements.
+    """The numbers of claims and of verdicts, one line for each group.
 
     Groups are not added up, because a formula, a number and a statement are not of equal weight.
 
@@ -223,11 +195,11 @@ def tally(decided: xr.Dataset) -> str:
 
     Examples
     --------
-    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "close", "reproduced"]),
-    ...                       "group": ("claim", ["number", "restatement", "number", "statement"]),
-    ...                       "explained": ("claim", [True, True, False, True])})
+    >>> decided = xr.Dataset({"verdict": ("claim", ["contradicted", "reproduced", "reproduced"]),
+    ...                       "group": ("claim", ["number", "number", "statement"]),
+    ...                       "explained": ("claim", [False, True, True])})
     >>> print(tally(decided))
-    2 printed numbers: 2 close, 1 without explanation
+    2 printed numbers: 1 reproduced, 1 contradicted, 1 without explanation
     1 statements: 1 reproduced
     """
     lines = []
@@ -242,7 +214,11 @@ def _counted(decided: xr.Dataset) -> str:
     """How many claims have each verdict, and how many have no explanation."""
     verdicts = decided.verdict.values
     found = [one for one in Verdict if str(one) in verdicts]
-    counts = [f"{np.sum(verdicts == str(one))} {one}" for one in found]
+    numbers = [int(np.sum(verdicts == str(one))) for one in found]
+    counts = [
+        f"{number} {one if number == 1 else one.replace('differs', 'differ')}"
+        for number, one in zip(numbers, found, strict=True)
+    ]
     unexplained = int(np.sum(~decided.explained.values.astype(bool)))
     counts += [f"{unexplained} without explanation"] if unexplained else []
     return ", ".join(counts)

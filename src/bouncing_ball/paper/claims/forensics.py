@@ -1,6 +1,6 @@
-"""Table 1 under eight hypotheses about the authors' computation, called readings.
+"""Table 1 under nine hypotheses about the authors' computation, called readings.
 
-Six readings are the models of this package with another damping, release or rounding, and Eqs. 7
+Seven readings are the models of this package with another damping, release or rounding, and Eqs. 7
 and 8. Two readings alter an equation: a contact without gravity, and a period doubling whose
 linearised flight neglects the displacement of the table, as Holmes' map does.
 """
@@ -35,9 +35,19 @@ VARIABLES = {
     "reproduced": Variable("number of entries within half a unit of the last digit"),
     "entries": Variable("number of entries compared"),
     "unreachable": Variable("number of saddle-nodes printed below every computed orbit"),
+    "stable_width": Variable(
+        "√(Λ_PD² - Λ_SN²) of a range of stable orbits, which is 1 by Eqs. 7 and 8 for every n",
+        budget=1e-11,
+    ),
+    "printed_stable_width": Variable("√(Λ_PD² - Λ_SN²) of the printed ends"),
+    "printed_stable_width_rounding": Variable(
+        "largest change of √(Λ_PD² - Λ_SN²) by rounding of the printed ends"
+    ),
 }
 PRINTED_DAMPING = 0.052
 """ζ in the paper's rounding, an alternative to ζ by Eq. 16."""
+# The ends of a range of stable orbits, from below.
+_KINDS = (Bifurcation.SADDLE_NODE, Bifurcation.PERIOD_DOUBLING)
 # Number of samples of a branch along ε.
 _SAMPLES = 401
 # The largest |ε| in units of 1/ϖ, the scale of the fold.
@@ -165,16 +175,40 @@ def altered_ends(
     return np.stack([node.f_x, amplitude(root.x, every)], axis=-1)
 
 
+def stable_width(ends: xr.DataArray) -> xr.DataArray:
+    """√(Λ_PD² - Λ_SN²) of ranges of stable orbits, over all dimensions but ``bound``.
+
+    Eqs. 7 and 8 give 1 for every n and r, and the map of Eq. 5 gives a number that depends on r
+    alone, so that it tells which stability was used.
+
+    Examples
+    --------
+    >>> ends = xr.DataArray([0.6, 1.0], {"bound": ["saddle-node", "period doubling"]}, "bound")
+    >>> float(stable_width(ends).round(9))
+    0.8
+    """
+    by_kind = [ends.sel(bound=str(kind), drop=True) for kind in _KINDS]
+    return (by_kind[1] ** 2 - by_kind[0] ** 2) ** 0.5
+
+
+def _change_by_rounding(ends: xr.DataArray) -> xr.DataArray:
+    """The largest first-order change of the stable width by rounding of both ends."""
+    return LAST_DIGIT / 2 * ends.sum("bound") / stable_width(ends)
+
+
 def readings() -> dict[str, np.ndarray]:
-    """Both ends of each range under the eight readings, shape (ϖ, n, 2).
+    """Both ends of each range under the nine readings, shape (ϖ, n, 2).
 
     "Equations as they stand" means Eqs. 11-26 and the linearised return map; in one reading the
-    digits beyond the last printed digit are cut off. ζ to first order is -ln r/π. Under
+    digits beyond the last printed digit are cut off. ζ to first order is -ln r/π. With "equal r"
+    the contact with the force release has the ζ that gives it the r of the table. Under
     "high-bounce stability" the orbit is exact. "All rows from Eqs. 7-8" shows the influence of the
     stiffness.
     """
     omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
     zeta = float(damping_ratio(RESTITUTION))
+    # By Eq. 16 a contact with the force release has a larger r than that of the table.
+    equal = damping_ratio(RESTITUTION, Release.FORCE)
 
     def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
         branch = explicit_branch(SpringDamper(omega, damping, release))
@@ -198,6 +232,7 @@ def readings() -> dict[str, np.ndarray]:
         "damping as printed": of_model(PRINTED_DAMPING),
         "damping to first order": of_model(-np.log(RESTITUTION) / np.pi),
         "force release": of_model(release=Release.FORCE),
+        "force release, equal r": of_model(float(equal), Release.FORCE),
         "no gravity in contact": altered(weightless_orbits, partial(altered_monodromy, weight=0.0)),
         "high-bounce stability": altered(exact, partial(altered_monodromy, high_bounce=True)),
         "all rows from Eqs. 7-8": np.stack(printed_ends, axis=-1),
@@ -214,6 +249,8 @@ def forensics() -> xr.Dataset:
         frequency_ratio, n, bound); the largest and the rms difference and the number of reproduced
         entries over (reading, rows); and ``unreachable`` over reading, the number of printed
         saddle-nodes that lie below the fold by more than rounding, where no orbit exists.
+        ``stable_width`` over (reading, frequency_ratio, n), and that of the printed ends with the
+        change that rounding can make.
     """
     found = readings()
     printed = printed_table()
@@ -237,6 +274,9 @@ def forensics() -> xr.Dataset:
             "reproduced": (abs(parts) <= 0.5).sum(over).transpose("reading", "rows"),
             "entries": parts.isel(reading=0, drop=True).count(over),
             "unreachable": below.sum(["frequency_ratio", "n"]),
+            "stable_width": stable_width(computed),
+            "printed_stable_width": stable_width(printed),
+            "printed_stable_width_rounding": _change_by_rounding(printed),
         }
     )
     # The compliant rows decide, and all rows where these are equal.
@@ -245,5 +285,8 @@ def forensics() -> xr.Dataset:
     order = np.lexsort([all_rows, compliant_rows])
     ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(found))))
     return describe(ranked, variables=VARIABLES).assign_attrs(
-        last_digit=LAST_DIGIT, restitution=RESTITUTION, printed_damping_ratio=PRINTED_DAMPING
+        last_digit=LAST_DIGIT,
+        restitution=RESTITUTION,
+        printed_damping_ratio=PRINTED_DAMPING,
+        force_damping_ratio=float(damping_ratio(RESTITUTION, Release.FORCE)),
     )

@@ -134,31 +134,25 @@ class Claims:
         """The claim with this id."""
         return self._claims[name]
 
-    def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
-        """Number of claims with a verdict, or of all if it is empty; of one table if that is named.
-
-        ``group`` is ``independent`` for all claims except restatements, ``all``, or the name of a
-        group.
-        """
+    def count(self, verdict: str = "", *, table: str = "", group: str = "") -> int:
+        """Number of claims with a verdict, of a table and of a group; of all if that is empty."""
         return sum(
-            (claim.group == group or group == "all")
-            or (group == "independent" and claim.group != "restatement")
+            verdict in ("", claim.verdict)
+            and table in ("", claim.printed_table)
+            and group in ("", claim.group)
             for claim in self.all
-            if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
         )
 
     def printed(self, *, beyond: float = 0.0, table: str = "") -> list[Any]:
         """Claims of printed numbers that differ from the computed ones by more than a share, the
-        largest relative difference first; of one table if that is named, and else without
-        restatements.
+        largest relative difference first; of one table if that is named.
         """
-        numbers = [
-            claim for claim in self.all if claim.printed_text and abs(claim.deviation) > beyond
-        ]
         chosen = [
             claim
-            for claim in numbers
-            if (claim.printed_table == table if table else claim.group == "number")
+            for claim in self.all
+            if claim.printed_text
+            and abs(claim.deviation) > beyond
+            and table in ("", claim.printed_table)
         ]
         return sorted(chosen, key=lambda claim: -abs(claim.deviation))
 

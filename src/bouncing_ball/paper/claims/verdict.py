@@ -11,10 +11,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.errors import ModelError
 
-CLOSE_UNITS = 2
-"""The largest difference, in units of the last printed digit, at which a number is close and not
-contradicted, because a rounded intermediate result, or a point read off a curve, may cause such a
-difference. The bound is our choice."""
+LAST_DIGITS = Fraction(1, 100)
+"""The largest relative difference of a number that differs in its last digits and is not
+contradicted: the error that the paper tolerates in a model (Eqs. 37 and 38)."""
 # Relative tolerance, because rounding must not decide about a number that is equal to a bound.
 _ROUNDING = 1e-9
 
@@ -28,8 +27,8 @@ class Verdict(StrEnum):
     """A statement that holds by definition, so that its check could not have failed."""
     IN_ONE_READING = "in one reading"
     """Reproduced in the reading that the paper means, but not in the others."""
-    CLOSE = "close"
-    """A number farther away, by no more than :data:`CLOSE_UNITS`."""
+    DIFFERS = "differs in the last digits"
+    """A number farther away, by no more than :data:`LAST_DIGITS` of the printed one."""
     CONTRADICTED = "contradicted"
     UNDECIDABLE = "undecidable"
     """The verdict depends on how the claim is read."""
@@ -185,7 +184,7 @@ def against_print(number: ArrayLike | xr.DataArray, printed: str) -> Finding:
     --------
     >>> pairs = (82.177, "82"), (0.2395, "0.238"), (9.81, "6")
     >>> [str(against_print(*pair).verdict) for pair in pairs]
-    ['reproduced', 'close', 'contradicted']
+    ['reproduced', 'differs in the last digits', 'contradicted']
     """
     value = float(_finite(number))
     wanted = float(printed)
@@ -193,7 +192,7 @@ def against_print(number: ArrayLike | xr.DataArray, printed: str) -> Finding:
     distance = abs(units) - _ROUNDING
     return Finding(
         value,
-        agreement(distance, distance),
+        agreement(distance, distance, printed),
         printed,
         deviation_units=units,
         deviation=(value - wanted) / abs(wanted),
@@ -211,20 +210,21 @@ def decimals(printed: str) -> int:
     return len(printed.partition(".")[2])
 
 
-def agreement(nearest: float | Fraction, farthest: float | Fraction) -> Verdict:
-    """The verdict on numbers at these distances, in units of the last printed digit.
+def agreement(nearest: float | Fraction, farthest: float | Fraction, printed: str) -> Verdict:
+    """The verdict on numbers at these distances from a printed one, in units of its last digit.
 
     A single number is both the nearest and the farthest.
 
     Examples
     --------
-    >>> [str(agreement(*distances)) for distances in ((0, 0.4), (0.4, 0.6))]
+    >>> [str(agreement(*distances, "82")) for distances in ((0, 0.4), (0.4, 0.6))]
     ['reproduced', 'not decided']
     """
+    last_digits = LAST_DIGITS * abs(Fraction(printed)) * 10 ** decimals(printed)
     if farthest <= 0.5:
         return Verdict.REPRODUCED
-    if nearest > 0.5 and farthest <= CLOSE_UNITS:
-        return Verdict.CLOSE
-    if nearest > CLOSE_UNITS:
+    if nearest > 0.5 and farthest <= last_digits:
+        return Verdict.DIFFERS
+    if nearest > max(0.5, last_digits):
         return Verdict.CONTRADICTED
     return Verdict.NOT_DECIDED

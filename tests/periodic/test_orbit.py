@@ -253,6 +253,36 @@ def test_the_margin_of_a_flight_is_its_lowest_minimum_over_the_table():
         assert margin == pytest.approx(lowest.fun, abs=1e-12)
 
 
+@every_release
+def test_the_margin_of_a_release_is_its_highest_maximum_below_zero(release):
+    contact = SpringDamper(10.0, 0.05, release)
+    # Contacts of several oscillations.
+    excess = np.array([6.0, 9.0, 11.0, 20.0])
+    row = branch_point(excess, contact.take(np.zeros(4, int)), np.ones(4, int)).orbit
+    for k, margin in enumerate(release_margin(row)):
+        orbit = row[k]
+        start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
+
+        def height(at, start=start):
+            gap, rate = contact.in_contact(at, *start)
+            return gap + contact.lag * rate
+
+        time = np.linspace(0, float(orbit.contact_duration), 4001)
+        value = height(time)
+        tops = np.flatnonzero((value[1:-1] > value[:-2]) & (value[1:-1] > value[2:]))
+        highest = [
+            minimize_scalar(
+                lambda at: -float(height(at)),
+                bounds=(time[at], time[at + 2]),
+                method="bounded",
+                options={"xatol": 1e-9},
+            ).fun
+            for at in tops
+        ]
+        # The height of a maximum is certain to the square of the error of its time.
+        assert margin == pytest.approx(min(highest), abs=1e-12)
+
+
 def test_an_orbit_that_does_not_return_to_its_start_is_inadmissible():
     # By less than what an overlooked event would do, and by more than rounding.
     model = RestitutionModel(0.85)

@@ -14,6 +14,7 @@ and ``1 + tr + det = 0``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -42,17 +43,16 @@ OBSERVABLES = (
 
 # The determinant of a contact that does not dissipate differs from 1 by rounding errors at most.
 _ROUNDING = 8 * np.finfo(float).eps
-# The highest point of a contact is searched in so many rounds of so many samples. The last steps
-# are 16⁻⁵ of the first, and the error of the height is of the order of the square of the last step.
+# A highest point is searched in so many rounds of so many samples. The last steps are 16⁻⁵ of the
+# first, and the error of the height is of the order of the square of the last step.
 _SAMPLES = 33
 _ROUNDS = 6
 # A simulated cycle differs from the orbit by less than this part of its length and of its speed if
 # both are the same; another landing or release differs by far more.
 _SAME = 1e-6
 # Samples of a contact, evenly and in geometric progression from its start on, because oscillations
-# after an impact decay; and Newton steps from the highest sample to the maximum next to it.
+# after an impact decay.
 _WITHIN = np.union1d(np.linspace(0, 1, 160)[1:], np.geomspace(1e-6, 1, 160))
-_NEWTON_STEPS = 8
 _NO_MAXIMUM = 1.0
 
 
@@ -211,7 +211,10 @@ class Orbit(Batch):
         top = np.array(self.bounce_height + rising * rising / 2 + np.zeros(self.shape))
         lifted = np.flatnonzero((top < self.amplitude) & (np.asarray(self.contact_duration) > 0))
         if lifted.size:
-            of_contact = _top_of_contact(self.flat(self.shape).take(lifted))
+            row = self.flat(self.shape).take(lifted)
+            start = np.zeros(lifted.size)
+            end = row.contact_duration + start
+            of_contact = _highest(lambda time: contact_path(row, time)[0], start, end)
             top.flat[lifted] = np.maximum(top.flat[lifted], of_contact)
         return top[()]
 
@@ -249,22 +252,21 @@ class Orbit(Batch):
         return found.reshape(self.shape)[()]
 
 
-def _top_of_contact(row: Orbit) -> np.ndarray:
-    """Greatest heights in contact of a row of orbits.
+def _highest(
+    height: Callable[[np.ndarray], np.ndarray], left: np.ndarray, right: np.ndarray
+) -> np.ndarray:
+    """The greatest values of functions of time, of which each has one maximum between two times.
 
-    A round takes evenly spaced samples between two times; the next one is between the neighbours
-    of the highest sample.
+    A round takes evenly spaced samples; the next one is between the neighbours of the highest.
     """
-    left = np.zeros(row.shape)
-    right = row.contact_duration + left
     share = np.linspace(0, 1, _SAMPLES)[:, np.newaxis]
     for _ in range(_ROUNDS):
         time = left + (right - left) * share
-        height, _ = contact_path(row, time)
-        middle = np.clip(height.argmax(axis=0), 1, _SAMPLES - 2)[np.newaxis]
+        value = height(time)
+        middle = np.clip(value.argmax(axis=0), 1, _SAMPLES - 2)[np.newaxis]
         left = np.take_along_axis(time, middle - 1, axis=0)[0]
         right = np.take_along_axis(time, middle + 1, axis=0)[0]
-    return height.max(axis=0)
+    return value.max(axis=0)
 
 
 # The motion.
@@ -402,7 +404,6 @@ def flight_margin(orbit: Orbit) -> np.ndarray:
     return lowest_minimum(*rows)
 
 
-@np.errstate(divide="ignore", invalid="ignore")  # where no maximum is near
 def release_margin(orbit: Orbit) -> np.ndarray:
     """Minus the largest local maximum of δ + κ δ′ within the contact of each orbit of a row, 1 if
     there is none.
@@ -411,30 +412,18 @@ def release_margin(orbit: Orbit) -> np.ndarray:
     """
     start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
     duration = orbit.contact_duration + np.zeros(orbit.shape)
-    lag = orbit.model.lag
 
     def height(time: np.ndarray) -> np.ndarray:
         gap, rate = orbit.model.in_contact(time, *start)
-        return gap + lag * rate
+        return gap + orbit.model.lag * rate
 
-    value = height(_WITHIN[:, np.newaxis] * duration)
+    time = _WITHIN[:, np.newaxis] * duration
+    value = height(time)
     inner = value[1:-1]
     is_top = (inner > value[:-2]) & (inner >= value[2:])
-    found = is_top.any(axis=0)
-    if not found.any():
-        return np.full(found.shape, _NO_MAXIMUM)
-    top = np.where(is_top, inner, -np.inf).argmax(axis=0)
-    time = _WITHIN[top + 1] * duration
-    step = np.minimum(_WITHIN[top + 1] - _WITHIN[top], _WITHIN[top + 2] - _WITHIN[top + 1])
-    step = step * duration
-    for _ in range(_NEWTON_STEPS):
-        # The vertex of the parabola through three values, which come nearer to each other.
-        before, middle, after = (height(time + k * step) for k in (-1, 0, 1))
-        bend = before - 2 * middle + after
-        shift = np.clip((before - after) / (2 * bend), -1.0, 1.0)
-        time = time + np.where(bend < 0, shift, 0.0) * step
-        step = step / 4
-    return np.where(found, -height(time), _NO_MAXIMUM)
+    top = np.where(is_top, inner, -np.inf).argmax(axis=0)[np.newaxis]
+    left, right = (np.take_along_axis(time, top + k, axis=0)[0] for k in (0, 2))
+    return np.where(is_top.any(axis=0), -_highest(height, left, right), _NO_MAXIMUM)
 
 
 def difference(orbit: Orbit, other: Orbit) -> np.ndarray:

@@ -14,7 +14,7 @@ from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.configuration import arguments
-from bouncing_ball.pipeline.sources import code_of_note, examined, lines_of, sources, write_note
+from bouncing_ball.pipeline.sources import examined, lines_of, parts_of_note, sources, write_note
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -185,10 +185,10 @@ def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, mon
     write_note(note, [source])
     assert note.stat().st_mtime == 0
     before = note.read_text()
-    assert code_of_note(before) == lines_of([source]) and "numpy" in before.splitlines()[3]
+    assert parts_of_note(before) == (lines_of([source]), ".") and "numpy" in before.splitlines()[3]
     source.write_text("two", encoding="utf-8")
     write_note(note, [source])
-    assert note.stat().st_mtime > 0 and code_of_note(note.read_text()) != code_of_note(before)
+    assert note.stat().st_mtime > 0 and parts_of_note(note.read_text()) != parts_of_note(before)
     os.utime(note, (0, 0))
     monkeypatch.setattr(module, "versions", lambda: {"numpy": "1.0"})
     write_note(note, [source])

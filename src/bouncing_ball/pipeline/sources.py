@@ -219,10 +219,13 @@ def lines_of(paths: Iterable[Path]) -> str:
     return "\n".join(f"{digest_of(path)} {name_of(path)}" for path in paths)
 
 
-def write_note(path: Path, paths: Sequence[Path]) -> None:
-    """Write the note of a job that uses these files, if it has another content."""
+def write_note(path: Path, paths: Sequence[Path], house: str = ".") -> None:
+    """Write the note of a job that uses these files, if it has another content.
+
+    It ends with the folder of the house whose workflow runs, relative to the current one.
+    """
     libraries = "\n".join(f"{number} {name}" for name, number in versions().items())
-    text = f"{lines_of(paths)}\n\n{libraries}"
+    text = "\n\n".join([lines_of(paths), libraries, house])
     if path.is_file() and path.read_bytes() == text.encode():
         return
     for source in paths:
@@ -235,15 +238,15 @@ def write_note(path: Path, paths: Sequence[Path]) -> None:
     write_text(path, text)
 
 
-def code_of_note(note: str) -> str:
-    """The lines of code in the text of a note, without the versions of the libraries.
+def parts_of_note(note: str) -> tuple[str, str]:
+    """The lines of code in the text of a note, and the folder of the house.
 
     Examples
     --------
-    >>> code_of_note("1f0e a.py\\n\\n2.3.5 numpy")
-    '1f0e a.py'
+    >>> parts_of_note("1f0e a.py\\n\\n2.3.5 numpy\\n\\n.")
+    ('1f0e a.py', '.')
     """
-    return note.partition("\n\n")[0]
+    return note.partition("\n\n")[0], note.rpartition("\n\n")[2]
 
 
 def name_of(path: Path) -> str:

@@ -31,7 +31,7 @@ from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole, worst
 from bouncing_ball.pipeline.diff.pictures import compare_drawings, compare_pixels
 from bouncing_ball.pipeline.diff.texts import compare_texts, words_of
 from bouncing_ball.pipeline.provenance import provenance_in
-from bouncing_ball.pipeline.sources import code_of_note
+from bouncing_ball.pipeline.sources import parts_of_note
 
 _CAUSES = {
     Outcome.STALE: "made by older code than that of the working tree",
@@ -118,7 +118,7 @@ class _Comparison:
         # A run notes the code with which it would make a file now.
         note = self.folders[1] / "code" / f"{'' if old.suffix == DATASET else 'draw_'}{old.stem}"
         code = made[1].get("code")
-        if code and note.is_file() and code != code_of_note(note.read_text(errors="replace")):
+        if code and note.is_file() and code != parts_of_note(note.read_text(errors="replace"))[0]:
             rows.append(Row("", Outcome.STALE))
         return Whole(file, tuple(rows), contents if old.suffix == ".png" else ())
 

@@ -59,7 +59,9 @@ class _Comparison:
         files |= {file for file in not_made if PurePosixPath(file).parts[0] in (FIGURES, file)}
         for folder in self.folders:
             found = files_in(folder)
-            if not found and not not_made:
+            # The record of a new house is empty.
+            is_empty = not found and (folder == new or not folder.is_dir())
+            if is_empty and not not_made:
                 raise ModelError(f"nothing to compare in {folder}: neither figures/ nor a text")
             files |= found
         self.artifacts = by_artifact(files)
@@ -170,7 +172,8 @@ def compare_folders(
     Raises
     ------
     ModelError
-        If one of the folders holds no artifact, or neither folder has a named artifact.
+        If there is nothing in the new folder, if there is no folder of the record, or if neither
+        folder has a named artifact.
     """
     comparison = _Comparison(record, new, not_made)
     known = comparison.artifacts

@@ -199,6 +199,23 @@ def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, mon
     assert "1.0 numpy" in note.read_text()
 
 
+def test_what_a_module_holds_is_kept_for_the_next_start(tmp_path, monkeypatch):
+    source = tmp_path / "a.py"
+    source.write_text(CODE, encoding="utf-8")
+    write_note(tmp_path / "code" / "fig02", [source])
+    module.module.cache_clear()
+    monkeypatch.setattr(module, "_KNOWN", {})
+    module.recall(tmp_path / "code")
+    monkeypatch.setattr(module, "examined", None)
+    expected = examined(CODE.encode())
+    assert module.module(source) == expected
+    # What another program has written there is of no use.
+    (tmp_path / "code" / ".modules").write_text("[1", encoding="utf-8")
+    module.recall.cache_clear()
+    module.recall(tmp_path / "code")
+    assert module.module(source) == expected
+
+
 def test_no_module_imports_relatively():
     """Such an import has no full name, and would be missed."""
     found = [path for path in PACKAGE.rglob("*.py") if "from ." in path.read_text(encoding="utf-8")]

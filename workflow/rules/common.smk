@@ -104,7 +104,9 @@ def code(job, script, *modules, files=(), data=()):
     path = Path("results", "code", job)
     if path.exists() and (workflow.touch or not workflow.is_main_process):
         return str(path)
-    from bouncing_ball.pipeline.sources import sources, write_note
+    from bouncing_ball.pipeline.sources import recall, sources, write_note
+
+    recall(path.parent)
 
     # An accepted dataset counts as code, because no job makes it.
     accepted = [file for file in data if file in ACCEPTED and os.path.isfile(file)]

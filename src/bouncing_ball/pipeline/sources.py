@@ -13,6 +13,7 @@ docstrings, such as the claims, whose statements are docstrings, the docstrings 
 
 import ast
 import io
+import json
 import platform
 import re
 import tokenize
@@ -160,10 +161,26 @@ def data_beside(module: Path) -> list[Path]:
     ]
 
 
+# What contents hold, by their digests; to examine all modules takes a second.
+_KNOWN: dict[str, list] = {}
+_KEPT = ".modules"
+
+
+@cache
+def recall(folder: Path) -> None:
+    """Read what an earlier start has found out about modules, from the folder of its notes."""
+    with suppress(OSError, TypeError, ValueError):
+        _KNOWN.update(json.loads((folder / _KEPT).read_bytes()))
+
+
 @cache
 def module(path: Path) -> Module:
     """What a file of Python holds."""
-    return examined(path.read_bytes())
+    content = path.read_bytes()
+    known = _KNOWN.setdefault(digest(content), [])
+    if not known:
+        known.extend(examined(content))
+    return Module(*known)
 
 
 @cache
@@ -236,6 +253,7 @@ def write_note(path: Path, paths: Sequence[Path], house: str = ".") -> None:
             if source.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
                 bytecode.unlink()
     write_text(path, text)
+    write_text(path.with_name(_KEPT), json.dumps(_KNOWN))
 
 
 def parts_of_note(note: str) -> tuple[str, str]:

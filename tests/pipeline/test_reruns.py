@@ -14,7 +14,7 @@ from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.configuration import arguments
-from bouncing_ball.pipeline.sources import code_of_note, examined, lines_of, sources, write_note
+from bouncing_ball.pipeline.sources import examined, lines_of, parts_of_note, sources, write_note
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -185,10 +185,10 @@ def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, mon
     write_note(note, [source])
     assert note.stat().st_mtime == 0
     before = note.read_text()
-    assert code_of_note(before) == lines_of([source]) and "numpy" in before.splitlines()[3]
+    assert parts_of_note(before) == (lines_of([source]), ".") and "numpy" in before.splitlines()[3]
     source.write_text("two", encoding="utf-8")
     write_note(note, [source])
-    assert note.stat().st_mtime > 0 and code_of_note(note.read_text()) != code_of_note(before)
+    assert note.stat().st_mtime > 0 and parts_of_note(note.read_text()) != parts_of_note(before)
     os.utime(note, (0, 0))
     monkeypatch.setattr(module, "versions", lambda: {"numpy": "1.0"})
     write_note(note, [source])
@@ -197,6 +197,23 @@ def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, mon
     note.write_bytes(b"\xff\xfe")
     write_note(note, [source])
     assert "1.0 numpy" in note.read_text()
+
+
+def test_what_a_module_holds_is_kept_for_the_next_start(tmp_path, monkeypatch):
+    source = tmp_path / "a.py"
+    source.write_text(CODE, encoding="utf-8")
+    write_note(tmp_path / "code" / "fig02", [source])
+    module.module.cache_clear()
+    monkeypatch.setattr(module, "_KNOWN", {})
+    module.recall(tmp_path / "code")
+    monkeypatch.setattr(module, "examined", None)
+    expected = examined(CODE.encode())
+    assert module.module(source) == expected
+    # What another program has written there is of no use.
+    (tmp_path / "code" / ".modules").write_text("[1", encoding="utf-8")
+    module.recall.cache_clear()
+    module.recall(tmp_path / "code")
+    assert module.module(source) == expected
 
 
 def test_no_module_imports_relatively():

@@ -80,6 +80,18 @@ class Tree:
         (said,) = [line for line in done.stderr.splitlines() if not line.startswith(own)]
         return said
 
+    def python_says(self, program: str, *arguments: str) -> str:
+        """What a program of Python prints in this tree."""
+        done = subprocess.run(
+            [sys.executable, "-c", program, *arguments],
+            cwd=self.path,
+            env=self.environment(),
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return done.stdout.strip()
+
     def environment(self) -> dict[str, str]:
         return os.environ | {"PYTHONPATH": str(self.path / self.package)}
 

@@ -17,7 +17,6 @@ ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
 # The folder with the configuration and the accepted record; the Snakefile of another house names its
 # own before it includes these rules.
 HOUSE = globals().get("HOUSE", ROOT)
-os.environ["BOUNCING_BALL_HOUSE"] = HOUSE
 # The environment of all rules for `--sdm conda`; otherwise a job has the Python of Snakemake itself.
 ENVIRONMENT = f"{ROOT}/environment.yml"
 # The package may belong to another checkout whose environment is active.
@@ -94,14 +93,17 @@ def code(job, script, *modules, files=(), data=()):
     path = Path("results", "code", job)
     if path.exists() and (workflow.touch or not workflow.is_main_process):
         return str(path)
-    from bouncing_ball.pipeline.sources import sources, write_note
+    from bouncing_ball.pipeline.sources import recall, sources, write_note
+
+    recall(path.parent)
 
     # An accepted dataset counts as code, because no job makes it.
     accepted = [file for file in data if file in ACCEPTED and os.path.isfile(file)]
     read = [SCRIPTS / "adapter.py", SCRIPTS / script, *files, *accepted]
     read = [Path(file).resolve() for file in read]
     try:
-        write_note(path, sources([f"bouncing_ball.{module}" for module in modules], read))
+        found = sources([f"bouncing_ball.{module}" for module in modules], read)
+        write_note(path, found, os.path.relpath(HOUSE))
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

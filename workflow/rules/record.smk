@@ -5,15 +5,11 @@
 from bouncing_ball.pipeline.run import (
     concluded,
     lines_by_reason,
+    names_of_artifacts,
     not_made,
     remove_reports,
     requested,
 )
-
-
-# The names of the artifacts that the targets beside `diff` make; none means all.
-def requested_artifacts():
-    return sorted({Path(file).stem for file in requested(workflow)})
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
@@ -43,7 +39,7 @@ rule diff:
         lambda wildcards: requested(workflow) or rules.all.input,
     params:
         house=HOUSE,
-        artifacts=lambda wildcards: requested_artifacts(),
+        artifacts=lambda wildcards: names_of_artifacts(requested(workflow)),
     log:
         "results/logs/diff.log",
     conda:
@@ -72,6 +68,6 @@ onerror:
     if unmade and "diff" in workflow.dag_settings.targets:
         from bouncing_ball.pipeline.diff.report import write_reports
 
-        sys.exit(write_reports(Path(HOUSE), requested_artifacts(), unmade))
+        sys.exit(write_reports(Path(HOUSE), names_of_artifacts(requested(workflow)), unmade))
     if unmade:
         sys.exit("\n".join(lines_by_reason(unmade)))

@@ -32,4 +32,5 @@ rule study:
     conda:
         ENVIRONMENT
     script:
-        "../scripts/study.py"
+        # The rules of another house, in its folder, use this one.
+        f"{SCRIPTS}/study.py"

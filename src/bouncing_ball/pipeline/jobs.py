@@ -4,7 +4,6 @@ The scripts of the workflow are a few lines that call this module; ``snakemake``
 Snakemake provides for them.
 """
 
-import os
 import signal
 import sys
 import traceback
@@ -27,16 +26,13 @@ from bouncing_ball.datasets.variables import budgeted
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.provenance import PREFIX, gather
 from bouncing_ball.pipeline.run import CONCLUSION
-from bouncing_ball.pipeline.sources import code_of_note
+from bouncing_ball.pipeline.sources import parts_of_note
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
     "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
-
-HOUSE = "BOUNCING_BALL_HOUSE"
-"""The variable of the environment with the folder of the house whose workflow runs."""
 
 
 def conclude(sentence: str) -> None:
@@ -136,10 +132,9 @@ def provenance(snakemake: Any) -> dict[str, str]:
     """
     code = snakemake.input.code
     inputs = [str(path) for path in snakemake.input if path != code]
-    house = Path(os.environ[HOUSE])
-    gathered = gather(str(snakemake.output[0]), inputs, house, snakemake.config)
-    note = Path(code).read_text(encoding="utf-8")
-    return gathered | {f"{PREFIX}code": code_of_note(note)}
+    lines, house = parts_of_note(Path(code).read_text(encoding="utf-8"))
+    gathered = gather(str(snakemake.output[0]), inputs, Path(house).resolve(), snakemake.config)
+    return gathered | {f"{PREFIX}code": lines}
 
 
 def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:

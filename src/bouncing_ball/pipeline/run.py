@@ -4,7 +4,7 @@ A run goes on with the jobs that do not need a failed one. ``workflow`` is the o
 provides for its handlers. Every process of a run imports this module, so that it imports little.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,17 @@ def remove_reports() -> None:
     """Remove the reports of an earlier run, whose results may change now."""
     for path in PAGE.parent.glob("*.*"):
         path.unlink()
+
+
+def names_of_artifacts(files: Iterable[str]) -> list[str]:
+    """The names of the artifacts of some files.
+
+    Examples
+    --------
+    >>> names_of_artifacts(["results/paper.md", "results/figures/fig14.nc"])
+    ['fig14', 'paper']
+    """
+    return sorted({Path(file).stem for file in files})
 
 
 def requested(workflow: Any) -> list[str]:

@@ -13,6 +13,7 @@ docstrings, such as the claims, whose statements are docstrings, the docstrings 
 
 import ast
 import io
+import json
 import platform
 import re
 import tokenize
@@ -160,10 +161,26 @@ def data_beside(module: Path) -> list[Path]:
     ]
 
 
+# What contents hold, by their digests; to examine all modules takes a second.
+_KNOWN: dict[str, list] = {}
+_KEPT = ".modules"
+
+
+@cache
+def recall(folder: Path) -> None:
+    """Read what an earlier start has found out about modules, from the folder of its notes."""
+    with suppress(OSError, TypeError, ValueError):
+        _KNOWN.update(json.loads((folder / _KEPT).read_bytes()))
+
+
 @cache
 def module(path: Path) -> Module:
     """What a file of Python holds."""
-    return examined(path.read_bytes())
+    content = path.read_bytes()
+    known = _KNOWN.setdefault(digest(content), [])
+    if not known:
+        known.extend(examined(content))
+    return Module(*known)
 
 
 @cache
@@ -219,10 +236,13 @@ def lines_of(paths: Iterable[Path]) -> str:
     return "\n".join(f"{digest_of(path)} {name_of(path)}" for path in paths)
 
 
-def write_note(path: Path, paths: Sequence[Path]) -> None:
-    """Write the note of a job that uses these files, if it has another content."""
+def write_note(path: Path, paths: Sequence[Path], house: str = ".") -> None:
+    """Write the note of a job that uses these files, if it has another content.
+
+    It ends with the folder of the house whose workflow runs, relative to the current one.
+    """
     libraries = "\n".join(f"{number} {name}" for name, number in versions().items())
-    text = f"{lines_of(paths)}\n\n{libraries}"
+    text = "\n\n".join([lines_of(paths), libraries, house])
     if path.is_file() and path.read_bytes() == text.encode():
         return
     for source in paths:
@@ -233,17 +253,18 @@ def write_note(path: Path, paths: Sequence[Path]) -> None:
             if source.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
                 bytecode.unlink()
     write_text(path, text)
+    write_text(path.with_name(_KEPT), json.dumps(_KNOWN))
 
 
-def code_of_note(note: str) -> str:
-    """The lines of code in the text of a note, without the versions of the libraries.
+def parts_of_note(note: str) -> tuple[str, str]:
+    """The lines of code in the text of a note, and the folder of the house.
 
     Examples
     --------
-    >>> code_of_note("1f0e a.py\\n\\n2.3.5 numpy")
-    '1f0e a.py'
+    >>> parts_of_note("1f0e a.py\\n\\n2.3.5 numpy\\n\\n.")
+    ('1f0e a.py', '.')
     """
-    return note.partition("\n\n")[0]
+    return note.partition("\n\n")[0], note.rpartition("\n\n")[2]
 
 
 def name_of(path: Path) -> str:

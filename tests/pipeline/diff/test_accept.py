@@ -52,6 +52,14 @@ def test_a_new_artifact_is_copied_into_its_folder_beside_a_page_about_it(pair, r
     assert page.exists()
 
 
+def test_the_record_of_a_new_house_is_empty(pair, run):
+    for path in (pair.record / "paper.md", *pair.record.glob("figures/*")):
+        path.unlink()
+    copied = [line for line in run() if line.startswith("copied ")]
+    assert len(copied) == len([*pair.new.glob("figures/*")]) + 1
+    assert pair.compare().outcome == "identical"
+
+
 def test_accept_of_named_artifacts_copies_these_alone(pair, run, refusal):
     pair.move()
     pair.rewrite("paper.md", "reproduced", "contradicted")

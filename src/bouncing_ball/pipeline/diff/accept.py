@@ -15,20 +15,6 @@ from bouncing_ball.pipeline.diff.compare import compare_folders
 from bouncing_ball.pipeline.diff.report import to_terminal
 
 
-def _copied(file: str, house: Path, results: Path) -> str:
-    """Copy a file to the record, or remove it if it is no longer made; in words, what was done."""
-    accepted = house / file
-    made = results / file
-    if not made.exists():
-        accepted.unlink()
-        return f"removed {file}"
-    if accepted.is_file() and accepted.read_bytes() == made.read_bytes():
-        return ""
-    with replacing(accepted) as temporary:
-        shutil.copyfile(made, temporary)
-    return f"copied {file}"
-
-
 def accept(
     house: Path, results: Path, files: Collection[str], only: Collection[str] = ()
 ) -> list[str]:
@@ -71,12 +57,22 @@ def accept(
     names = [file.name for artifact in taken for file in artifact.parts]
     for path in (results / name for name in names):
         if path.suffix in CARRIERS and path.exists():
-            made = provenance.read_provenance(path)
-            if made["dirty"] != "no":
+            origin = provenance.read_provenance(path)
+            if origin["dirty"] != "no":
                 raise ModelError(f"made with uncommitted changes, remove and run again: {path}")
-            if made["configuration"]:
-                raise ModelError(f"{path} has another configuration: {made['configuration']}")
-    done = [said for name in names if (said := _copied(name, house, results))]
+            if origin["configuration"]:
+                raise ModelError(f"{path} has another configuration: {origin['configuration']}")
+    done = []
+    for name in names:
+        accepted = house / name
+        made = results / name
+        if not made.exists():
+            accepted.unlink()
+            done.append(f"removed {name}")
+        elif not accepted.is_file() or accepted.read_bytes() != made.read_bytes():
+            with replacing(accepted) as temporary:
+                shutil.copyfile(made, temporary)
+            done.append(f"copied {name}")
     if not done:
         return ["Nothing to accept: the results agree with the record."]
     return [*done, "Commit the record with the reason: git add figures config *.md && git commit"]

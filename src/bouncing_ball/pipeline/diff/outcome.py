@@ -1,7 +1,6 @@
 """The outcomes of a comparison from the best to the worst, and the parts of a comparison."""
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -47,17 +46,6 @@ class Outcome(StrEnum):
         return 2 if self is Outcome.UNREADABLE else int(not self.agrees)
 
 
-def worst(outcomes: Iterable[Outcome]) -> Outcome:
-    """The worst of some outcomes, ``IDENTICAL`` if there are none.
-
-    Examples
-    --------
-    >>> str(worst([Outcome.ROUNDING, Outcome.MISSING, Outcome.DRIFTED]))
-    'missing'
-    """
-    return max(outcomes, key=lambda outcome: outcome.rank, default=Outcome.IDENTICAL)
-
-
 @dataclass(frozen=True)
 class Row:
     """A difference in a file: of a variable, a parameter, an attribute, a line, or of pixels.
@@ -96,8 +84,16 @@ class Whole:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst outcome of the parts."""
-        return worst(part.outcome for part in self.parts)
+        """The worst outcome of the parts, ``IDENTICAL`` if there are none.
+
+        Examples
+        --------
+        >>> rows = Row("a", Outcome.ROUNDING), Row("b", Outcome.MISSING), Row("c", Outcome.DRIFTED)
+        >>> str(Whole("", rows).outcome)
+        'missing'
+        """
+        outcomes = (part.outcome for part in self.parts)
+        return max(outcomes, key=lambda outcome: outcome.rank, default=Outcome.IDENTICAL)
 
     @property
     def place(self) -> tuple[bool, int, float]:

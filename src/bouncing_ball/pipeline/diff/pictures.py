@@ -165,6 +165,7 @@ def compare_drawings(record: Path, new: Path, *, moved: bool, redrawn: bool) -> 
     pairs = [pair for pair in zip_longest(old, now, fillvalue="") if pair[0] != pair[1]]
     apart = [pair for pair in pairs if not _is_near(*pair, distance)]
     if apart:
-        label = next((pair for pair in apart if pair[0].startswith("!--")), apart[0])
-        return [Row("drawing", Outcome.DRIFTED, excerpt(*label))]
+        labels = [pair for pair in apart if pair[0].startswith("!--")]
+        told = excerpt(*(labels or apart)[0])
+        return [Row("drawing", Outcome.DRIFTED, told, size=0.0, is_words=bool(labels))]
     return [Row("drawing", Outcome.ROUNDING, "numbers moved by rounding")] if pairs else []

@@ -1,0 +1,73 @@
+"""A second house: a folder with a Snakefile, a configuration and a record of its own."""
+
+from dataclasses import replace
+
+import yaml
+
+SNAKEFILE = """\
+HOUSE = workflow.basedir
+
+
+include: "../workflow/rules/common.smk"
+
+
+configfile: here("config/config.yaml")
+
+
+include: "../workflow/rules/stage.smk"
+
+
+use rule study as restitution_model_study with:
+    wildcard_constraints:
+        artifact=stage(
+            "paper.exhibits.restitution_model",
+            fig02=dict(
+                title="Another history",
+                study="restitution_history",
+                drawing="restitution_history",
+            ),
+        ),
+
+
+include: "../workflow/rules/shown.smk"
+include: "../workflow/rules/targets.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        ARTIFACTS["fig02"].files,
+
+
+include: "../workflow/rules/record.smk"
+"""
+
+
+def test_a_house_has_its_own_configuration_results_and_record(fresh):
+    house = replace(fresh, path=fresh.path / "other", package=str(fresh.path / "src"))
+    whole = yaml.safe_load((fresh.path / "config/config.yaml").read_text(encoding="utf-8"))
+    (house.path / "config").mkdir(parents=True)
+    (house.path / "Snakefile").write_text(SNAKEFILE, encoding="utf-8")
+    own = {"paper": {"fig02": whole["paper"]["fig02"] | {"periods": 3}}}
+    (house.path / "config/config.yaml").write_text(yaml.safe_dump(own), encoding="utf-8")
+    commit = fresh.commit("Another house")
+    made = house.run("--cores", "1", "accept").stdout
+    assert {line for line in made.splitlines() if line.startswith("copied ")} == {
+        f"copied figures/fig02.{kind}" for kind in ("nc", "png", "svg")
+    }
+    # Its record makes the tree of neither house dirty.
+    (house.path / "results/figures/fig02.nc").unlink()
+    said = house.run("--cores", "1", "diff").stdout
+    assert said.splitlines()[-1] == "1 identical. The results agree with the record."
+    assert not (fresh.path / "results").exists()
+    program = "from bouncing_ball.cli.main import main; main()"
+    for where, arguments in ((house, ["diff"]), (fresh, ["diff", "other", "fig02"])):
+        assert where.python_says(program, *arguments) == said.splitlines()[-1]
+    explained = fresh.python_says(program, "explain", "other/results/figures/fig02.nc")
+    lines = dict(line.split("  ", 1) for line in explained.splitlines())
+    assert {name: lines[name].strip() for name in ("commit", "dirty", "parameters periods")} == {
+        "commit": commit,
+        "dirty": "no",
+        "parameters periods": "3",
+    }
+    assert "configuration paper" not in lines

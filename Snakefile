@@ -56,7 +56,7 @@ rule replication:
     message:
         "The figures, tables and claims of the paper and its article are up to date"
     input:
-        [file for each in TARGETS if each.part == "paper" for file in each.files],
+        [file for each in TARGETS for file in each.files],
         rules.paper.output,
 
 

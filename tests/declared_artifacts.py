@@ -37,7 +37,9 @@ def declared() -> dict[str, Artifact]:
     def stage(module, figures=None, **given):
         for name, each in given.items():
             shown = figures or f"{module}_figures"
-            artifacts[name] = Artifact(name=name, module=module, figures=shown, **each)
+            artifacts[name] = Artifact(
+                name=name, section="paper", module=module, figures=shown, **each
+            )
 
     for call in calls_of_stage((RULES / "paper.smk").read_text(encoding="utf-8")):
         eval(call, {"stage": stage})

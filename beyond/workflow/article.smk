@@ -1,8 +1,9 @@
 # The article of what goes past the paper, from the results of its studies and the accepted verdicts
 # on the paper.
 
-BEYOND_ARTICLE = os.path.relpath(Path(ROOT, "beyond/report"))
-OF_BEYOND = [
+PAPER = os.path.relpath(Path(ROOT, "workflow/report/paper"))
+TEMPLATES = os.path.relpath(Path(HOUSE, "report"))
+SHOWN = [
     ARTIFACTS[name]
     for name in (
         "ext_instant",
@@ -14,40 +15,40 @@ OF_BEYOND = [
         "ext_flights",
         "ext_proofs",
         "ext_verdicts",
+        "claims",
     )
 ]
-# The part of the accepted record that the article reads.
-RECORDED = [os.path.relpath(Path(ROOT, "figures/claims.nc"))]
 
 
 rule beyond_article:
     message:
-        "Writing results/beyond/article.md"
+        "Writing results/article.md"
     input:
         code=lambda wildcards: code(
             "beyond_article",
             "paper.py",
             files=[
-                *sorted(map(str, Path(BEYOND_ARTICLE).glob("*.md.j2"))),
-                f"{BEYOND_ARTICLE}/references.yaml",
-                f"{ARTICLE}/macros.md.j2",
-                f"{ARTICLE}/front_matter.md.j2",
-                f"{ARTICLE}/references.yaml",
-                f"{ARTICLE}/numbered.csl",
+                *sorted(map(str, Path(TEMPLATES).glob("*.md.j2"))),
+                f"{TEMPLATES}/references.yaml",
+                f"{PAPER}/macros.md.j2",
+                f"{PAPER}/front_matter.md.j2",
+                f"{PAPER}/references.yaml",
+                f"{PAPER}/numbered.csl",
             ],
+            data=[each.dataset for each in SHOWN],
         ),
         citation=os.path.relpath(Path(ROOT, "CITATION.cff")),
-        data=[*(each.dataset for each in OF_BEYOND), *RECORDED],
-        tables=[f"results/{each.place}.md" for each in OF_BEYOND if each.table],
+        data=[each.dataset for each in SHOWN],
+        tables=[f"results/{each.place}.md" for each in SHOWN if each.table],
     output:
-        "results/beyond/article.md",
+        "results/article.md",
     params:
-        templates=[f"{BEYOND_ARTICLE}/article.md.j2"],
-        shared=ARTICLE,
+        templates=[f"{TEMPLATES}/article.md.j2"],
+        shared=PAPER,
         artifacts=ARTIFACTS,
     log:
-        "results/logs/beyond_article.log",
+        "results/logs/article.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/paper.py"
+        f"{SCRIPTS}/paper.py"

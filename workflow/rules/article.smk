@@ -38,7 +38,7 @@ rule set_claims:
 
 
 # The artifacts of the paper, from which its article is made.
-OF_PAPER = [each for each in ARTIFACTS.values() if each.part == "paper"]
+OF_PAPER = list(ARTIFACTS.values())
 
 
 rule paper:

@@ -17,6 +17,10 @@ ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
 # The folder with the configuration and the accepted record; the Snakefile of another house names its
 # own before it includes these rules.
 HOUSE = globals().get("HOUSE", ROOT)
+# The section of the configuration with the parameters of the studies, and the module with the budgets
+# of single artifacts.
+SECTION = globals().get("SECTION", "paper")
+BUDGETS = globals().get("BUDGETS", "bouncing_ball.paper.exhibits.budgets")
 # The environment of all rules for `--sdm conda`; otherwise a job has the Python of Snakemake itself.
 ENVIRONMENT = f"{ROOT}/environment.yml"
 # The package may belong to another checkout whose environment is active.
@@ -67,9 +71,8 @@ def stage(module, figures=None, **artifacts):
         if accepted := given.get("accepted"):
             given = {**given, "accepted": here(accepted)}
             ACCEPTED.add(given["accepted"])
-        ARTIFACTS[name] = Artifact(
-            name=name, module=module, figures=figures or f"{module}_figures", **given
-        )
+        given = {"module": module, "figures": figures or f"{module}_figures", **given}
+        ARTIFACTS[name] = Artifact(name=name, section=SECTION, **given)
     return "|".join(artifacts)
 
 
@@ -78,13 +81,13 @@ def arguments_of(artifact):
     from bouncing_ball.pipeline.configuration import arguments
 
     return arguments(
-        function(artifact.module, artifact.study), artifact.part, artifact.name, config
+        function(artifact.module, artifact.study), artifact.section, artifact.name, config
     )
 
 
 # The budgets of single artifacts stand with the studies, in the module `budgets` beside them.
 def budgets_of(artifact):
-    return function(f"{artifact.part}.exhibits.budgets", "BUDGETS").get(artifact.name, {})
+    return function(BUDGETS, "BUDGETS").get(artifact.name, {})
 
 
 # The one input that stands for the code of a job: its note, see the module `sources`. `--touch` leaves
@@ -102,7 +105,7 @@ def code(job, script, *modules, files=(), data=()):
     read = [SCRIPTS / "adapter.py", SCRIPTS / script, *files, *accepted]
     read = [Path(file).resolve() for file in read]
     try:
-        found = sources([f"bouncing_ball.{module}" for module in modules], read)
+        found = sources(modules, read)
         write_note(path, found, os.path.relpath(HOUSE))
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")

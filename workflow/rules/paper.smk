@@ -5,7 +5,7 @@
 
 # The schematics have no dataset.
 stage(
-    "paper.exhibits.schematics",
+    "bouncing_ball.paper.exhibits.schematics",
     fig01=dict(
         title="Figure 1: schematic of the restitution model",
         drawing="restitution_model",
@@ -21,7 +21,7 @@ use rule study as restitution_model_study with:
     """The restitution model: one orbit over time, and all orbits in closed form."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.restitution_model",
+            "bouncing_ball.paper.exhibits.restitution_model",
             fig02=dict(
                 title="Figure 2: n-T response of the restitution model",
                 study="restitution_history",
@@ -39,7 +39,7 @@ use rule study as apparent_restitution_study with:
     """Apparent restitution, velocity and Poincaré map of orbits along the frequency ratio."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.apparent_restitution",
+            "bouncing_ball.paper.exhibits.apparent_restitution",
             fig05=dict(
                 title="Figure 5: apparent restitution along the frequency ratio, by restitution and amplitude",
                 study="apparent_restitution",
@@ -67,7 +67,7 @@ use rule study as time_histories_study with:
     """Time histories of orbits of the spring-damper model."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.time_histories",
+            "bouncing_ball.paper.exhibits.time_histories",
             fig07=dict(
                 title="Figure 7: one cycle of the spring-damper model",
                 study="contact_history",
@@ -85,7 +85,7 @@ use rule study as continuation_of_orbits_study with:
     """Existence and stability of n-T orbits by continuation, and their ranges in Table 1."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.continuation_of_orbits",
+            "bouncing_ball.paper.exhibits.continuation_of_orbits",
             fig08=dict(
                 title="Figure 8: existence and stability domains of the spring-damper model, first family",
                 study="orbit_branches",
@@ -113,7 +113,7 @@ use rule study as permanent_contact_study with:
     """Permanent contact: the amplitude from which on the table throws the ball off."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.permanent_contact",
+            "bouncing_ball.paper.exhibits.permanent_contact",
             fig11=dict(
                 title="Figure 11: threshold of permanent contact along the frequency ratio",
                 study="permanent_contact",
@@ -131,7 +131,7 @@ use rule study as error_thresholds_study with:
     """Error thresholds: the frequency ratio from which on the restitution model is accurate."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.error_thresholds",
+            "bouncing_ball.paper.exhibits.error_thresholds",
             fig14=dict(
                 title="Figure 14: greatest height of both models, and the threshold of the error",
                 study="height_error",
@@ -149,7 +149,7 @@ use rule study as lowest_period_doubling_study with:
     """The frequency ratio at which the period doubling of each family is lowest."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.lowest_period_doubling",
+            "bouncing_ball.paper.exhibits.lowest_period_doubling",
             lowest_doubling=dict(
                 title="Frequency ratio at which the period doubling is lowest, by family",
                 study="lowest_period_doublings",
@@ -161,7 +161,7 @@ use rule study as kinds_of_motion_study with:
     """A periodic, a subharmonic and a chaotic motion of the restitution model."""
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.kinds_of_motion",
+            "bouncing_ball.paper.exhibits.kinds_of_motion",
             three_balls=dict(
                 title="Periodic, subharmonic and chaotic motion of the restitution model, one ball for each",
                 study="kinds_of_motion",
@@ -176,8 +176,8 @@ use rule study as formulas_study with:
     """The printed formulas against a second computation."""
     wildcard_constraints:
         artifact=stage(
-            "paper.claims.formulas",
-            figures="paper.claims.tables",
+            "bouncing_ball.paper.claims.formulas",
+            figures="bouncing_ball.paper.claims.tables",
             formulas=dict(
                 title="The printed formulas against a second computation",
                 study="formulas",
@@ -190,8 +190,8 @@ use rule study as forensics_study with:
     """Table 1 under readings of what the authors may have done."""
     wildcard_constraints:
         artifact=stage(
-            "paper.claims.forensics",
-            figures="paper.claims.tables",
+            "bouncing_ball.paper.claims.forensics",
+            figures="bouncing_ball.paper.claims.tables",
             forensics=dict(
                 title="Table 1 under readings of what the authors may have done",
                 study="forensics",
@@ -204,8 +204,8 @@ use rule study as witness_study with:
     """Every orbit shown by three routes: continuation, formula and simulation."""
     wildcard_constraints:
         artifact=stage(
-            "paper.claims.witness",
-            figures="paper.claims.tables",
+            "bouncing_ball.paper.claims.witness",
+            figures="bouncing_ball.paper.claims.tables",
             witness=dict(
                 title="Continuation, formula and simulation for every orbit shown",
                 study="witness",
@@ -233,8 +233,8 @@ use rule study as claims_study with:
     """The verdicts on the paper's claims."""
     wildcard_constraints:
         artifact=stage(
-            "paper.claims.claims",
-            figures="paper.claims.tables",
+            "bouncing_ball.paper.claims.claims",
+            figures="bouncing_ball.paper.claims.tables",
             claims=dict(
                 title="Verdicts on the paper's claims",
                 study="claims",

@@ -1,9 +1,16 @@
 # From datasets to figures and tables. Each is made from the dataset of its
 # artifact; the schematics have no dataset.
 
-CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
+REPORT = Path(HOUSE, "report") if HOUSE != ROOT else Path(ROOT, "workflow/report")
+TITLE = f"{ROOT}/workflow/report/title.rst"
 
-# Below its picture the report has the caption `workflow/report/NAME.rst`, or else the title.
+
+def caption_of(artifact):
+    caption = REPORT / f"{artifact.name}.rst"
+    return str(caption) if caption.exists() else TITLE
+
+
+# Below its picture the report has the caption NAME.rst of the house, or else the title.
 for each in ARTIFACTS.values():
     if not each.drawing:
         continue
@@ -28,8 +35,8 @@ for each in ARTIFACTS.values():
         output:
             png=report(
                 f"results/{each.place}.png",
-                caption=f"../report/{each.name if each.name in CAPTIONS else 'title'}.rst",
-                category="Figures" if each.part == "paper" else "Beyond the paper",
+                caption=caption_of(each),
+                category="Figures",
                 labels={"figure": each.name},
             ),
             svg=f"results/{each.place}.svg",
@@ -62,8 +69,8 @@ for each in ARTIFACTS.values():
         output:
             csv=report(
                 f"results/{each.place}.csv",
-                caption="../report/title.rst",
-                category="Tables" if each.part == "paper" else "Beyond the paper",
+                caption=TITLE,
+                category="Tables",
                 labels={"table": each.name},
             ),
             md=f"results/{each.place}.md",

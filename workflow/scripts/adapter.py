@@ -13,7 +13,7 @@ gc.set_threshold(100_000)
 
 
 def function(module: str, name: str) -> Callable[..., Any]:
-    """The function with this name in a module of the package.
+    """The function with this name in a module of a house.
 
     Raises
     ------
@@ -21,6 +21,6 @@ def function(module: str, name: str) -> Callable[..., Any]:
         If there is no such module or function.
     """
     try:
-        return getattr(import_module(f"bouncing_ball.{module}"), name)
+        return getattr(import_module(module), name)
     except (ModuleNotFoundError, AttributeError) as error:
         raise ConfigurationError(f"{module}.{name}: {error}") from None

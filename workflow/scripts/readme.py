@@ -6,8 +6,15 @@ from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims
 from bouncing_ball.pipeline.article import render_article
-from bouncing_ball.pipeline.front import folder_page, page_of, thumbnails, with_parts
+from bouncing_ball.pipeline.front import folder_page, thumbnails, with_parts
 from bouncing_ball.pipeline.jobs import logged
+
+ABOUT = """\
+# The figures and tables of the paper
+
+The accepted results of the replication. Each figure, table and check has a dataset (netCDF), its
+picture (PNG and SVG) and its table (Markdown and CSV); two figures are schematics without data.
+"""
 
 
 def pages(top, artifacts):
@@ -22,8 +29,7 @@ def pages(top, artifacts):
     }
     parts["figures"] = thumbnails(artifacts.values())
     readme = with_parts((top / "README.md").read_text(encoding="utf-8"), parts)
-    folders = {page_of(part): folder_page(part, artifacts.values()) for part in ("paper", "beyond")}
-    return {"README.md": readme, **folders}
+    return {"README.md": readme, "figures/README.md": folder_page(ABOUT, artifacts.values())}
 
 
 if "snakemake" in globals():

@@ -17,8 +17,9 @@ def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
     ConfigurationError
         If there is no function with the name of a study.
     """
-    studies: dict = {"paper": {}}
+    studies: dict = {}
     for each in artifacts:
         if each.study:
-            studies[each.part][each.name] = function(each.module, each.study)
+            study = function(each.module, each.study)
+            studies.setdefault(each.section, {})[each.name] = study
     return configuration_model(studies)

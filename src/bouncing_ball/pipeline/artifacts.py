@@ -40,6 +40,8 @@ class Artifact:
     ----------
     name : str
         The name on the command line, in the configuration and of the files.
+    section : str
+        The section of the configuration with its parameters.
     module, figures : str
         The modules of the stage, with its studies, and of its figures and tables.
     title : str
@@ -60,19 +62,21 @@ class Artifact:
     --------
     >>> artifact = Artifact(
     ...     name="table1",
-    ...     module="paper.exhibits.continuation_of_orbits",
-    ...     figures="paper.exhibits.continuation_of_orbits_figures",
+    ...     section="paper",
+    ...     module="bouncing_ball.paper.exhibits.continuation_of_orbits",
+    ...     figures="bouncing_ball.paper.exhibits.continuation_of_orbits_figures",
     ...     title="Table 1",
     ...     study="stability_ranges",
     ...     table="table1",
     ... )
     >>> artifact.files
     ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
-    >>> artifact.part, artifact.stage, artifact.place, artifact.dataset
-    ('paper', 'continuation_of_orbits', 'figures/table1', 'results/figures/table1.nc')
+    >>> artifact.stage, artifact.place, artifact.dataset
+    ('continuation_of_orbits', 'figures/table1', 'results/figures/table1.nc')
     """
 
     name: str
+    section: str
     module: str
     figures: str
     title: str
@@ -84,11 +88,6 @@ class Artifact:
     page: bool = False
 
     @property
-    def part(self) -> str:
-        """The part of the package: its set of studies, a section of the configuration."""
-        return self.module.partition(".")[0]
-
-    @property
     def stage(self) -> str:
         """The name of its stage, which is that of the module."""
         return self.module.rpartition(".")[2]
@@ -96,12 +95,12 @@ class Artifact:
     @property
     def place(self) -> str:
         """The path of its files in a run and in the record, without their suffixes."""
-        return f"{folder_of(self.part)}/{self.name}"
+        return f"{FIGURES}/{self.name}"
 
     @property
     def drawn_by(self) -> str | None:
         """The function that draws its figure, as its dataset names it; None without a figure."""
-        return f"bouncing_ball.{self.figures}:{self.drawing}" if self.drawing else None
+        return f"{self.figures}:{self.drawing}" if self.drawing else None
 
     @property
     def computed(self) -> str | None:
@@ -126,17 +125,6 @@ class Artifact:
         if self.page:
             suffixes += [PAGE]
         return [f"results/{self.place}{suffix}" for suffix in suffixes]
-
-
-def folder_of(part: str) -> str:
-    """The folder of the artifacts of a part of the package.
-
-    Examples
-    --------
-    >>> folder_of("paper"), folder_of("beyond")
-    ('figures', 'figures/beyond')
-    """
-    return FIGURES if part == "paper" else f"{FIGURES}/{part}"
 
 
 def files_in(folder: Path) -> set[str]:

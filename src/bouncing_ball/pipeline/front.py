@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
-from bouncing_ball.pipeline.artifacts import Artifact, folder_of
+from bouncing_ball.pipeline.artifacts import Artifact
 
 KINDS = {
     ".nc": "dataset",
@@ -57,17 +57,6 @@ def links(artifact: Artifact) -> str:
     )
 
 
-def page_of(part: str) -> str:
-    """The path of the page that lists the artifacts of the paper, or those beyond it.
-
-    Examples
-    --------
-    >>> page_of("paper"), page_of("beyond")
-    ('figures/README.md', 'figures/beyond/README.md')
-    """
-    return f"{folder_of(part)}/README.md"
-
-
 def _by_number(artifact: Artifact) -> tuple[bool, str]:
     """The order of a list: the figures of the paper by their numbers, then the rest as declared."""
     is_figure = artifact.name.startswith("fig")
@@ -79,7 +68,7 @@ _IN_A_ROW = 4
 
 def thumbnails(artifacts: Iterable[Artifact]) -> str:
     """A table of small pictures with their names below; a forge links each to the whole."""
-    drawn = (each for each in artifacts if each.part == "paper" and each.drawing)
+    drawn = (each for each in artifacts if each.drawing)
     shown = sorted(drawn, key=_by_number)
     names = [each.name.replace("fig", "Fig. ").replace(". 0", ". ") for each in shown]
     pictures = [f'<img src="{each.place}.png" alt="{each.title}" width="200">' for each in shown]
@@ -91,22 +80,6 @@ def thumbnails(artifacts: Iterable[Artifact]) -> str:
     return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
-_ABOUT = {
-    "paper": """\
-# The figures and tables of the paper
-
-The accepted results of the replication. Each figure, table and check has a dataset (netCDF), its
-picture (PNG and SVG) and its table (Markdown and CSV); two figures are schematics without data.
-What goes past the paper is in [beyond](beyond/README.md).
-""",
-    "beyond": """\
-# Beyond the paper
-
-The accepted results of the studies that go past [the paper](../README.md), in the same form.
-Datasets that take longer to compute than a run should are in `config/`.
-[The explorer](explorer.html) is a page to open from a clone in a browser.
-""",
-}
 _HOW = """\
 The name of a file is that of its target: `snakemake --cores 2 {name}` makes the files anew in
 `results/`, and `bouncing-ball explain FILE` prints from which commit, parameters and versions a
@@ -117,9 +90,8 @@ file was made.
 """
 
 
-def folder_page(part: str, artifacts: Iterable[Artifact]) -> str:
-    """The page of ``figures/``, or of ``figures/beyond/``: a line for each artifact."""
-    here = [each for each in artifacts if page_of(each.part) == page_of(part) and each.files]
-    shown = sorted(here, key=_by_number)
+def folder_page(about: str, artifacts: Iterable[Artifact]) -> str:
+    """The page of the accepted files of a house: what they are, and a line for each artifact."""
+    shown = sorted((each for each in artifacts if each.files), key=_by_number)
     rows = [f"| `{each.name}` | {each.title} | {links(each)} |\n" for each in shown]
-    return f"{_ABOUT[part]}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"
+    return f"{about}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"

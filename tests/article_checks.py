@@ -3,9 +3,9 @@
 import re
 
 import numpy as np
-from bouncing_ball.pipeline.diff.budgets import ROUNDING
 
 from bouncing_ball.datasets.rounding import ROUNDING_SIZE
+from bouncing_ball.datasets.variables import ROUNDING
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)

@@ -17,7 +17,7 @@ from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
-OF_PAPER = {name: each for name, each in ARTIFACTS.items() if each.part == "paper"}
+OF_PAPER = dict(ARTIFACTS)
 TABLES = {
     "table1": continuation_of_orbits_figures.table1,
     "thresholds": error_thresholds_figures.thresholds,

@@ -30,23 +30,23 @@ def calls_of_stage(text: str) -> Iterator[str]:
             break
 
 
-def declared() -> dict[str, Artifact]:
-    """All artifacts by name."""
+def declared(rules: Path, section: str) -> dict[str, Artifact]:
+    """All artifacts by name that the rules of a house list."""
     artifacts = {}
 
     def stage(module, figures=None, **given):
         for name, each in given.items():
             shown = figures or f"{module}_figures"
             artifacts[name] = Artifact(
-                name=name, section="paper", module=module, figures=shown, **each
+                name=name, section=section, module=module, figures=shown, **each
             )
 
-    for call in calls_of_stage((RULES / "paper.smk").read_text(encoding="utf-8")):
+    for call in calls_of_stage(rules.read_text(encoding="utf-8")):
         eval(call, {"stage": stage})
     return artifacts
 
 
-ARTIFACTS = declared()
+ARTIFACTS = declared(RULES / "paper.smk", "paper")
 STUDIES = {
     each.name: function(each.module, each.study) for each in ARTIFACTS.values() if each.study
 }

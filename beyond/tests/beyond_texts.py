@@ -2,16 +2,19 @@
 
 import pytest
 from article_texts import ROOT, TEMPLATES, rendered
-from bouncing_ball.beyond.exhibits import (
+from declared_artifacts import declared
+
+from bouncing_ball_beyond.exhibits import (
     certified_verdicts_figures,
     contact_laws_figures,
     corrected_model_figures,
     proofs_figures,
 )
-from bouncing_ball.beyond.exhibits.certified_verdicts import certified_verdicts
-from declared_artifacts import ARTIFACTS
+from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
 
-REPORT = ROOT / "beyond" / "report"
+HOUSE = ROOT / "beyond"
+REPORT = HOUSE / "report"
+ARTIFACTS = declared(HOUSE / "workflow" / "studies.smk", "beyond")
 READ = (
     *("ext_instant", "ext_orders", "ext_map", "ext_laws", "ext_release", "ext_impact"),
     *("ext_flights", "ext_proofs", "claims"),

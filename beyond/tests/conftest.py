@@ -13,7 +13,7 @@ from bouncing_ball.datasets.variables import SHARED
 HOUSE = Path(__file__).resolve().parents[1]
 PACKAGE = Path(bouncing_ball_beyond.__file__).parent
 # Of the root: references, the command line, the browser. Here: a reference integration.
-pytest_plugins = ["shared_fixtures", "taylor_ball"]
+pytest_plugins = ["shared_fixtures", "taylor_ball", "beyond_texts"]
 
 
 def pytest_collection_modifyitems(items):

@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bouncing_ball.pipeline.diff.budgets import PIXEL
-from bouncing_ball.pipeline.diff.folders import read_picture
 from matplotlib.contour import ContourSet
 
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import style
+from bouncing_ball.pipeline.diff.pictures import compare_pixels
 from bouncing_ball.pipeline.provenance import read_attributes
 from bouncing_ball_beyond.exhibits import (
     cascade_of_flights_figures,
@@ -92,7 +91,8 @@ def test_the_picture_of_a_dataset_is_that_of_the_record(recorded, name, tmp_path
         pytest.skip("the record is drawn by another matplotlib")
     path = tmp_path / accepted.name
     save(drawn(name, recorded[name]), path, {})
-    assert np.max(np.abs(read_picture(path) - read_picture(accepted))) <= PIXEL
+    rows = compare_pixels(accepted, path, moved=False, redrawn=False)
+    assert all(row.outcome.agrees for row in rows)
 
 
 @pytest.mark.parametrize("name", TABLES)

@@ -13,8 +13,7 @@ from article_checks import (
     works_of,
 )
 from article_texts import TEMPLATES as SHARED
-from beyond_texts import READ, REPORT
-from declared_artifacts import ARTIFACTS
+from beyond_texts import ARTIFACTS, READ, REPORT
 from docutils.utils.math.latex2mathml import tex2mathml
 
 TEMPLATES = sorted(REPORT.glob("*.md.j2"))
@@ -47,7 +46,7 @@ def test_it_adds_its_works_to_those_of_the_replication(article):
 
 
 def test_it_shows_all_figures_of_its_studies(article):
-    picture = r"^!\[[^]]*\]\(\.\./(figures/beyond/\w+)\.png\)"
+    picture = r"^!\[[^]]*\]\((figures/\w+)\.png\)"
     shown = re.findall(picture, article, re.MULTILINE)
     drawn = [each.place for name in READ if (each := ARTIFACTS[name]).drawing]
     assert sorted(shown) == sorted(drawn)

@@ -1,4 +1,5 @@
-"""The site: README, docs, article, tables and docstrings, as they are in the repository.
+"""One site for the three houses: READMEs, docs, articles, tables and docstrings, as they are in the
+repository.
 
 The repository is Sphinx's source folder, so that relative links and pictures are those of the
 files. Nothing is loaded from the network, neither when the site is built nor when it is read:
@@ -16,22 +17,40 @@ from docutils.utils.math.latex2mathml import tex2mathml
 import bouncing_ball
 
 ROOT = Path(__file__).parents[1]
-EXPLORER = "figures/beyond/explorer.html"
+EXPLORER = "beyond/figures/explorer.html"
+PACKAGES = {
+    "bouncing_ball": "src",
+    "bouncing_ball_beyond": "beyond/src",
+    "bouncing_ball_contacts": "contacts/src",
+}
 
 project = "Bouncing ball"
 author = "The bouncing-ball maintainers"
 version = release = bouncing_ball.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.apidoc"]
 root_doc = "README"
-include_patterns = ["*.md", "docs/**.md", "config/README.md", "figures/**.md", "results/api/*.rst"]
-exclude_patterns = [".*", "results/[!a]*", "src", "tests", "workflow"]
+include_patterns = [
+    "*.md",
+    "docs/*.md",
+    "config/README.md",
+    "figures/*.md",
+    "beyond/*.md",
+    "beyond/docs/*.md",
+    "beyond/figures/*.md",
+    "contacts/*.md",
+    "contacts/docs/*.md",
+    "contacts/docs/data/*.md",
+    "results/api/**.rst",
+]
+exclude_patterns = [".*", "results/[!a]*", "**/src", "**/tests", "**/workflow", "beyond/results"]
 apidoc_modules = [
     {
-        "path": "../src/bouncing_ball",
-        "destination": "results/api",
+        "path": f"../{folder}/{package}",
+        "destination": f"results/api/{package}",
         "separate_modules": True,
         "module_first": True,
     }
+    for package, folder in PACKAGES.items()
 ]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
@@ -49,44 +68,53 @@ html_math_renderer = "mathml"
 suppress_warnings = ["ref.python"]
 
 PARTS = {
-    "Replication": [
+    "The replication": [
         "paper",
         "supplement",
-        "motions",
         "figures/*",
-        "docs/datasets",
         "config/README",
         "docs/record",
-    ],
-    "Beyond the paper": ["docs/beyond", "figures/beyond/*"],
-    "Theory": [
+        "docs/datasets",
         "docs/how-an-orbit-is-found",
-        "docs/impact-as-an-instant",
-        "docs/error-law",
         "docs/closed-form",
-        "docs/proofs",
-    ],
-    "Use": [
-        "docs/lesson",
-        "docs/gallery",
         "docs/python",
-        "docs/periodic-orbits",
-        "docs/thesis",
-        "docs/design",
-        "docs/engines",
-        "docs/bounces",
-        "docs/contact-laws",
-        "docs/measured",
-        "docs/speed",
+        "docs/gallery",
+        "docs/lesson",
     ],
-    "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],
+    "Beyond the paper": [
+        "beyond/README",
+        "beyond/article",
+        "beyond/docs/beyond",
+        "beyond/figures/*",
+        "beyond/docs/python",
+        "beyond/docs/gallery",
+        "beyond/docs/lesson",
+        "beyond/docs/contact-laws",
+        "beyond/docs/impact-as-an-instant",
+        "beyond/docs/error-law",
+        "beyond/docs/periodic-orbits",
+        "beyond/docs/thesis",
+        "beyond/docs/cascade-of-flights",
+        "beyond/docs/proofs",
+        "beyond/docs/speed",
+    ],
+    "Contacts with units": [
+        "contacts/README",
+        "contacts/docs/design",
+        "contacts/docs/engines",
+        "contacts/docs/bounces",
+        "contacts/docs/measured",
+        "contacts/docs/python",
+        "contacts/docs/gallery",
+        "contacts/docs/data/*",
+    ],
+    "Code": ["CONTRIBUTING", "CHANGELOG", *(f"results/api/{name}/modules" for name in PACKAGES)],
 }
 
 
 def title_of(table):
-    """The title of a table of the record: that of its dataset, or of an accepted one."""
-    sample = ROOT / "config" / f"{Path(table).name}.nc"
-    with xr.open_dataset(sample if sample.exists() else ROOT / f"{table}.nc") as data:
+    """The title of a table: that of the dataset beside it."""
+    with xr.open_dataset(ROOT / f"{table}.nc") as data:
         return data.attrs["title"]
 
 
@@ -105,7 +133,7 @@ def prepare(app, name, text):
         return found[1] if (ROOT / target).is_dir() else found[0]
 
     text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])
-    if not text[0].lstrip().startswith("#") and folder.name != "api":
+    if not text[0].lstrip().startswith("#") and "api" not in folder.parts:
         text[0] = f"# {title_of(name)}\n\n{text[0]}"
     if name == root_doc:
         for caption, pages in PARTS.items():

@@ -1,4 +1,4 @@
-"""The library and its command line need the packages of `dependencies` only."""
+"""The library and its command line need the packages of `dependencies` only, and no other house."""
 
 import json
 import re
@@ -20,18 +20,16 @@ PACKAGES = [re.split(r"[^\w-]", line)[0] for line in EXTRAS["plot"] + EXTRAS["pi
 ABSENT = [MODULES.get(name, name) for name in PACKAGES if name != "bouncing-ball"]
 
 # What the pipeline needs, with the extras that it includes.
-USED = ("pipeline", "plot", "proofs")
+USED = ("pipeline", "plot")
 
 CONTACT = ["--restitution", "0.85", "--frequency-ratio", "10"]
-TABLE = ["--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g"]
-DESIGN = ["design", *TABLE, "--stiffness", "1e7 N/m", "--restitution", "0.85", "--n", "1"]
 COMMANDS = [
     ["orbit", "--amplitude", "1", *CONTACT],
     ["limits", *CONTACT],
-    ["error-law", "--amplitude", "1", "--restitution", "0.85"],
+    ["branch", *CONTACT],
     ["permanent-contact", *CONTACT],
     ["simulate", "--amplitude", "1", *CONTACT],
-    DESIGN,
+    ["thresholds", "--amplitude", "1", "--restitution", "0.85"],
 ]
 
 
@@ -40,40 +38,77 @@ def normal(name):
     return re.sub("[-_.]+", "-", name).lower()
 
 
-def without_extras(code):
-    """A program for which the packages of the extras are not installed."""
-    absent = f"import sys; sys.modules.update(dict.fromkeys({ABSENT!r}))"
+def alone(code):
+    """A program for which the packages of the extras and the other houses are not installed."""
+    absent = (
+        "import importlib.metadata, sys\n"
+        f"sys.modules.update(dict.fromkeys({ABSENT!r}))\n"
+        "importlib.metadata.entry_points = lambda **given: ()"
+    )
     command = [sys.executable, "-c", f"{absent}\n{code}"]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they_need():
-    assert {"matplotlib", "snakemake", "yaml"} <= {*ABSENT}
-    needs = {
-        "pipeline": (["diff", ".", "."], ["explain", "fig08.png"]),
-        "plot": ([*DESIGN, "--plot", "page.png"],),
-    }
-    commands = [command for each in needs.values() for command in each]
-    done = without_extras(
-        "import bouncing_ball\nfrom bouncing_ball.cli.main import main\n"
-        "names = [name for name in bouncing_ball.__all__ if getattr(bouncing_ball, name)]\n"
-        f"for command in {COMMANDS!r}: main([*command, '--json'])\nprint(names)\n"
+def needed(extra):
+    """The line that names an extra, as a regular expression."""
+    return (
+        rf"\w+ is not installed: install the extra '{extra}', "
+        rf'for example pip install "\.\[{extra}\]"'
+    )
+
+
+def refusals(commands):
+    """A program that ends each command, and prints its exit status."""
+    return (
+        "from bouncing_ball.cli.main import main\n"
         f"for command in {commands!r}:\n"
         "    try: main(command)\n"
         "    except SystemExit as end: print(end.code)"
+    )
+
+
+def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they_need():
+    assert {"matplotlib", "snakemake", "yaml"} <= {*ABSENT}
+    needs = [["diff", ".", "."], ["explain", "fig08.png"]]
+    done = alone(
+        "import bouncing_ball\nfrom bouncing_ball.cli.main import main\n"
+        "names = [name for name in bouncing_ball.__all__ if getattr(bouncing_ball, name)]\n"
+        f"for command in {COMMANDS!r}: main([*command, '--json'])\nprint(names)\n"
+        f"{refusals(needs)}\n"
+        "drop = bouncing_ball.drop(bouncing_ball.rigid(restitution=0.5), height=1.0)\n"
+        "try: drop.plot()\n"
+        "except bouncing_ball.ModelError as error: print(error)\n"
     )
     assert done.returncode == 0
     *answers, names = done.stdout.splitlines()[: len(COMMANDS) + 1]
     assert all(json.loads(answer) for answer in answers) and len(answers) == len(COMMANDS)
     assert names == str(bouncing_ball.__all__)
-    assert done.stdout.splitlines()[len(COMMANDS) + 1 :] == ["2"] * len(commands)
-    said = [
-        rf"bouncing-ball: \w+ is not installed: install the extra '{extra}', "
-        rf'for example pip install "\.\[{extra}\]"\n'
-        for extra, commands in needs.items()
-        for _ in commands
+    *statuses, without_pictures = done.stdout.splitlines()[len(COMMANDS) + 1 :]
+    assert statuses == ["2"] * len(needs)
+    assert re.fullmatch(needed("plot"), without_pictures)
+    said = f"bouncing-ball: {needed('pipeline')}\n"
+    assert re.fullmatch(said * len(needs), done.stderr)
+
+
+def test_without_the_extras_a_wrong_option_is_named():
+    done = alone(refusals([["limits", "--quantity", "phase"]]))
+    assert (done.returncode, done.stdout) == (0, "2\n")
+    assert re.fullmatch(r"bouncing-ball: unrecognized arguments: --quantity .*\n", done.stderr)
+
+
+def test_without_the_other_houses_their_commands_say_in_one_line_how_to_install_them():
+    commands = {
+        "design": "contacts: pip install . ./beyond ./contacts",
+        "fit": "contacts: pip install . ./beyond ./contacts",
+        "follow": "beyond: pip install . ./beyond",
+    }
+    given = [[name, "--restitution", "0.85"] for name in commands]
+    done = alone(refusals(given))
+    assert done.stdout.splitlines() == ["2"] * len(commands)
+    assert done.stderr.splitlines() == [
+        f"bouncing-ball: {name} is a command of {where}, or make everything"
+        for name, where in commands.items()
     ]
-    assert re.fullmatch("".join(said), done.stderr)
 
 
 def test_the_environment_of_conda_has_the_versions_of_the_lock():
@@ -95,6 +130,9 @@ def test_all_files_name_the_same_release():
     changes = (ROOT / "CHANGELOG.md").read_text("utf-8")
     released = re.findall(r"^## (\d\S*) \((.*)\)$", changes, re.MULTILINE)[0]
     assert bouncing_ball.__version__ == version == citation["version"] == released[0]
+    for house in ("beyond", "contacts"):
+        other = tomllib.loads((ROOT / house / "pyproject.toml").read_text("utf-8"))
+        assert other["project"]["version"] == version
     assert str(citation["date-released"]) == released[1]
 
 

@@ -9,6 +9,7 @@ import pytest
 
 pytestmark = pytest.mark.docs
 
+HOUSES = ("bouncing_ball", "bouncing_ball_beyond", "bouncing_ball_contacts")
 SITE = Path(__file__).parents[1] / "results" / "site"
 # Loads the pages one after another and writes down what the browser made of each.
 OBSERVER = Path(__file__).with_name("site_observer.html").read_text(encoding="utf-8")
@@ -55,8 +56,21 @@ def test_no_link_is_dead(seen):
     assert dead == []
 
 
+def links_of(seen, page):
+    """The files to which a page of the site links."""
+    return {Path(unquote(urlparse(url).path)) for url in seen[SITE / f"{page}.html"]["links"]}
+
+
 def test_it_opens_with_the_page_of_readme_and_has_all_parts(seen):
     assert "README.html" in (SITE / "index.html").read_text(encoding="utf-8")
-    links = {Path(unquote(urlparse(url).path)) for url in seen[SITE / "README.html"]["links"]}
-    wanted = ("explorer", "paper", "docs/gallery", "figures/claims", "results/api/modules")
+    links = links_of(seen, "README")
+    wanted = [
+        "paper",
+        "docs/gallery",
+        "figures/claims",
+        *("beyond/README", "beyond/article", "beyond/docs/lesson", "beyond/figures/ext_laws"),
+        *("contacts/README", "contacts/docs/design", "contacts/docs/data/measured"),
+        *(f"results/api/{name}/modules" for name in HOUSES),
+    ]
     assert {SITE / f"{name}.html" for name in wanted} <= links
+    assert SITE / "explorer.html" in links_of(seen, "beyond/figures/README")

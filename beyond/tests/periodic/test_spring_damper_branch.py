@@ -110,7 +110,7 @@ def test_the_free_contact_ends_at_the_free_angle_and_not_before(zeta):
 @pytest.mark.parametrize("restitution", [0.3, 0.65, 0.85, 0.95])
 @pytest.mark.parametrize("omega", [1.05, 1.2, 2.0, 5.0, 10.0, 100.0])
 def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
-    # docs/closed-form.md, (9) and (10): both remainders are of first order in the
+    # docs/cascade-of-flights.md, (1) and (2): both remainders are of first order in the
     # flight, and fall to a half with it.
     contact = SpringDamper.from_restitution(restitution, omega)
     flight = np.array([2e-2, 1e-2]) / omega

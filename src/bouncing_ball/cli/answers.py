@@ -38,15 +38,23 @@ class _OfCommand(Parser):
 
 @cache
 def _options(command: str) -> frozenset[str]:
+    """The options of another command; none if it needs an extra that is not installed."""
     alone = Parser(prog=command)
-    _program(command).add_options(alone)
+    try:
+        _loaded(command).add_options(alone)
+    except ModelError:
+        return frozenset()
     return frozenset(alone._option_string_actions)
+
+
+def _loaded(command: str) -> Program:
+    with extra("pipeline"), importing():
+        return COMMANDS[command].program()
 
 
 def _program(command: str) -> Program:
     try:
-        with extra("pipeline"), importing():
-            return COMMANDS[command].program()
+        return _loaded(command)
     except ModelError as error:
         fail(str(error), status=2)
 

@@ -1,7 +1,7 @@
 r"""The openings of stiff contacts between permanent contact and chattering (beyond the paper).
 
 At Λ_SD permanent contact ends. With the displacement release a T-periodic orbit with one flight per
-period follows it (``docs/closed-form.md``, section 4). As Λ grows, the contact after the landing
+period follows it (``docs/cascade-of-flights.md``). As Λ grows, the contact after the landing
 oscillates higher, until the ball touches the level of the table. There the contact opens: above
 this Λ the orbit has one more flight. The new flight begins with zero length and changes the return
 map as the power 3/2 of Λ - Λ_k. Opening k, where flight k + 1 begins, is at

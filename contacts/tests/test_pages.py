@@ -45,7 +45,7 @@ def test_the_data_that_need_no_engine_can_be_made_again(name):
     assert [*again.attrs] == [*data.attrs]
     for each in again.variables.values():
         assert each.attrs["long_name"] and each.attrs["units"]
-    rows = compare_datasets(name, data, again.assign_attrs(data.attrs))
+    rows = compare_datasets(data, again.assign_attrs(data.attrs))
     assert [str(row) for row in rows if not row.outcome.agrees] == []
 
 

@@ -207,8 +207,8 @@ def test_a_curve_consists_of_balls_that_rest_and_turns_back_in_both_parameters()
 
 
 def test_a_branch_ends_where_all_flights_before_a_rest_vanish():
-    """At Λ = 1 the table no longer falls faster than the ball. The branch crept, in 500 steps; 60 to
-    110 are needed, which rounding decides.
+    """At Λ = 1 the table no longer falls faster than the ball. The branch crept, in 500 steps; 60
+    to 110 are needed, which rounding decides.
     """
     orbit = bouncing_ball.orbit_of_motion(
         bouncing_ball.rigid(restitution=0.218813), amplitude=1.191588

@@ -37,8 +37,8 @@ _SCAN_START = 1e-3
 _SHORTEST = 1e-3
 _FULL = 1e-6
 # A value of a test function that is a rounding error: those of compliant contacts are 1e-13. At the
-# end of the scan a test function may be the fourth power of the flight time, and a zero may lie at a
-# point of the scan.
+# end of the scan a test function may be the fourth power of the flight time, and a zero may lie at
+# a point of the scan.
 _ROUNDING = 1e-12
 # Number of contacts searched at the same time, so that a scan takes some ten megabytes.
 _BLOCK = 1024

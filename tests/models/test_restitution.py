@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
@@ -37,7 +38,8 @@ def test_chattering_on_a_table_at_rest_is_a_geometric_series(r):
 @pytest.mark.parametrize("lam", [1.0001, 1.2, 2.0, 3.0])
 def test_a_ball_at_rest_lifts_off_where_the_table_falls_with_gravity(lam):
     """A ball at rest on the table leaves it where Λ sin τ = 1 on the way up."""
-    sequence = RestitutionModel(0.3).simulate(lam, -0.4, lam * np.cos(-0.4), 2)
+    velocity, _ = table(np.array(-0.4), lam)
+    sequence = RestitutionModel(0.3).simulate(lam, -0.4, velocity, 2)
     assert abs(float(sequence.release_phase[0]) - np.arcsin(1 / lam)) < 1e-14
     assert float(sequence.contact_duration[0]) == pytest.approx(0.4 + np.arcsin(1 / lam))
     assert sequence.relative_bounce_velocity[0] == 0 and sequence.settling[0] == 0

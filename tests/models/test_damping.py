@@ -50,7 +50,15 @@ def test_a_restitution_coefficient_outside_its_range_is_refused(r, refusal):
         damping_ratio(r)
 
 
-@pytest.mark.parametrize("r", [np.exp(-2), 0.1])
+def test_next_to_the_limits_of_restitution_the_damping_is_critical():
+    """ζ = cos β is 1 - β²/2 with 1 - β²/3 = -ln r/2 for the force release."""
+    r = np.exp(-2) * (1 + EPS * np.array([2.0, 4.0, 100.0, 1e6, 1e10]))
+    expected = 1 - 0.75 * np.log1p(np.exp(2) * (r - np.exp(-2)))
+    # The logarithm has one rounding, and terms of fourth order are left out.
+    assert damping_ratio(r, Release.FORCE) == pytest.approx(expected, abs=1e-11)
+
+
+@pytest.mark.parametrize("r", [0.135335, 0.1])
 def test_no_contact_released_at_zero_force_has_so_little_restitution(r, refusal):
     with refusal(ModelError, f"r = {r}", "(e⁻², 1]"):
         damping_ratio(r, Release.FORCE)

@@ -36,14 +36,10 @@ HANGING = 1200
 # A fresh clone: neither results nor the state of earlier runs.
 OTHERS = ".git .venv* results .snakemake *.egg-info .*_cache"
 IGNORED = shutil.ignore_patterns(*OTHERS.split())
-# The studies that take longest have the first so many entries of these lists only.
-SHORTER = {
-    ("ext_laws", "further"): 1,
-}
-TEXTS = ("paper.md", "supplement.md", "motions.md")
+TEXTS = ("paper.md", "supplement.md")
 # What a whole run leaves: its results, and what Snakemake has noted about them.
 MADE = (
-    *(f"results/{name}" for name in ("figures", "beyond", "code", "logs", "tally.txt", *TEXTS)),
+    *(f"results/{name}" for name in ("figures", "code", "logs", "tally.txt", *TEXTS)),
     *(f".snakemake/{name}" for name in ("metadata", "incomplete")),
 )
 
@@ -252,26 +248,8 @@ def made_once(target: Path, make: Callable[[Path], None], python: str) -> Tree:
     return Tree(target, python)
 
 
-def fewer(section: str, key: str, number: int) -> str:
-    """A section of the configuration with this number, or the first entries of this list."""
-    in_one_line = rf"\b({key}: \[[^],]*(?:,[^],]*){{{number - 1}}})[^]]*"
-    of_lines = rf"\b({key}:\n(?: +- .*\n){{{number}}})(?: +- .*(?:\n|$))*"
-    found = re.sub(rf"\b({key}: )\d+", rf"\g<1>{number}", section)
-    found = re.sub(in_one_line, r"\1", found)
-    found = re.sub(of_lines, r"\1", found)
-    assert found != section, f"{key} is no number and no list"
-    return found
-
-
-def shorten(tree: Tree, coarse: dict) -> None:
+def shorten(tree: Tree) -> None:
     """Let a run of this tree take less time."""
-    config = tree.path / "config" / "config.yaml"
-    text = config.read_text(encoding="utf-8")
-    for (name, key), number in (coarse | SHORTER).items():
-        start = text.index(f"  {name}:")
-        end = text.index("\n\n", start)
-        text = text[:start] + fewer(text[start:end], key, number) + text[end:]
-    config.write_text(text, encoding="utf-8")
     # Who looks at pictures looks at those of `make`.
     settings = "src/bouncing_ball/drawing/style.mplstyle"
     tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
@@ -302,7 +280,7 @@ def made_by_this_commit() -> bool:
 
 
 @pytest.fixture(scope="session")
-def cloned(shared, warm, coarse) -> Tree:
+def cloned(shared, warm) -> Tree:
     """A fresh clone with one commit: that of the checkout if all of its results are of this
     commit, and otherwise one of a repository of its own in which runs are shorter.
     """
@@ -317,7 +295,7 @@ def cloned(shared, warm, coarse) -> Tree:
             tree.git("reset", "--quiet")
             assert tree.git("status", "--porcelain") == ""
         else:
-            shorten(tree, coarse)
+            shorten(tree)
             tree.git("init", "--quiet")
             tree.commit("All")
         # Once, and not by every process of every copy; what is compiled already stays.

@@ -45,14 +45,17 @@ def run_script(tmp_path, failing: str, hanging: str = "none") -> tuple[int, list
     return done.returncode, called, done.stdout.splitlines()[-1] if done.stdout else ""
 
 
-STEPS = ["lint", "clean", "replication", "all", "diff", "test", "test-cluster"]
+STEPS = [
+    *("lint", "clean", "all", "diff", "test", "test-cluster"),
+    *("setup-everything", "lint-everything", "everything", "diff-everything", "test-everything"),
+]
 
 
 @pytest.mark.parametrize("failing", ["", *STEPS, "lint test"])
 def test_every_step_runs_whatever_fails_and_the_diff_runs_before_the_tests(tmp_path, failing):
     status, called, last = run_script(tmp_path, failing)
     assert called[0] == "setup" and sorted(called[1:]) == sorted(STEPS)
-    order = ["clean", "replication", "all", "diff", "test"]
+    order = ["clean", "all", "diff", "test", "setup-everything", "everything", "test-everything"]
     assert sorted(order, key=called.index) == order
     assert (status, last.startswith("Failed: ")) == ((1, True) if failing else (0, False))
     assert set(failing.split()) <= set(last.split())

@@ -182,7 +182,9 @@ def test_a_branch_is_followed_although_newtons_method_meets_speeds_without_an_im
     )
     doubled = bouncing_ball_beyond.follow(parent.first("period doubling"))
     assert str(doubled.end_reason[1].values).startswith("the start of a contact begins to have two")
-    assert doubled.residual.max() < 1e-12
+    assert doubled.residual[:-1].max() < 1e-12
+    # At this end rounding errors are divided by a hundredth.
+    assert doubled.residual[-1] < 1e-11
     stable = next(
         orbit for orbit in doubled.states() if orbit.is_stable() and orbit.amplitude > 1.2
     )
@@ -494,5 +496,6 @@ def test_next_to_the_end_of_a_range_a_steep_height_is_no_jump():
     )
     found = bouncing_ball_beyond.follow(orbit, along="restitution", to=1.0)
     assert str(found.end_reason[1].values) == "restitution = 1 is reached"
-    assert float(found.restitution[-1]) == 1.0
+    # A parameter enters as arsinh, and comes back as sinh.
+    assert float(found.restitution[-1]) == pytest.approx(1.0, abs=4 * np.finfo(float).eps)
     assert float(found.phase[-1, 0]) == pytest.approx(np.pi / 2, abs=1e-12)

@@ -292,7 +292,8 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
         sine = sine_and_versine(beta)[0]
         cosine = _cosine(beta)
         value = 2 * beta * cosine / sine - decrement
-        slope = 2 * (cosine * sine - beta) / (sine * sine)
+        # The bound of the slope is its limit at β = 0, where rounding leaves no slope.
+        slope = np.minimum(2 * (cosine * sine - beta) / (sine * sine), -4 / 3 * beta)
         beta = beta - value / slope
     return beta
 

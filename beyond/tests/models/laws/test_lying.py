@@ -79,6 +79,7 @@ def test_a_ball_at_rest_is_followed_for_long(law):
     # Panels of an oscillation and a half would be twenty times as many as MOST_PANELS. The number
     # of long ones depends on rounding, which limits their length.
     found = march_through(law, start, np.zeros(1, dtype=int), np.full(1, 1e4), MOST_PANELS)
-    # A panel as long as 10³ has rounding errors of 10⁻¹³ in p′, and of 10⁻¹¹ relative to its scale.
+    # A panel as long as 10³ has rounding errors of 10⁻¹³ in p′, and of 10⁻¹¹ relative to its
+    # scale.
     assert float(found.penetration[0]) == pytest.approx(rest(law), abs=1e-10 * rest(law))
     assert abs(float(found.rate[0])) < 1e-12

@@ -4,11 +4,10 @@ from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.provenance import read_provenance
 
 PAPER = "workflow/rules/paper.smk"
-BEYOND = "workflow/rules/beyond.smk"
 CONFIG = "config/config.yaml"
 EXHIBITS = "src/bouncing_ball/paper/exhibits"
 FIGURES = f"{EXHIBITS}/apparent_restitution_figures.py"
-STAGE = "src/bouncing_ball/beyond/exhibits/lowest.py"
+STAGE = f"{EXHIBITS}/lowest.py"
 
 
 def changed(tree):
@@ -40,11 +39,11 @@ def heights(data: xr.Dataset) -> Figure:
 '''
 
 
-RULE = """use rule beyond_study as lowest_study with:
+RULE = """use rule study as lowest_study with:
     wildcard_constraints:
         artifact=stage(
-            "beyond.exhibits.lowest",
-            ext_lowest=dict(title="Lowest threshold", study="lowest", reads=("fig11",)),
+            "bouncing_ball.paper.exhibits.lowest",
+            threshold=dict(title="Lowest threshold", study="lowest", reads=("fig11",)),
         ),
 
 
@@ -82,19 +81,18 @@ def test_a_figure_and_a_stage_on_the_dataset_of_another_need_the_files_of_the_re
         module.write(DRAWING)
     assert changed(fresh) == {PAPER, CONFIG, FIGURES}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    first = "use rule beyond_study as proofs_study with:"
-    fresh.rewrite(BEYOND, first, RULE + first)
-    fresh.rewrite(CONFIG, "beyond:\n", "beyond:\n  ext_lowest: { n: 110 }\n")
-    assert changed(fresh) == {PAPER, BEYOND, CONFIG, FIGURES, STAGE}
-    assert fresh.refusal().startswith("configuration: beyond.ext_lowest.n = 110 must be at most 20")
-    fresh.rewrite(CONFIG, "ext_lowest: { n: 110 }", "ext_lowest: { n: 11 }")
+    first = "use rule study as permanent_contact_study with:"
+    fresh.rewrite(PAPER, first, RULE + first)
+    fresh.rewrite(CONFIG, "paper:\n", "paper:\n  threshold: { n: 110 }\n")
+    assert changed(fresh) == {PAPER, CONFIG, FIGURES, STAGE}
+    assert fresh.refusal().startswith("configuration: paper.threshold.n = 110 must be at most 20")
+    fresh.rewrite(CONFIG, "threshold: { n: 110 }", "threshold: { n: 11 }")
     # The stage has the name of its module, and the figure its own.
     fresh.run("--cores", "1", "heights", "lowest")
     made = {path.name: path for path in fresh.path.glob("results/figures/**/*.*")}
     figure = {f"heights.{kind}" for kind in ("nc", "png", "svg")}
-    assert made.keys() == {*figure, "fig11.nc", "ext_lowest.nc"}
-    assert made["ext_lowest.nc"].parent.name == "beyond"
-    assert read_dataset(made["ext_lowest.nc"]).lowest_amplitude.long_name == "lowest threshold"
+    assert made.keys() == {*figure, "fig11.nc", "threshold.nc"}
+    assert read_dataset(made["threshold.nc"]).lowest_amplitude.long_name == "lowest threshold"
     # The tree has changes that its commit has not.
     assert {read_provenance(path)["dirty"] for path in made.values()} == {"yes"}
 

@@ -20,7 +20,7 @@ include: "../workflow/rules/stage.smk"
 use rule study as restitution_model_study with:
     wildcard_constraints:
         artifact=stage(
-            "paper.exhibits.restitution_model",
+            "bouncing_ball.paper.exhibits.restitution_model",
             fig02=dict(
                 title="Another history",
                 study="restitution_history",

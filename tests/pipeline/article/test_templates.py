@@ -86,7 +86,7 @@ def test_the_abstract_and_the_body_are_of_the_length_of_an_article(accepted):
 def test_the_replication_has_nothing_of_what_goes_past_the_paper(accepted):
     """One sentence points to it."""
     texts = accepted["article"] + accepted["supplement"]
-    of_beyond = r"ext_|certifi|atlas|engine|contact law|Tsuji|Kuwabara|Hunt and Crossley|beyond/"
+    of_beyond = r"\bext_|certifi|atlas|engine|contact law|Tsuji|Kuwabara|Hunt and Crossley|beyond/"
     (sentence,) = (line for line in texts.splitlines() if re.search(of_beyond, line))
     assert "(`beyond/`)" in sentence
 

@@ -87,7 +87,7 @@ def test_another_word_or_number_in_a_text_has_drifted(pair, file, old, new):
 
 def test_a_page_is_compared_except_for_its_commit(pair):
     for file, folder in product(("explorer.nc", "explorer.html"), (pair.record, pair.new)):
-        shutil.copyfile(ROOT / "figures" / "beyond" / file, folder / "figures" / file)
+        shutil.copyfile(ROOT / "beyond" / "figures" / file, folder / "figures" / file)
     pair.rewrite("figures/explorer.html", '{"commit": "', '{"commit": "c0ffee')
     assert pair.file("figures/explorer.html").outcome is Outcome.IDENTICAL
     pair.rewrite("figures/explorer.html", '"spring-damper", 0.5, 80', '"spring-damper", 0.5, 81')

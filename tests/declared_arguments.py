@@ -3,23 +3,21 @@
 import typing
 from collections.abc import Callable, Mapping
 from functools import cache
-from types import UnionType
+from types import ModuleType, UnionType
 
 import xarray as xr
 
-import bouncing_ball as bb
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import Range
-from bouncing_ball.models.model import Model
 
 Declared = Range | tuple[str, ...]
+Arguments = Callable[[str], Mapping[str, Declared]]
 # What is imported for type checkers only.
 LATER = {
     "DataArray": xr.DataArray,
     "Dataset": xr.Dataset,
     "xr": xr,
     "Result": Result,
-    "Model": Model,
 }
 
 
@@ -36,14 +34,18 @@ def declared(hint: typing.Any) -> Declared | None:
     return None
 
 
-@cache
-def declared_by(function: Callable) -> Mapping[str, Declared]:
-    """The arguments of a function, or the fields of a class, that have a range or names."""
-    hints = typing.get_type_hints(function, localns=LATER, include_extras=True)
-    found = {name: declared(hint) for name, hint in hints.items()}
-    return {name: allowed for name, allowed in found.items() if allowed}
+def arguments_of(package: ModuleType, *later: type) -> Arguments:
+    """The declared arguments of a package's public functions, by the function's name.
 
+    ``later`` are further types that the package imports for type checkers only.
+    """
+    names = LATER | {each.__name__: each for each in later}
 
-def arguments(name: str) -> Mapping[str, Declared]:
-    """The declared arguments of a public function by its name."""
-    return declared_by(getattr(bb, name))
+    @cache
+    def arguments(name: str) -> Mapping[str, Declared]:
+        """The arguments of a function, or the fields of a class, that have a range or names."""
+        hints = typing.get_type_hints(getattr(package, name), localns=names, include_extras=True)
+        found = {name: declared(hint) for name, hint in hints.items()}
+        return {name: allowed for name, allowed in found.items() if allowed}
+
+    return arguments

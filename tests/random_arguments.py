@@ -1,23 +1,26 @@
-"""Random arguments of calls, from the ranges that the package declares, and users' mistakes.
+"""Random arguments of calls, from the ranges that a package declares, and users' mistakes.
 
-``draw`` is the function that draws from a strategy, as hypothesis gives it to a test.
+``draw`` is the function that draws from a strategy, as hypothesis gives it to a test. The balls are
+those that both houses have; a house that has more of them adds its own ways to make one.
 """
 
 import contextlib
+import inspect
 import io
 import math
 import signal
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import ModuleType
 from typing import Any
 
 import numpy as np
-from declared_arguments import Declared, arguments
+from declared_arguments import Arguments, Declared
+from hypothesis import note
 from hypothesis import strategies as st
 
-import bouncing_ball as bb
-from bouncing_ball.errors import Range
+from bouncing_ball.errors import ModelError, NoOrbitError, Range
 from bouncing_ball.models.spring_damper import LOSSES
 
 Draw = Callable[[st.SearchStrategy], Any]
@@ -75,13 +78,15 @@ def allowed_by(declared: Declared) -> st.SearchStrategy:
 
 
 class Calls:
-    """Calls of public functions with random arguments; ``said`` is their text.
+    """Calls of a package's public functions with random arguments; ``said`` is their text.
 
     One in four has mistakes, and another one arrays.
     """
 
-    def __init__(self, draw: Draw) -> None:
+    def __init__(self, draw: Draw, package: ModuleType, arguments: Arguments) -> None:
         self.draw = draw
+        self.package = package
+        self.arguments = arguments
         self.with_mistakes, self.with_arrays = draw(
             st.sampled_from([(False, False), (False, False), (False, True), (True, False)])
         )
@@ -94,7 +99,7 @@ class Calls:
         inside += [f"{k}={v!r}" for k, v in given.items()]
         self.said.append(f"{name}({', '.join(inside)})")
         with self._watched():
-            return getattr(bb, name)(*args, **given)
+            return getattr(self.package, name)(*args, **given)
 
     def value(self, declared: Declared) -> Any:
         """A value of an argument, an array or a mistake."""
@@ -113,7 +118,7 @@ class Calls:
 
     def random(self, name: str, *args: Any, needed: tuple[str, ...] = (), **given: Any) -> Any:
         """The answer of a public function for a random part of its declared arguments."""
-        return self.call(name, *args, **self.some(arguments(name), *needed, **given))
+        return self.call(name, *args, **self.some(self.arguments(name), *needed, **given))
 
     @contextlib.contextmanager
     def _watched(self) -> Iterator[None]:
@@ -134,20 +139,56 @@ class Calls:
 
     # Balls.
 
+    def makers(self) -> tuple[Callable[[], Any], ...]:
+        """The ways to make a ball."""
+        return self.rigid, self.spring
+
     def ball(self) -> Any:
-        """A ball made by one of the two functions."""
+        """A ball made in one of the ways."""
         if self.with_mistakes and self.draw(sometimes(20)):
             return self.draw(ODD)
-        return self.draw(st.sampled_from((self.rigid, self.spring)))()
+        return self.draw(st.sampled_from(self.makers()))()
 
     def rigid(self) -> Any:
         return self.random("rigid", needed=("restitution",))
 
     def spring(self) -> Any:
         """A ball on a spring and a damper with one of the measures of its loss."""
-        allowed = arguments("spring_damper")
+        allowed = self.arguments("spring_damper")
         of_loss = {name: allowed[name] for name in LOSSES}
         loss = self.draw(st.sampled_from(LOSSES))
         others = {name: allowed[name] for name in allowed.keys() - of_loss.keys()}
         given = self.some(others, "frequency_ratio")
         return self.call("spring_damper", **given, **{loss: self.value(of_loss[loss])})
+
+
+RandomCall = Callable[[Calls], Any]
+
+
+def with_ball(name: str, *needed: str) -> RandomCall:
+    """A random call of a function of a ball, of which the other arguments are declared."""
+    return lambda calls: calls.random(name, calls.ball(), needed=needed)
+
+
+def check(call: RandomCall, calls: Calls) -> None:
+    """A random call is answered, or refused with one line, or takes too long."""
+    try:
+        call(calls)
+    except TimeOver:
+        pass
+    except (ModelError, NoOrbitError) as error:
+        assert "\n" not in str(error), calls.said
+    finally:
+        note("; ".join(calls.said))
+    assert not calls.spoken.getvalue(), calls.said
+
+
+def undeclared(package: ModuleType, arguments: Arguments, names: Iterable[str]) -> set:
+    """The functions and arguments that are numbers of which no range is declared."""
+    return {
+        (name, argument)
+        for name in names
+        for argument, about in inspect.signature(getattr(package, name)).parameters.items()
+        if str(about.annotation).strip("'") in ("float", "int", "float | None", "int | None")
+        and argument not in arguments(name)
+    }

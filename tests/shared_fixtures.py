@@ -23,6 +23,9 @@ from scipy.optimize import brentq
 from bouncing_ball.cli import patience
 from bouncing_ball.cli.main import main
 
+# A helper's assertion that fails shows its values, as one of a test does.
+pytest.register_assert_rewrite("random_arguments", "random_mistakes")
+
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

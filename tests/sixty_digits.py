@@ -1,4 +1,4 @@
-"""The orbits and the return map in 60 digits, which share nothing with the package but the model.
+"""The orbits and the return map in 60 digits, which share nothing with the packages but the model.
 
 The contact's response is written with complex exponentials, the orbit solves the three
 conditions of ``docs/closed-form.md`` by elimination, and the monodromy is a difference quotient
@@ -6,12 +6,19 @@ of the return map, whose events are found by the secant method. With a step of 1
 digits, 35 digits are left.
 """
 
+from typing import Protocol
+
 from mpmath import mp, mpf
 
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.spring_damper import SpringDamper
-
 STEP = mpf(10) ** -20
+
+
+class Contact(Protocol):
+    """What a contact of either house has."""
+
+    frequency_ratio: float
+    damping_ratio: float
+    release: str
 
 
 class Exact:
@@ -20,14 +27,14 @@ class Exact:
     The contact's ϖ and ζ are doubles unless numbers of more digits are given for them.
     """
 
-    def __init__(self, contact: SpringDamper, n: int, omega=None, zeta=None):
+    def __init__(self, contact: Contact, n: int, omega=None, zeta=None):
         self.omega = mpf(float(contact.frequency_ratio)) if omega is None else omega
         self.zeta = mpf(float(contact.damping_ratio)) if zeta is None else zeta
         self.a = self.zeta * self.omega
         self.q = self.omega**2
         self.n = int(n)
         self.damped = self.omega * mp.sqrt(1 - self.zeta**2)
-        force = contact.release is Release.FORCE
+        force = contact.release == "force"
         self.lag = 2 * self.zeta / self.omega if force else mpf(0)
         self.free_angle = mp.pi - 2 * mp.asin(self.zeta if force else 0)
 

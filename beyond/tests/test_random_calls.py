@@ -5,31 +5,25 @@ long is ended.
 """
 
 import inspect
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-from declared_arguments import arguments
-from hypothesis import given, note, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_arguments import Calls, TimeOver, numbers, sometimes
+from random_arguments import Calls, RandomCall, check, numbers, sometimes, undeclared, with_ball
+from random_laws import CallsOfBeyond, arguments
 
 import bouncing_ball_beyond as bb
 from bouncing_ball.datasets.arguments import FINITE, POSITIVE
-from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
 # Random calls of each function, of all functions in the long test.
 SOME = 8
 MANY = 90
-
-
-def with_ball(name: str, *needed: str) -> Callable[[Calls], Any]:
-    """A random call of a function of a ball, of which the other arguments are declared."""
-    return lambda calls: calls.random(name, calls.ball(), needed=needed)
 
 
 def orbit(calls: Calls) -> Any:
@@ -109,7 +103,7 @@ def grazing_form(calls: Calls) -> Any:
     return calls.call("grazing_form", special(calls, calls.draw(st.sampled_from(SPECIAL))))
 
 
-CALLS: dict[str, Callable[[Calls], Any]] = {
+CALLS: dict[str, RandomCall] = {
     each.__name__: each
     for each in (
         orbit, error_thresholds, follow, normal_form, grazing_form,
@@ -127,20 +121,6 @@ CALLS: dict[str, Callable[[Calls], Any]] = {
 QUICK = ("orbit", "limits", "permanent_contact", "error_thresholds")
 
 
-def check(name: str, data: Any) -> None:
-    """A random call is answered, or refused with one line, or takes too long."""
-    calls = Calls(data.draw)
-    try:
-        CALLS[name](calls)
-    except TimeOver:
-        pass
-    except (ModelError, NoOrbitError) as error:
-        assert "\n" not in str(error), calls.said
-    finally:
-        note("; ".join(calls.said))
-    assert not calls.spoken.getvalue(), calls.said
-
-
 def test_every_public_function_is_called():
     functions = {name for name in bb.__all__ if inspect.isfunction(getattr(bb, name))}
     makers = {"rigid", "spring_damper", "contact_law", "corrected"}
@@ -150,22 +130,15 @@ def test_every_public_function_is_called():
 
 
 def test_the_ranges_of_numbers_are_declared():
-    undeclared = {
-        (name, argument)
-        for name in CALLS
-        for argument, about in inspect.signature(getattr(bb, name)).parameters.items()
-        if str(about.annotation).strip("'") in ("float", "int", "float | None", "int | None")
-        and argument not in arguments(name)
-    }
     # Its range is that of the parameter along which the branch goes.
-    assert undeclared == {("follow", "to")}
+    assert undeclared(bb, arguments, CALLS) == {("follow", "to")}
 
 
 @pytest.mark.parametrize("name", QUICK)
 @settings(max_examples=SOME)
 @given(st.data())
 def test_random_calls_of_quick_functions_are_answered_or_refused(name, data):
-    check(name, data)
+    check(CALLS[name], CallsOfBeyond(data.draw))
 
 
 @pytest.mark.long
@@ -173,4 +146,4 @@ def test_random_calls_of_quick_functions_are_answered_or_refused(name, data):
 @settings(max_examples=MANY)
 @given(st.data())
 def test_random_calls_are_answered_or_refused(name, data):
-    check(name, data)
+    check(CALLS[name], CallsOfBeyond(data.draw))

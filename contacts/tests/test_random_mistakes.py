@@ -5,85 +5,39 @@ line, which names what is wrong and says what is allowed. How each way of refusi
 tested where this way is defined.
 """
 
-import argparse
-import inspect
 import math
-import shlex
 
 from hypothesis import given
 from hypothesis import strategies as st
+from random_mistakes import (
+    UNKNOWN,
+    WORDS,
+    outside,
+    refuses_a_wrong_option,
+    refuses_an_unknown_option,
+    typed_options,
+)
 
-from bouncing_ball.cli.answers import parser
-from bouncing_ball.errors import ModelError, Range
+from bouncing_ball.errors import ModelError
 from bouncing_ball_contacts.cli.commands import COMMANDS
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
 
-NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
-# Words that begin no number, no name and no choice.
-WORDS = st.text("qxyz#_ ", min_size=1, max_size=30).filter(str.strip)
-
-
-def outside(allowed: Range) -> st.SearchStrategy:
-    """Numbers outside a range, often just beyond its ends."""
-    low = allowed.low
-    high = allowed.high
-    ends = [math.nextafter(low, -math.inf), math.nextafter(high, math.inf)]
-    if allowed.ends[0] == "(":
-        ends.append(low)
-    if allowed.ends[1] == ")":
-        ends.append(high)
-    if allowed.whole:
-        ends.append(low + 0.5)
-    return st.sampled_from(ends) | NUMBERS.filter(lambda value: value not in allowed)
-
-
 # The command line.
 
-
-def options(command: str) -> dict[str, argparse.Action]:
-    """The options of a command that take a number in a range, or one of several names."""
-    (commands,) = parser([command])._subparsers._group_actions
-    found = commands.choices[command]._option_string_actions
-    return {k: each for k, each in found.items() if each.choices or range_of(each)}
-
-
-def range_of(action: argparse.Action) -> Range | None:
-    """The range that the parser of a number holds."""
-    if not inspect.isfunction(action.type):
-        return None
-    return inspect.getclosurevars(action.type).nonlocals.get("allowed")
-
-
-TYPED = [
-    (about.examples[0], name, action)
-    for command, about in COMMANDS.items()
-    for name, action in options(command).items()
-]
+TYPED = typed_options(COMMANDS)
 
 
 @given(st.data(), st.sampled_from(TYPED))
 def test_a_wrong_option_is_refused(refused, data, case):
-    example, name, action = case
-    allowed = range_of(action)
-    wrong = WORDS if allowed is None else WORDS | outside(allowed).map(repr)
-    if action.nargs == 2:
-        more = [name, "1", data.draw(wrong.filter(lambda text: not text.startswith("-")))]
-    else:
-        # After a sign of equality any text is a value, even if it begins with a dash.
-        more = [f"{name}={data.draw(wrong)}"]
-    words = shlex.split(example) + more
-    status, line = refused(*words)
-    assert status == 2 and line.startswith(f"bouncing-ball: argument {name}: ")
-    assert all(choice in line for choice in action.choices or [str(allowed)]), line
+    refuses_a_wrong_option(refused, data.draw, case)
 
 
-@given(st.sampled_from(sorted(COMMANDS)), st.text("qxyz", min_size=1, max_size=12))
+@given(st.sampled_from(sorted(COMMANDS)), UNKNOWN)
 def test_an_unknown_option_is_refused(refused, command, word):
-    status, line = refused(*shlex.split(COMMANDS[command].examples[0]), f"--{word}=1")
-    assert status == 2 and f"unrecognized arguments: --{word}=1" in line
+    refuses_an_unknown_option(refused, COMMANDS[command].examples[0], word)
 
 
 # Quantities with units.

@@ -11,7 +11,6 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets import CASE, DRAWING
-from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import (
@@ -140,6 +139,9 @@ def open(path: str | Path) -> Result:
     ModelError
         If there is no such file, or if it is damaged.
     """
+    # Imported here, because studies make results and read no files.
+    from bouncing_ball.datasets.files import read_dataset
+
     if not isinstance(path, str | Path):
         raise ParameterError("{path} = {} is not the path of a file", shortened(path))
     data = read_dataset(path)

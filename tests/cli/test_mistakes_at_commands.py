@@ -77,7 +77,7 @@ ORBIT --json page.json
 explain fig99
     fig99 cannot be read: no such file
 diff figures
-    required: RESULTS
+    nothing to compare in figures/results: neither figures/ nor a text
 """.strip().splitlines()
 ROWS = [(typed, says.strip()) for typed, says in zip(MISTAKES[::2], MISTAKES[1::2], strict=True)]
 

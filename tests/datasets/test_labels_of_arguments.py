@@ -25,9 +25,9 @@ def test_what_an_array_was_a_result_of_does_not_label_another_result():
 def test_an_array_along_an_argument_with_one_value_is_refused(refusal):
     first = bb.orbit(BALL, amplitude=[1.0, 1.2])
     with refusal(ParameterError, "phase lies along amplitude", "a single value"):
-        bb.motion_of(BALL, amplitude=1.5, phase=first.phase)
+        bb.simulate(BALL, amplitude=1.5, phase=first.phase)
     with refusal(ParameterError, "phase lies along amplitude, but amplitude does not"):
-        bb.motion_of(BALL, amplitude=ALONG_K, phase=first.phase)
+        bb.simulate(BALL, amplitude=ALONG_K, phase=first.phase)
 
 
 @pytest.mark.parametrize(
@@ -114,16 +114,7 @@ CALLS = {
     "impacts": lambda wrong: bb.simulate(BALL, amplitude=1.0, impacts=wrong),
     "ball": lambda wrong: bb.orbit(wrong, amplitude=1.0),
     "side": lambda wrong: bb.orbit(BALL, amplitude=1.0, side=wrong),
-    "along": lambda wrong: bb.follow(bb.orbit(BALL, amplitude=1.0), along=wrong, to=1.1),
     "quantities": lambda wrong: bb.error_thresholds(BALL, amplitude=1.0, quantities=wrong),
-    "law": lambda wrong: bb.contact_law(wrong, restitution=0.5, duration=0.1),
-    "mass": lambda wrong: bb.Contact(mass=wrong, stiffness="1e7 N/m", restitution=0.5),
-    "question": lambda wrong: bb.assess_contact(
-        bb.Table(frequency="50 Hz", acceleration="0.8 g"),
-        bb.Contact(mass="20 g", stiffness="1e7 N/m", restitution=0.85),
-        wrong,
-    ),
-    "contact": lambda wrong: bb.describe_contact(wrong),
     "damping ratio": lambda wrong: bb.SpringDamper(10.0, wrong),
     "release": lambda wrong: bb.SpringDamper(10.0, 0.1, wrong),
 }
@@ -161,7 +152,6 @@ def test_more_impacts_than_fit_into_memory_are_refused_before_they_are_computed(
         bb.simulate(BALL, amplitude=np.linspace(1.0, 2.0, 1000), impacts=100_000)
 
 
-LAW = bb.contact_law("hunt-crossley", restitution=0.7, duration=0.3)
 LONG = np.linspace(0.5, 1.5, 100_001)
 
 
@@ -170,11 +160,8 @@ LONG = np.linspace(0.5, 1.5, 100_001)
     [
         (lambda: bb.orbit(BALL, [1, 2] * 50, amplitude=LONG), "10000100 places of a grid exceed"),
         (lambda: bb.permanent_contact(bb.rigid(restitution=np.ones(10**7 + 1))), "10000001 places"),
-        (lambda: bb.orbit(LAW, amplitude=LONG), "100001 results exceed the limit of 100000"),
         (lambda: bb.branch(bb.rigid(restitution=LONG / 2)), "30000300 points exceed the limit"),
         (lambda: bb.history(BALL, amplitude=LONG), "states exceed the limit of 10000000"),
-        (lambda: bb.motion_of(BALL, amplitude=np.full(20_000_001, 1.0)), "20000001 places of a"),
-        (lambda: bb.basins(BALL, amplitude=1.0, starts=5000), "balls exceed the limit of 20000000"),
     ],
 )
 def test_results_that_would_fill_the_memory_are_refused_before_they_are_computed(

@@ -71,5 +71,5 @@ def test_the_index_of_figures_leads_to_the_functions_that_make_each_figure():
             artifact = ARTIFACTS[f"fig{int(number):02d}"]
             # The schematics have pictures only.
             expected = artifact.module if artifact.study else artifact.figures
-            assert expected == f"paper.exhibits.{module}"
+            assert expected == f"bouncing_ball.paper.exhibits.{module}"
             assert study.strip("`–") == (artifact.study or "") and drawing == artifact.drawing

@@ -10,10 +10,6 @@ SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
 GRAZING_FLIGHT, GRAZING_RELEASE = "grazing of a flight", "grazing of a release"
 """The kinds of the special orbits beyond which there is another impact or another flight."""
 
-LONG = "long_"
-"""The beginning of the names of the variables of second branches, on which contacts are long: they
-begin where permanent contact ends (Fig. 8)."""
-
 CASE = "case"
 """The single axis of results before :meth:`.Grid.unfold` gives them the axes of the call."""
 

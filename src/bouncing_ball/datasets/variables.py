@@ -56,14 +56,12 @@ class Budget(NamedTuple):
 
     ``size`` and ``scale`` are the ``budget`` and the ``scale`` of :class:`Variable`. With ``over``
     two curves over that variable are compared, through the samples along the dimension ``point``,
-    because the samples may slide along the curve. The share ``share`` of the entries, of texts and
-    counts as well, may exceed the budget, because rounding decides about some entries.
+    because the samples may slide along the curve.
     """
 
     size: float = ROUNDING
     scale: str = ""
     over: str = ""
-    share: float = 0.0
 
     def attributes(self) -> dict[str, Any]:
         """The attributes of the variable in the dataset of the artifact.
@@ -76,8 +74,6 @@ class Budget(NamedTuple):
         attributes: dict[str, Any] = {"budget": self.size, "scale": self.scale}
         if self.over:
             attributes["over"] = self.over
-        if self.share:
-            attributes["share"] = self.share
         return attributes
 
 

@@ -153,7 +153,8 @@ def _function(name: str) -> Callable[..., Any]:
 
     This is the only place of the library that imports by a name, because the functions that draw
     artifacts are above it. Only modules of figures are imported, and of their functions only those
-    that return a figure are called.
+    of the package that return a figure are called: a module may share one with the calls, as that
+    of Figs. 8 and 9 does.
     """
     found = _FUNCTION.fullmatch(str(name))
     if not found:

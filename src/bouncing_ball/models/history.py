@@ -342,7 +342,7 @@ def motion_at(sequence: ImpactSequence, ball: int, time: np.ndarray) -> History:
     rate, height = table(start + since, amplitude)
     gap = np.full(time.shape, np.nan)
     speed = np.full(time.shape, np.nan)
-    gap[touching], speed[touching] = pick(sequence.model, ball).in_contact(
+    gap[touching], speed[touching] = sequence.model.take(ball).in_contact(
         since[touching],
         start[touching],
         sequence.relative_velocity[row, ball][touching],

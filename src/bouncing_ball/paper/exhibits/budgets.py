@@ -5,7 +5,6 @@ without another source comes from the convergence study, a test that varies tole
 rounding: it is the next power of ten above ten times the largest change.
 """
 
-from bouncing_ball.datasets import LONG
 from bouncing_ball.datasets.variables import Budget
 
 _FLAGS = ("stable", "admissible", "restitution_stable", "restitution_admissible")
@@ -30,14 +29,7 @@ def _branches(coordinate: float, multiplier: float) -> dict[str, Budget]:
     flags = dict.fromkeys(_FLAGS, Budget(0.002, over="point"))
     orbit = dict.fromkeys(_ORBIT, Budget(coordinate, over="amplitude"))
     multipliers = dict.fromkeys(_MULTIPLIER, Budget(multiplier, over="amplitude"))
-    first = {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
-    # A second branch, with names of its own; it is one of the spring-damper model alone.
-    second = {
-        f"{LONG}{name}": budget._replace(over=f"{LONG}{budget.over}")
-        for name, budget in first.items()
-        if not name.startswith("restitution")
-    }
-    return first | second
+    return {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
 
 
 BUDGETS: dict[str, dict[str, Budget]] = {

@@ -145,13 +145,12 @@ def budget_of(attributes: Mapping[Any, Any]) -> Budget:
     Examples
     --------
     >>> budget_of({"budget": 1e-8, "scale": "1"}), budget_of({}).size
-    (Budget(size=1e-08, scale='1', over='', share=0.0), 1e-13)
+    (Budget(size=1e-08, scale='1', over=''), 1e-13)
     """
     return Budget(
         size=float(attributes.get("budget", ROUNDING)),
         scale=str(attributes.get("scale", "")),
         over=str(attributes.get("over", "")),
-        share=float(attributes.get("share", 0.0)),
     )
 
 
@@ -161,11 +160,8 @@ def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
 
 
 def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> np.ndarray:
-    """Distance of two curves, sampled along ``point`` or another dimension of points, such as
-    ``long_point``, in units of the scales of both axes.
-    """
-    (along,) = (dim for dim in record[name].dims if str(dim).endswith("point"))
-    axis = record[name].dims.index(along)
+    """Distance of two curves, sampled along ``point``, in units of the scales of both axes."""
+    axis = record[name].dims.index("point")
     x = _beside(record, name, over)
     y = record[name].values
     scaled = (x / span(x), y / span(y))
@@ -197,25 +193,18 @@ def drift_over_budget(name: str, record: xr.Dataset, new: xr.Dataset, budget: Bu
     [1.0, 1.0, 1.0]
     >>> drift_over_budget("x", record, record + 0.5, Budget(0.25, scale="1")).tolist()
     [2.0, 2.0, 2.0]
-    >>> drift_over_budget("x", record, record + [9, 0, 0], Budget(0.25, share=0.5)).tolist()
-    [0.6666666666666666, 0.0, 0.0]
     """
     old = record[name]
     if budget.size == IGNORED:
         return np.zeros(old.shape)
     if budget.over:
-        drift = _curve_drift(name, record, new, budget.over) / budget.size
-    elif old.dtype.kind != "f":
-        drift = np.where(same(old.values, new[name].values), 0.0, np.inf)
-    else:
-        scale: ArrayLike = span(old) if budget.scale == "" else 1.0
-        if budget.scale not in ("", "1"):
-            scale = _beside(record, name, budget.scale)
-        drift = pointwise(old.values, new[name].values, scale) / budget.size
-    # A share of the entries may exceed the budget.
-    beyond = drift > 1
-    part = beyond.mean()
-    return np.where(beyond, part / budget.share, drift) if 0 < part <= budget.share else drift
+        return _curve_drift(name, record, new, budget.over) / budget.size
+    if old.dtype.kind != "f":
+        return np.where(same(old.values, new[name].values), 0.0, np.inf)
+    scale: ArrayLike = span(old) if budget.scale == "" else 1.0
+    if budget.scale not in ("", "1"):
+        scale = _beside(record, name, budget.scale)
+    return pointwise(old.values, new[name].values, scale) / budget.size
 
 
 def _form(data: xr.Dataset, name: str) -> str:

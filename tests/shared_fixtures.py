@@ -24,7 +24,9 @@ from bouncing_ball.cli import patience
 from bouncing_ball.cli.main import main
 
 # A helper's assertion that fails shows its values, as one of a test does.
-pytest.register_assert_rewrite("random_arguments", "random_mistakes")
+pytest.register_assert_rewrite(
+    "gallery_checks", "page_checks", "random_arguments", "random_mistakes"
+)
 
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.

@@ -24,11 +24,21 @@ from bouncing_ball.cli import patience
 from bouncing_ball.cli.main import main
 
 # A helper's assertion that fails shows its values, as one of a test does.
-pytest.register_assert_rewrite("random_arguments", "random_mistakes")
+pytest.register_assert_rewrite(
+    "answer_checks",
+    "gallery_checks",
+    "page_checks",
+    "patience_checks",
+    "random_arguments",
+    "random_mistakes",
+)
 
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# Folders whose tests take longest: those of the root, and of beyond.
+LONG_FOLDERS = {"workflow", "explorer"}
 
 # The lines of commands that take long depend on the load of the machine, and tests compare what is
 # printed. Tests of these lines set another time.
@@ -43,6 +53,12 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("deterministic")
+
+
+def pytest_collection_modifyitems(items):
+    """With several workers the long tests first, so that none runs alone at the end."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        items.sort(key=lambda item: LONG_FOLDERS.isdisjoint(item.path.parts))
 
 
 def pytest_collection_finish():
@@ -136,6 +152,34 @@ def _cycle(phase, u, n, lam, omega, zeta, duration, force_release=False):
 def reference():
     """Independent implementations: ``contact_state``, ``paper_contact`` and ``cycle``."""
     return SimpleNamespace(contact_state=_contact_state, paper_contact=_paper_contact, cycle=_cycle)
+
+
+@pytest.fixture(scope="session")
+def described(declared):
+    """Asserts that every variable and dimension of a dataset has a name and a description.
+
+    A house whose tests have datasets of stages has a fixture ``declared``.
+    """
+
+    def check(dataset):
+        for name in dataset.variables:
+            attributes = dataset[name].attrs
+            assert attributes.get("long_name"), name
+            if dataset[name].dtype.kind in "fiu":
+                assert attributes.get("units") in ("1", "rad"), name
+            else:
+                assert dataset[name].dtype.kind in "bU", name
+        assert set(dataset.dims) <= set(declared)
+        return dataset
+
+    return check
+
+
+@pytest.fixture
+def hasty(monkeypatch):
+    """A call that takes longer than some hundredths of a second says so."""
+    monkeypatch.setattr(patience, "_FIRST", 0.05)
+    monkeypatch.setattr(patience, "_NEXT", 0.1)
 
 
 @pytest.fixture(scope="session")

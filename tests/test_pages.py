@@ -2,20 +2,18 @@
 to what there is.
 """
 
-import builtins
 import doctest
 import re
 from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 
 import matplotlib.pyplot as plt
 import pytest
 from declared_artifacts import ARTIFACTS
+from page_checks import every_module_exists, lost_references
 from readme import pages
 
+import bouncing_ball
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.houses import how_to_install
 
@@ -102,53 +100,9 @@ def test_every_short_name_of_a_file_that_a_page_has_exists(page):
 
 @every_page
 def test_every_module_that_a_page_names_exists(page):
-    for name in MODULE.findall(page.read_text(encoding="utf-8")):
-        if MADE.search(name):
-            continue
-        # The longest part that is a module has the rest as an attribute.
-        *parts, last = name.split(".")
-        module = ".".join(parts)
-        assert find_spec(module) is not None, name
-        assert hasattr(import_module(module), last) or find_spec(name) is not None, name
-
-
-SOURCE = ROOT / "src" / "bouncing_ball"
-ROLE = re.compile(r":(?:mod|func|class|meth|data|attr|exc):`(?:[^`<]*<)?[~.]*([\w.\s]+)>?`")
-OTHERS = ("numpy.", "scipy.", "xarray.", "matplotlib.", "pydantic.")
-
-
-def dotted(path):
-    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
-    return name.removesuffix(".__init__")
-
-
-@cache
-def known_names():
-    """Names of all modules, of what they define, and of the attributes of their classes."""
-    names = set()
-    for path in SOURCE.rglob("*.py"):
-        module = import_module(dotted(path))
-        names.add(module.__name__)
-        # Public functions are loaded when they are first used: dir names more than vars.
-        for name in {*dir(module), *vars(module)}:
-            value = vars(module).get(name)
-            if isinstance(value, ModuleType):
-                continue
-            names.add(f"{module.__name__}.{name}")
-            if isinstance(value, type):
-                attributes = {*dir(value), *getattr(value, "__annotations__", {})}
-                names |= {f"{module.__name__}.{name}.{each}" for each in attributes}
-    return names
+    every_module_exists(page, MODULE, but=MADE)
 
 
 @pytest.mark.slow
 def test_everything_that_a_docstring_refers_to_exists():
-    ends = {name.split(".", k)[-1] for name in known_names() for k in range(name.count(".") + 1)}
-    lost = []
-    for path in SOURCE.rglob("*.py"):
-        for name in ROLE.findall(path.read_text(encoding="utf-8")):
-            whole = name.startswith("bouncing_ball")
-            elsewhere = name.startswith(OTHERS) or hasattr(builtins, name)
-            if not elsewhere and name not in (known_names() if whole else ends):
-                lost.append((str(path.relative_to(SOURCE)), name))
-    assert lost == []
+    assert lost_references(bouncing_ball) == []

@@ -1,18 +1,15 @@
 """The pages: what they name exists, and their numbers are those of the data."""
 
-import builtins
 import doctest
 import re
-from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
-from pathlib import Path
-from types import ModuleType
 
 import make_data
 import pytest
+from page_checks import every_module_exists, lost_references
 from the_docs import DATA, DOCS
 
+import bouncing_ball
+import bouncing_ball_beyond
 import bouncing_ball_contacts
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
@@ -72,69 +69,10 @@ def test_every_file_that_a_page_names_exists(page):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_module_that_a_page_names_exists(page):
-    for name in MODULE.findall(page.read_text(encoding="utf-8")):
-        # The longest part that is a module has the rest as an attribute.
-        module, _, last = name.rpartition(".")
-        assert find_spec(module) is not None, name
-        assert hasattr(import_module(module), last) or find_spec(name) is not None, name
-
-
-SOURCE = Path(bouncing_ball_contacts.__file__).parent
-BELOW = ("bouncing_ball_beyond", "bouncing_ball.")
-ROLE = re.compile(r":(?:mod|func|class|meth|data|attr|exc):`(?:[^`<]*<)?[~.]*([\w.\s]+)>?`")
-OTHERS = ("numpy.", "scipy.", "xarray.", "matplotlib.")
-
-
-def module_of(path):
-    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
-    return name.removesuffix(".__init__")
-
-
-def exists(name):
-    """Whether a dotted name is a module, or an attribute or a field of one or of its class."""
-    parts = name.split(".")
-    for count in range(len(parts), 0, -1):
-        try:
-            value = import_module(".".join(parts[:count]))
-        except ModuleNotFoundError:
-            continue
-        for part in parts[count:]:
-            if part in getattr(value, "__annotations__", {}):
-                return True
-            if not hasattr(value, part):
-                return False
-            value = getattr(value, part)
-        return True
-    return False
-
-
-@cache
-def known_names():
-    """Names of all modules, of what they define, and of the attributes of their classes."""
-    names = set()
-    for path in SOURCE.rglob("*.py"):
-        module = import_module(module_of(path))
-        names.add(module.__name__)
-        for name in {*dir(module), *vars(module)}:
-            value = vars(module).get(name)
-            if isinstance(value, ModuleType):
-                continue
-            names.add(f"{module.__name__}.{name}")
-            if isinstance(value, type):
-                attributes = {*dir(value), *getattr(value, "__annotations__", {})}
-                names |= {f"{module.__name__}.{name}.{each}" for each in attributes}
-    return names
+    every_module_exists(page, MODULE)
 
 
 @pytest.mark.slow
 def test_everything_that_a_docstring_refers_to_exists():
-    ends = {name.split(".", k)[-1] for name in known_names() for k in range(name.count(".") + 1)}
-    lost = []
-    for path in SOURCE.rglob("*.py"):
-        for name in ROLE.findall(path.read_text(encoding="utf-8")):
-            if name.startswith(OTHERS) or hasattr(builtins, name):
-                continue
-            found = exists(name) if name.startswith("bouncing_ball") else name in ends
-            if not found:
-                lost.append((str(path.relative_to(SOURCE)), name))
-    assert lost == []
+    below = bouncing_ball_beyond, bouncing_ball
+    assert lost_references(bouncing_ball_contacts, *below) == []

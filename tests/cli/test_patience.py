@@ -1,50 +1,27 @@
 """Lines on standard error while a call takes long, and the end of a command by Ctrl-C."""
 
-import signal
-import subprocess
 import sys
-import threading
 import time
-from pathlib import Path
 
 import pytest
+from patience_checks import (
+    an_interrupt_is_one_line,
+    ends_by_ctrl_c,
+    no_thread_starts,
+    says_what_makes_it_cheaper,
+)
 
 import bouncing_ball
 from bouncing_ball.cli import balls
-from bouncing_ball.cli import patience as module
-from bouncing_ball.cli.main import main
 from bouncing_ball.cli.patience import told_if_slow
 
-PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
 LONG = "simulate --amplitude 1.1 --frequency-ratio 10 --restitution 0.85 --impacts 100000"
-
-
-@pytest.fixture
-def hasty(monkeypatch):
-    monkeypatch.setattr(module, "_FIRST", 0.05)
-    monkeypatch.setattr(module, "_NEXT", 0.1)
+SHORT = "simulate --amplitude 1 --restitution 0.5"
 
 
 def test_a_command_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monkeypatch):
-    simulate = balls.impacts_of
-
-    def slow(*given):
-        time.sleep(0.5)
-        return simulate(*given)
-
-    monkeypatch.setattr(balls, "impacts_of", slow)
-    main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
-    out, err = capfd.readouterr()
-    assert out.startswith("status")
-    assert 2 <= err.count("\n") <= 5
-    for line in err.splitlines():
-        assert line == (
-            "bouncing-ball: no answer after 0 s yet; fewer impacts make the answer cheaper; "
-            "Ctrl-C ends it"
-        )
-    time.sleep(0.3)
-    assert capfd.readouterr().err == ""
+    says_what_makes_it_cheaper(SHORT, balls, "impacts_of", capfd, monkeypatch)
 
 
 def test_without_advice_a_line_gives_the_time_alone(hasty, capfd):
@@ -55,10 +32,7 @@ def test_without_advice_a_line_gives_the_time_alone(hasty, capfd):
 
 
 def test_a_call_of_the_library_starts_no_thread(monkeypatch):
-    def started(thread):
-        pytest.fail(f"{thread} starts")
-
-    monkeypatch.setattr(threading.Thread, "start", started)
+    no_thread_starts(monkeypatch)
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
     bouncing_ball.simulate(ball, amplitude=[0.9, 1.0])
     bouncing_ball.branch(ball, amplitude_max=1.1)
@@ -79,23 +53,9 @@ def test_without_standard_error_an_answer_has_no_lines(hasty, capfd, monkeypatch
 
 
 def test_an_interrupt_of_a_command_is_one_line(capsys, monkeypatch):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(balls, "impacts_of", interrupted)
-    with pytest.raises(SystemExit) as end:
-        main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
-    assert end.value.code == 130
-    assert capsys.readouterr() == ("", "bouncing-ball: interrupted\n")
+    an_interrupt_is_one_line(SHORT, balls, "impacts_of", capsys, monkeypatch)
 
 
 @pytest.mark.long
 def test_a_command_that_takes_long_says_so_and_ends_by_ctrl_c():
-    with subprocess.Popen(
-        [PROGRAM, *LONG.split()], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as running:
-        line = running.stderr.readline()
-        running.send_signal(signal.SIGINT)
-        out, err = running.communicate()
-    assert line.endswith("fewer impacts make the answer cheaper; Ctrl-C ends it\n")
-    assert (running.returncode, out, err) == (130, "", "bouncing-ball: interrupted\n")
+    ends_by_ctrl_c(LONG)

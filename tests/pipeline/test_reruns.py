@@ -65,9 +65,7 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
 def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
     changed = PACKAGE / file
     assert changed.is_file()
-    users = {
-        name for name in STUDIES if changed in sources([ARTIFACTS[name].module])
-    }
+    users = {name for name in STUDIES if changed in sources([ARTIFACTS[name].module])}
     assert users == expected
 
 

@@ -8,7 +8,7 @@ import compileall
 import os
 import shutil
 
-from bouncing_ball.datasets.files import read_dataset, write_dataset
+from bouncing_ball.datasets.files import read_dataset
 
 
 def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):

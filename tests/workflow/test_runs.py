@@ -40,7 +40,7 @@ def test_the_replication_makes_the_artifacts_of_the_paper_and_nothing_else(fresh
     }
     # Messages such as "fig08", "Drawing fig08" and "Setting table1".
     made = {job.split()[-1] for job in jobs}
-    assert made == {name for name, each in ARTIFACTS.items() }
+    assert made == {name for name, each in ARTIFACTS.items()}
 
 
 def stages():
@@ -76,9 +76,7 @@ def test_every_stage_is_a_target(fresh):
 
 
 def test_a_run_gives_the_accepted_datasets(pristine, recorded):
-    made = {
-        name: read_dataset(pristine.path / ARTIFACTS[name].dataset) for name in made_by_a_run()
-    }
+    made = {name: read_dataset(pristine.path / ARTIFACTS[name].dataset) for name in made_by_a_run()}
     rows = {name: compare_datasets(recorded[name], data) for name, data in made.items()}
     assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
 

@@ -1,101 +1,36 @@
-"""Lines on standard error while a call takes long, and the end of a command by Ctrl-C."""
-
-import signal
-import subprocess
-import sys
-import threading
-import time
-from pathlib import Path
+"""Lines on standard error while a command of beyond takes long, and its end by Ctrl-C."""
 
 import pytest
+from patience_checks import (
+    an_interrupt_is_one_line,
+    ends_by_ctrl_c,
+    no_thread_starts,
+    says_what_makes_it_cheaper,
+)
 
 import bouncing_ball_beyond
-from bouncing_ball.cli import patience as module
-from bouncing_ball.cli.main import main
-from bouncing_ball.cli.patience import told_if_slow
 from bouncing_ball_beyond.models.dynamics import Dynamics
 
-PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
 LONG = "law-simulate --amplitude 1.1 --law tsuji --restitution 0.85 --duration 0.1 --impacts 100000"
-
-
-@pytest.fixture
-def hasty(monkeypatch):
-    monkeypatch.setattr(module, "_FIRST", 0.05)
-    monkeypatch.setattr(module, "_NEXT", 0.1)
+SHORT = "law-simulate --amplitude 1 --restitution 0.5"
 
 
 def test_a_command_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monkeypatch):
-    simulate = Dynamics.simulate
-
-    def slow(*given):
-        time.sleep(0.5)
-        return simulate(*given)
-
-    monkeypatch.setattr(Dynamics, "simulate", slow)
-    main(["law-simulate", "--amplitude", "1", "--restitution", "0.5"])
-    out, err = capfd.readouterr()
-    assert out.startswith("status")
-    assert 2 <= err.count("\n") <= 5
-    for line in err.splitlines():
-        assert line == (
-            "bouncing-ball: no answer after 0 s yet; fewer impacts make the answer cheaper; "
-            "Ctrl-C ends it"
-        )
-    time.sleep(0.3)
-    assert capfd.readouterr().err == ""
-
-
-def test_without_advice_a_line_gives_the_time_alone(hasty, capfd):
-    with told_if_slow(""):
-        time.sleep(0.1)
-    line = "bouncing-ball: no answer after 0 s yet; Ctrl-C ends it\n"
-    assert capfd.readouterr().err == line
+    says_what_makes_it_cheaper(SHORT, Dynamics, "simulate", capfd, monkeypatch)
 
 
 def test_a_call_of_the_library_starts_no_thread(monkeypatch):
-    def started(thread):
-        pytest.fail(f"{thread} starts")
-
-    monkeypatch.setattr(threading.Thread, "start", started)
+    no_thread_starts(monkeypatch)
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
     bouncing_ball_beyond.motion_of(ball, amplitude=[0.9, 1.0])
     bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(ball, amplitude=1.0), to=1.1)
 
 
-def test_a_command_that_fails_ends_its_lines(hasty, capfd):
-    with pytest.raises(KeyError), told_if_slow("a single family n"):
-        raise KeyError
-    time.sleep(0.2)
-    assert capfd.readouterr().err == ""
-
-
-def test_without_standard_error_an_answer_has_no_lines(hasty, capfd, monkeypatch):
-    monkeypatch.setattr(sys, "stderr", None)
-    with told_if_slow("a single family n"):
-        time.sleep(0.2)
-    assert capfd.readouterr() == ("", "")
-
-
 def test_an_interrupt_of_a_command_is_one_line(capsys, monkeypatch):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Dynamics, "simulate", interrupted)
-    with pytest.raises(SystemExit) as end:
-        main(["law-simulate", "--amplitude", "1", "--restitution", "0.5"])
-    assert end.value.code == 130
-    assert capsys.readouterr() == ("", "bouncing-ball: interrupted\n")
+    an_interrupt_is_one_line(SHORT, Dynamics, "simulate", capsys, monkeypatch)
 
 
 @pytest.mark.long
 def test_a_command_that_takes_long_says_so_and_ends_by_ctrl_c():
-    with subprocess.Popen(
-        [PROGRAM, *LONG.split()], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as running:
-        line = running.stderr.readline()
-        running.send_signal(signal.SIGINT)
-        out, err = running.communicate()
-    assert line.endswith("fewer impacts make the answer cheaper; Ctrl-C ends it\n")
-    assert (running.returncode, out, err) == (130, "", "bouncing-ball: interrupted\n")
+    ends_by_ctrl_c(LONG)

@@ -164,9 +164,7 @@ def _function(name: str) -> Callable[..., Any]:
     except (ModuleNotFoundError, AttributeError):
         raise ModelError(f"this version of the package has no {name}, which draws it") from None
     returned = getattr(function, "__annotations__", {}).get("return")
-    if (
-        getattr(function, "__module__", "") != found[1]
-        or getattr(returned, "__name__", "") != "Figure"
-    ):
+    ours = getattr(function, "__module__", "").startswith("bouncing_ball")
+    if not ours or getattr(returned, "__name__", "") != "Figure":
         raise ModelError(f"drawing = {shortened(name)} is no function of this package that draws")
     return function

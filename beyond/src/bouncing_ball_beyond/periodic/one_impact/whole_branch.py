@@ -5,7 +5,7 @@ The branch is a solution curve of the equations of n-T orbits in the unknowns of
 followed to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
 Where an event cannot be located, for example next to permanent contact, the branch is kept up to
 there, and its end says which event it is; such an end is not finished
-(:class:`~.numerics.branch.End`).
+(:class:`~bouncing_ball.numerics.branch.End`).
 """
 
 from collections.abc import Collection

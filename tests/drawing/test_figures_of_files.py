@@ -124,7 +124,6 @@ def test_mistakes_have_one_line(record, tmp_path, refusal):
         "bouncing_ball.datasets.files:write_text",
         # In a module of figures, but not of it, or no figure.
         "bouncing_ball.paper.exhibits.schematics_figures:canvas",
-        "bouncing_ball.beyond.exhibits.bounces_figures:drivers",
         "bouncing_ball.paper.exhibits.schematics_figures:Figure",
     ],
 )

@@ -3,21 +3,13 @@
 import numpy as np
 import pytest
 import xarray as xr
-from bouncing_ball.beyond.exhibits.contact_laws_figures import contact_laws
-from bouncing_ball.beyond.exhibits.motion_maps import (
-    DOTS,
-    OTHER_COLOURS,
-    UNKNOWN_PERIOD,
-    mark_nodes,
-    node_map,
-)
 from matplotlib.figure import Figure
 
 import bouncing_ball as bb
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
 from bouncing_ball.drawing.labels import _SYMBOLS, in_a_row
-from bouncing_ball.drawing.style import LINES, style
+from bouncing_ball.drawing.style import LINES
 
 IN_LATEX = {"Λ": r"\Lambda", "ϖ": r"\varpi", "ζ": r"\zeta", "φ": r"\varphi", "z′ᵢ": "z′_i"}
 
@@ -59,61 +51,3 @@ def test_the_inadmissible_part_of_a_curve_is_dotted_and_the_other_part_is_not():
     expected = axes.lines[-1]
     assert dotted.get_linestyle() == expected.get_linestyle() != whole.get_linestyle()
     assert dotted._unscaled_dash_pattern == expected._unscaled_dash_pattern
-
-
-def test_the_errors_of_the_laws_are_over_the_share_of_the_cycle(recorded):
-    """(D + κ)/(2πn), where the dataset has π/(D + κ)."""
-    data = recorded["ext_laws"]
-    length = np.pi / data.centroid_ratio.values
-    with style():
-        figure = contact_laws(data)
-    line = figure.axes[0].lines[0]
-    share = length / (2 * np.pi * data.attrs["n"])
-    assert line.get_xdata() == pytest.approx(share, rel=1e-14)
-    # The guides of the first and the second order span the same shares.
-    for slope, guide in zip((1, 2), figure.axes[0].lines[-2:], strict=True):
-        assert guide.get_xdata() == pytest.approx(share[[0, -1]], rel=1e-14)
-        assert guide.get_ydata() == pytest.approx(share[[0, -1]] ** slope, rel=1e-14)
-
-
-def test_the_nodes_of_a_kind_are_marked_and_no_others():
-    kinds = np.array([["orbit", "chaotic"], ["locked", "chaotic"], ["orbit", "orbit"]])
-    axis = {"restitution": [0.2, 0.5, 0.8], "amplitude": [1.0, 2.0]}
-    one = xr.Dataset({"kind": (("restitution", "amplitude"), kinds)}, axis)
-    axes = Figure().add_subplot()
-    mark_nodes(axes, one, one.kind == "chaotic", {"marker": "."})
-    (marks,) = axes.lines
-    found = {tuple(map(float, point)) for point in marks.get_xydata()}
-    expected = {(0.2, 2.0), (0.5, 2.0)}
-    assert found in (expected, {(lam, r) for r, lam in expected})
-
-
-def test_a_map_of_motions_marks_each_kind_at_its_own_nodes():
-    kinds = np.array(
-        [["orbit", "undecided"], ["permanent contact", "undecided"], ["orbit", "orbit"]]
-    )
-    axis = {"restitution": [0.2, 0.5, 0.8], "amplitude": [1.0, 2.0]}
-    one = xr.Dataset(
-        {
-            "kind": (("restitution", "amplitude"), kinds),
-            "saddle_node_amplitude": ("restitution", [1.1, 1.2, 1.3]),
-            "period_doubling_amplitude": ("restitution", [1.7, 1.8, 1.9]),
-        },
-        axis,
-    )
-    axes = Figure().add_subplot()
-    values = np.arange(6.0).reshape(3, 2)
-    shown = node_map(axes, one, values, ["undecided", "permanent contact"], vmin=0, vmax=5)
-    assert np.array_equal(shown.get_array(), values)
-    *marks, fold, doubling = axes.lines
-    places = [{tuple(map(float, point)) for point in line.get_xydata()} for line in marks]
-    assert places == [{(2.0, 0.2), (2.0, 0.5)}, {(1.0, 0.5)}]
-    for line, amplitudes in ((fold, [1.1, 1.2, 1.3]), (doubling, [1.7, 1.8, 1.9])):
-        assert line.get_xydata().tolist() == list(
-            map(list, zip(amplitudes, axis["restitution"], strict=True))
-        )
-    assert fold.get_linestyle() != doubling.get_linestyle()
-
-
-def test_the_kinds_with_marks_are_kinds_of_the_maps():
-    assert set(DOTS) <= OTHER_COLOURS.keys() | {UNKNOWN_PERIOD}

@@ -31,7 +31,7 @@ from bouncing_ball.datasets.files import write_text
 REPOSITORY = Path(__file__).resolve().parents[3]
 """The checkout, with all houses; names of files of code are relative to it."""
 
-LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib", "python-flint")
+LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 """The libraries that affect the artifacts."""
 
 # The packages of all houses begin with it.

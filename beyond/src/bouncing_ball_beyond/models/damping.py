@@ -1,20 +1,11 @@
-"""Damping, restitution and the release rule of a linear contact (Eqs. 16, 23).
+"""Contacts that the root's :mod:`bouncing_ball.models.damping` lacks: overdamped ones, and a damper
+that acts on approach only.
 
-A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the
-table's level; with κ = 2ζ/ϖ the contact force vanishes. Formulas
-contain the condition as ``sin α = κϖ/2``, which is 0 or ζ, so that both releases have the same
-formulas; a free contact ends at the angle π - 2α.
-
-During half a period of a free damped oscillator, without gravity, the speed is
-multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instead the
-contact ends where its force vanishes, at the angle π - 2 arcsin ζ, the
-speed is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
-Pöschel, Granular Matter 9, 2007).
-
-A damper that acts on approach only is one of these contacts up to the greatest penetration, at the
-angle arccos ζ, and then the spring alone, for a quarter of its period. The first part multiplies
-the speed ω p by ``exp(-ζ arccos ζ / √(1 - ζ²))``, which is the root of the r of the force release,
-because π - 2 arcsin ζ = 2 arccos ζ; the second part conserves it.
+An overdamped ball does not come back to the table's level, but its force vanishes. A damper that
+acts on approach only is a linear contact up to the greatest penetration, at the angle arccos ζ, and
+then the spring alone, for a quarter of its period. The first part multiplies the speed ω p by
+``exp(-ζ arccos ζ / √(1 - ζ²))``, which is the root of the r of the force release, because
+π - 2 arcsin ζ = 2 arccos ζ; the second part conserves it.
 """
 
 from collections.abc import Callable
@@ -24,18 +15,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import RESTITUTION, one_of, require
+from bouncing_ball.errors import one_of, require
+from bouncing_ball.models import damping as linear
+from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.numerics.arrays import as_numbers
-from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
 
 
 class Release(StrEnum):
-    """The condition that ends a contact."""
+    """The condition that ends a contact: those of the root, and one more."""
 
-    DISPLACEMENT = "displacement"
-    """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
-    FORCE = "force"
-    """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0, so that it never pulls the ball."""
+    DISPLACEMENT = linear.Release.DISPLACEMENT
+    FORCE = linear.Release.FORCE
     APPROACH = "approach"
     """The damper acts while the ball approaches only: the force vanishes where δ = 0."""
 
@@ -47,11 +37,6 @@ class Release(StrEnum):
         ------
         ModelError
             If there is no such release.
-
-        Examples
-        --------
-        >>> Release.of("force")
-        <Release.FORCE: 'force'>
         """
         return one_of("release", rule, {str(each): each for each in cls})
 
@@ -64,6 +49,13 @@ class Release(StrEnum):
     def is_linear(self) -> bool:
         """Whether the contact is linear from its start to its end."""
         return self is not Release.APPROACH
+
+    @property
+    def damped(self) -> linear.Release:
+        """The release of the linear contact of which the damped part is the whole, or the half if
+        the damper acts on approach only.
+        """
+        return linear.Release(self if self.is_linear else Release.FORCE)
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Callable[[Any], Any]) -> Any:
@@ -80,15 +72,8 @@ class Release(StrEnum):
         return rule
 
     def sine(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """``sin α = κϖ/2``: ζ for the force release, 0 at the table's level.
-
-        Examples
-        --------
-        >>> float(Release.DISPLACEMENT.sine(0.3)), float(Release.FORCE.sine(0.3))
-        (0.0, 0.3)
-        """
-        zeta = np.asarray(damping_ratio, dtype=float)
-        return np.zeros_like(zeta) if self.at_surface else zeta
+        """``sin α = κϖ/2``: ζ for the force release, 0 at the table's level."""
+        return linear.Release(self if self.is_linear else "displacement").sine(damping_ratio)
 
     def damped_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
         """The angle ϖ_d s during which the damper of a free contact with ζ < 1 acts.
@@ -101,10 +86,8 @@ class Release(StrEnum):
         >>> [round(angle / np.pi, 12) for angle in angles]
         [1.0, 0.666666666667, 0.333333333333]
         """
-        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
-        sine = self.sine(damping_ratio) if self.is_linear else np.asarray(damping_ratio, float)
-        half = arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
-        return 2 * half if self.is_linear else half
+        angle = self.damped.free_angle(damping_ratio)
+        return angle if self.is_linear else angle / 2
 
     def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
         """The angle ϖ_d s at which a free contact with ζ < 1 ends.
@@ -161,27 +144,6 @@ LINEAR = tuple(rule for rule in Release if rule.is_linear)
 """The release rules of contacts that are linear from their start to their end."""
 
 
-def check_positive(value: ArrayLike, name: str) -> np.ndarray:
-    """A parameter as an array.
-
-    Raises
-    ------
-    ModelError
-        Unless all its entries are finite positive numbers.
-
-    Examples
-    --------
-    >>> check_positive(-1.0, "stiffness K")
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ModelError: stiffness K = -1.0 is not a finite number > 0
-    """
-    allowed = "a finite number > 0"
-    x = as_numbers(value, name, allowed)
-    require(np.isfinite(x) & (x > 0), x, name, allowed)
-    return x
-
-
 def check_damping(value: ArrayLike, name: str) -> np.ndarray:
     """A parameter as an array.
 
@@ -201,110 +163,44 @@ def check_damping(value: ArrayLike, name: str) -> np.ndarray:
     return x
 
 
-_IN_RANGE = f"in {RESTITUTION.interval}"
-
-
-def check_restitution(value: ArrayLike) -> np.ndarray:
-    """The restitution coefficient r as an array.
-
-    Raises
-    ------
-    ModelError
-        If any r lies outside of its range or is no number.
-
-    Examples
-    --------
-    >>> check_restitution("x")
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ModelError: restitution coefficient r = 'x' is not in (0, 1]
-    """
-    name = "restitution coefficient r"
-    r = as_numbers(value, name, _IN_RANGE)
-    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, _IN_RANGE)
-    return r
-
-
-# Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
-# step doubles the number of correct digits.
-_NEWTON_STEPS = 6
-# The difference between π/2 and the double nearest to it.
-_REST = 6.123233995736766e-17
-
-
 def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
-    ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the
-    force release ζ = cos β with ``2β cot β = -ln r``, and for a damper that acts on approach only
-    ``β cot β = -ln r``.
+    It is :func:`bouncing_ball.models.damping.damping_ratio`, and for a damper that acts on approach
+    only that of the force release with r².
 
     Parameters
     ----------
     restitution : array_like
-        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release and in
-        (e⁻¹, 1] for a damper that acts on approach only.
+        As in the root; in (e⁻¹, 1] for a damper that acts on approach only.
     release : Release or str
         The condition that ends the contact in which r is measured.
 
     Raises
     ------
     ModelError
-        If any r lies outside its range, or the release is unknown. The lower bounds are the
-        limits for ζ → 1.
+        If any r lies outside its range, or the release is unknown.
 
     Examples
     --------
-    >>> float(damping_ratio(1.0))
-    0.0
-    >>> round(float(damping_ratio(0.65)), 4), round(float(damping_ratio(0.65, Release.FORCE)), 4)
-    (0.1359, 0.1499)
+    >>> bool(damping_ratio(0.8, "approach") == damping_ratio(0.8**2, "force"))
+    True
     """
-    r = check_restitution(restitution)
-    decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
     rule = Release.of(release)
-    if rule is Release.DISPLACEMENT:
-        return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
-    # The decrement of the force release, of which half an impact on approach has half.
-    lowest = "e⁻²" if rule is Release.FORCE else "e⁻¹"
-    decrement = decrement if rule is Release.FORCE else 2 * decrement
-    allowed = f"in ({lowest}, 1], the range of the {rule} release with ζ < 1"
-    require(decrement < 2, r, "restitution coefficient r", allowed)
-    # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
-    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)[()]
-
-
-def _cosine(beta: np.ndarray) -> np.ndarray:
-    """cos β, accurate near π/2 because the rounding error of π/2 is added."""
-    return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
-
-
-def _half_angle(decrement: np.ndarray) -> np.ndarray:
-    """β in (0, π/2] with ``2β cot β = decrement`` < 2, by Newton's method.
-
-    2β cot β falls from 2 to 0 and is concave, so that the steps converge from
-    the right without leaving the interval. The starting point replaces the curve by
-    the parabola 2 - 8 (β/π)², which agrees with it at β = 0 and β = π/2.
-    """
-    start = np.pi / 2 * np.sqrt(1 - decrement / 2)
-    beta = np.maximum(start, np.finfo(float).tiny)
-    for _ in range(_NEWTON_STEPS):
-        sine = sine_and_versine(beta)[0]
-        cosine = _cosine(beta)
-        value = 2 * beta * cosine / sine - decrement
-        slope = 2 * (cosine * sine - beta) / (sine * sine)
-        beta = beta - value / slope
-    return beta
+    if rule.is_linear:
+        return linear.damping_ratio(restitution, rule)
+    r = check_restitution(restitution)
+    allowed = "in (e⁻¹, 1], the range of the approach release with ζ < 1"
+    require(np.log(r) > -1, r, "restitution coefficient r", allowed)
+    return linear.damping_ratio(r * r, linear.Release.FORCE)
 
 
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
-    """Restitution coefficient of a free linear contact.
+    """Restitution coefficient of a free contact with a spring and a damper.
 
-    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`, with α = 0 for the
-    displacement release of Eq. 16. For the force release r is greater, because the contact ends
-    before its force pulls the ball. If the damper acts on approach only,
-    ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that. Both also rebound from an overdamped
-    contact, whose ζ = cosh β: ``r = exp(-2ζβ/sinh β)``, and its root.
+    For ζ < 1 it is :func:`bouncing_ball.models.damping.restitution_coefficient`. An overdamped
+    contact, whose ζ = cosh β, has ``r = exp(-2ζβ/sinh β)`` with the force release. If the damper
+    acts on approach only, r is the root of that of the force release.
 
     Parameters
     ----------
@@ -320,8 +216,6 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
 
     Examples
     --------
-    >>> float(restitution_coefficient(0.0))
-    1.0
     >>> [round(float(restitution_coefficient(z, "approach")), 4) for z in (0.1, 0.2, 0.3)]
     [0.8626, 0.7561, 0.6715]
     >>> bool(restitution_coefficient(1.0, "force") == np.exp(-2))
@@ -330,9 +224,8 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     rule = Release.of(release)
     zeta = rule.require_rebound(damping)
     over = zeta >= 1
-    under = np.where(over, 0.0, zeta)
-    angle = rule.damped_angle(under)
-    found = exponential(-angle * under / np.sqrt((1 - under) * (1 + under)))
+    r = linear.restitution_coefficient(np.where(over, 0.0, zeta), rule.damped)
+    found = r if rule.is_linear else np.sqrt(r)
     if not over.any():
         return found
     large = np.where(over, zeta, 1.0)

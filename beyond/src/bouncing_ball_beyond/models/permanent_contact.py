@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball_beyond.models.damping import Release, check_damping, check_positive
+from bouncing_ball.models.damping import check_positive
+from bouncing_ball_beyond.models.damping import Release, check_damping
 
 RESTITUTION_THRESHOLD = 1.0
 """Λ_CR. A ball at rest stays on the table if ``|w″| = |Λ sin τ| ≤ 1`` at all times, that is for

@@ -32,7 +32,7 @@ from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
-from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.models.sequence import Cycle, ImpactSequence
 
 RANGES: Mapping[str, Range] = {

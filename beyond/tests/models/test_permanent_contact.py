@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models import damping as linear
 from bouncing_ball.models import permanent_contact as root
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
@@ -54,7 +55,7 @@ def test_at_the_threshold_the_oscillation_of_an_overdamped_contact_just_reaches_
 def test_an_underdamped_contact_has_the_threshold_of_the_root(release):
     omega = np.geomspace(0.1, 1e6, 50)
     zeta = np.array([0.0, 0.05, 0.4, 0.95])[:, np.newaxis]
-    expected = root.permanent_contact_threshold(omega, zeta, release.damped)
+    expected = root.permanent_contact_threshold(omega, zeta, linear.Release(release))
     np.testing.assert_array_equal(permanent_contact_threshold(omega, zeta, release), expected)
 
 

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import (
@@ -17,7 +18,6 @@ from bouncing_ball_beyond.periodic.one_impact.restitution_branch import (
     saddle_node,
 )
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 EPS = np.finfo(float).eps
 

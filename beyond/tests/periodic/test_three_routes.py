@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -12,7 +13,6 @@ from bouncing_ball_beyond.periodic.one_impact import restitution_branch as resti
 from bouncing_ball_beyond.periodic.one_impact.n_t import Absence
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 EPS = np.finfo(float).eps
 # For each of two rules and two sides.

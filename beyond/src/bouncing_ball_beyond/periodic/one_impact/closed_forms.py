@@ -14,6 +14,7 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.periodic.orbit import Side, check_index
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.impact import impact
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
@@ -25,9 +26,7 @@ from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formu
 from bouncing_ball_beyond.periodic.one_impact import spring_damper_bifurcations as bifurcations
 from bouncing_ball_beyond.periodic.one_impact.orbits_of_model import OrbitsOfModel
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball_beyond.periodic.orbits.impacts import check_index
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
 # largest error found for ϖ = 0.6…10⁶ and n = 1…100, under both rules, was 3.9 units.

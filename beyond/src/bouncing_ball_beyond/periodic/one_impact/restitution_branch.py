@@ -24,8 +24,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import check_restitution
-from bouncing_ball_beyond.periodic.orbits.impacts import check_index
-from bouncing_ball_beyond.periodic.orbits.stability import Side
+from bouncing_ball.periodic.orbit import Side, check_index
 
 
 class ImpactMap(StrEnum):

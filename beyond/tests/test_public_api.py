@@ -12,6 +12,7 @@ import pytest
 
 import bouncing_ball_beyond as bb
 from bouncing_ball.errors import ModelError
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond import (
     ContactModel,
     RestitutionModel,
@@ -28,7 +29,6 @@ from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 CONTACT = spring_damper(restitution=0.85, frequency_ratio=10.0)
 RIGID = rigid(restitution=0.85)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import (
     REMAINDER,
     coefficients,
@@ -25,7 +26,6 @@ from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbit
 
 RELEASES = LINEAR
 
@@ -38,8 +38,8 @@ def sample(seed, size, release, r, places=(0.0, 1.0)):
     rng = np.random.default_rng(seed)
     r = rng.uniform(*r, size)
     n = rng.integers(1, 6, size)
-    low = restitution_orbit.saddle_node(n, r)
-    high = restitution_orbit.period_doubling(n, r)
+    low = restitution_saddle_node(n, r)
+    high = restitution_period_doubling(n, r)
     return n, damping_ratio(r, release), low + rng.uniform(*places, size) * (high - low), rng
 
 
@@ -162,9 +162,7 @@ def test_an_error_relative_to_zero_is_not_a_number():
     """
     assert not np.isfinite(coefficients(1, 0.0, 1.0)["saddle_node"])
     r = float(restitution_coefficient(0.1))
-    assert not np.isfinite(
-        coefficients(1, 0.1, float(restitution_orbit.saddle_node(1, r)))["phase"]
-    )
+    assert not np.isfinite(coefficients(1, 0.1, float(restitution_saddle_node(1, r)))["phase"])
 
 
 def test_below_the_saddle_node_the_error_law_is_refused(refusal):

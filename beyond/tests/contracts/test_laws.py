@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.laws.collocation import contacts, path
@@ -39,7 +40,6 @@ from bouncing_ball_beyond.models.laws.steady_contact import permanent_contact
 from bouncing_ball_beyond.models.named_laws import LAWS as NAMED
 from bouncing_ball_beyond.models.named_laws import by_name
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 

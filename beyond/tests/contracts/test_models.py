@@ -17,6 +17,7 @@ from loaded_laws import Sharing
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -33,7 +34,6 @@ from bouncing_ball_beyond.periodic.one_impact.searched_orbits import SearchedOrb
 from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations as events_of
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
 
 EPS = np.finfo(float).eps
 COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)

@@ -6,9 +6,15 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models import damping as linear
 from bouncing_ball_beyond import contact_law
 from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball_beyond.models.damping import (
+    LINEAR,
+    Release,
+    damping_ratio,
+    restitution_coefficient,
+)
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 EPS = np.finfo(float).eps
@@ -40,6 +46,20 @@ def test_restitution_and_damping_are_inverse_functions(release, least):
     slope = np.pi * zeta / ((1 - zeta) * (1 + zeta)) ** 1.5
     error = np.abs(restitution_coefficient(zeta, release) / r - 1)
     assert np.all(error <= 4 * EPS * (1 + slope))
+
+
+@pytest.mark.parametrize("release", LINEAR)
+def test_a_linear_contact_has_the_damping_and_the_angles_of_the_root(release):
+    rule = linear.Release(release)
+    r = np.linspace(0.14, 1.0, 50)
+    zeta = damping_ratio(r, release)
+    # The root has ζ = sin α; here ζ = cos β, of which β next to π/2 has the rounding EPS.
+    expected = linear.damping_ratio(r, rule)
+    np.testing.assert_allclose(zeta, expected, rtol=8 * EPS, atol=EPS)
+    found = restitution_coefficient(zeta, release)
+    np.testing.assert_allclose(found, linear.restitution_coefficient(zeta, rule), rtol=8 * EPS)
+    np.testing.assert_allclose(release.free_angle(zeta), rule.free_angle(zeta), rtol=8 * EPS)
+    np.testing.assert_array_equal(release.sine(zeta), rule.sine(zeta))
 
 
 @pytest.mark.parametrize("r", [0.0, -0.1, 1.1, np.nan, np.inf])

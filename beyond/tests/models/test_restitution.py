@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.sticking import lift_off_phase
 
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.numerics.events import domain_limits
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -21,7 +22,6 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
 )
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
 

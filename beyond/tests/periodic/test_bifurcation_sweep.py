@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import branch_point
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 EPS = np.finfo(float).eps
 SIZES = [

@@ -6,10 +6,10 @@ from orbits_found import FOUND, balls, first, found_orbit
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball_beyond.periodic.branches.curves import Degenerate, curve_through
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball_beyond.periodic.orbits.ends import Window
 from bouncing_ball_beyond.periodic.orbits.special import Special, flight_margin
 
@@ -25,8 +25,8 @@ def curve_of(start, across, **settings):
 
 
 @pytest.mark.parametrize(("kind", "to", "formula"), [
-    (Special.SADDLE_NODE, 0.1, formulas.saddle_node),
-    (Special.PERIOD_DOUBLING, 2.0, formulas.period_doubling),
+    (Special.SADDLE_NODE, 0.1, restitution_saddle_node),
+    (Special.PERIOD_DOUBLING, 2.0, restitution_period_doubling),
 ])  # fmt: skip
 def test_the_curves_of_the_restitution_model_are_the_closed_forms(kind, to, formula):
     window = Window(0.2, 0.95)

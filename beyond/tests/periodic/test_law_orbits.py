@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.accuracy.error_law import first_order
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, paper_error
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -32,7 +33,6 @@ from bouncing_ball_beyond.periodic.one_impact.searched_orbits import (
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import (
     orbits_at as by_formula,
 )
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 KINDS = [SpringDamper, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])

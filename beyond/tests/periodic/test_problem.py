@@ -5,11 +5,11 @@ import pytest
 import shooting
 from orbits_found import FOUND, balls, first, found_orbit, known_orbit
 
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import branch_from, point_near
 from bouncing_ball_beyond.periodic.orbits.halves import twice
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 from bouncing_ball_beyond.periodic.orbits.special import Special, flight_margin, opening_rate
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 ALL = [*CLOSED, "tsuji"]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from bouncing_ball.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import corrected_branch, n_t
@@ -13,7 +14,6 @@ from bouncing_ball_beyond.periodic.one_impact.searched_orbits import (
 )
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
 from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
 
 # The branch of the compliant contact has saddle-nodes at Λ = 0.188 and 1.176 and a second stable
 # side; that of the other one ends at Λ = 2.004, where the ball no longer leaves the table.

@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -19,7 +20,7 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     branch_point,
     orbits_of_points,
 )
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side, is_stable
+from bouncing_ball_beyond.periodic.orbits.stability import is_stable
 
 EPS = np.finfo(float).eps
 

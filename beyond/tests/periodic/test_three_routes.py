@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution
 from bouncing_ball_beyond.periodic.one_impact.n_t import Absence
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 EPS = np.finfo(float).eps
 # For each of two rules and two sides.
@@ -25,8 +25,8 @@ def sample(seed, size):
     r = rng.uniform(0.05, 0.999, size)
     n = rng.integers(1, 6, size)
     omega = 10 ** rng.uniform(0.0, 5.0, size)
-    fold = restitution.saddle_node(n, r)
-    doubling = restitution.period_doubling(n, r)
+    fold = restitution_saddle_node(n, r)
+    doubling = restitution_period_doubling(n, r)
     # From half the saddle-node to well beyond the period doubling.
     amplitude = fold / 2 + rng.uniform(0.0, 1.0, size) * (1.5 * doubling - fold / 2)
     return damping_ratio(r), n, omega, amplitude

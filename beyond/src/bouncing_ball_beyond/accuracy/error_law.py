@@ -53,12 +53,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.periodic.explicit import period_doubling_lift, restitution_saddle_node
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as restitution_orbit
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import phase
 
 VALID_BELOW = 0.3
 """η below which the law is considered useful: the remainder is then less than 0.6 times the scale,
@@ -75,8 +76,8 @@ def _of_orbit(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> tuple[np.
     """t_c, r, σ and D of the signature, and nπ, ψ, Λ_SN and Λ sin ψ of the restitution orbit."""
     r = instant.restitution
     lam = np.asarray(amplitude, dtype=float)
-    psi = restitution_orbit.phase(n, r, lam)
-    fold = restitution_orbit.saddle_node(n, r)
+    psi = phase(n, r, lam)
+    fold = restitution_saddle_node(n, r)
     orbit = np.asarray(n) * np.pi, psi, fold, lam * np.sin(psi)
     return *(np.asarray(x, dtype=float) for x in instant[:4]), *orbit
 
@@ -132,7 +133,7 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuant
 
 
 def _period_doubling(half, r, delay, load, fold):
-    lift = restitution_orbit.period_doubling_lift(r)
+    lift = period_doubling_lift(r)
     excess = ((1 - r) / (1 + r)) ** 2
     d_x = load * excess / (1 + r)
     d_y = (2 * delay * excess - half * load * fold + (1 - r) * d_x) / (half * (1 + r))

@@ -21,9 +21,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 
 class Quantity(StrEnum):

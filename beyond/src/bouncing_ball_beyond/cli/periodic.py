@@ -17,6 +17,7 @@ from bouncing_ball.datasets.arguments import (
     ReleaseName,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.accuracy import error_law as error_laws
 from bouncing_ball_beyond.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -27,7 +28,6 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic import orbits_of_ball as library
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 Answer = dict[str, Any]
 SideOrAll = Literal["stable", "unstable", "all"]

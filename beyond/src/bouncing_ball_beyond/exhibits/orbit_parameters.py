@@ -18,12 +18,12 @@ from bouncing_ball.datasets.parameters import (
     Span,
     Tolerance,
 )
+from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import saddle_node
 
 
 def _has_orbit(amplitude: float, info: ValidationInfo) -> float:
@@ -31,7 +31,7 @@ def _has_orbit(amplitude: float, info: ValidationInfo) -> float:
     # If n or r is missing or wrong, that mistake is reported instead.
     if not {"n", "restitution"} <= given.keys():
         return amplitude
-    lowest = float(saddle_node(given["n"], given["restitution"]))
+    lowest = float(restitution_saddle_node(given["n"], given["restitution"]))
     if amplitude < lowest:
         raise ValueError(
             f"must be at least {lowest:.6g}, the saddle-node of the {given['n']}-T restitution "

@@ -23,11 +23,11 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors, search
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 from bouncing_ball_beyond.proofs.balls import ProofError, decimal_with_bound, exactly, precision
 from bouncing_ball_beyond.proofs.certificates import (
     Proved,

@@ -24,6 +24,7 @@ from bouncing_ball.datasets.parameters import (
     Span,
 )
 from bouncing_ball.datasets.variables import Variable, describe, described
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.accuracy.simple_models import Search, search
 from bouncing_ball_beyond.exhibits.orbit_parameters import ComparedQuantities
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -37,7 +38,6 @@ from bouncing_ball_beyond.models.oscillator import responses
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", symbol="Λ"),

@@ -35,11 +35,11 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus, thresholds
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     branch_point,
@@ -101,8 +101,8 @@ class Nodes(NamedTuple):
     @classmethod
     def at(cls, n: np.ndarray, restitution: np.ndarray, position: np.ndarray) -> "Nodes":
         """The nodes at these positions in the stable range; the arguments broadcast."""
-        low = restitution_branch.saddle_node(n, restitution)
-        high = restitution_branch.period_doubling(n, restitution)
+        low = restitution_saddle_node(n, restitution)
+        high = restitution_period_doubling(n, restitution)
         return cls(*np.broadcast_arrays(n, restitution, low + position * (high - low)))
 
     def take(self, which: np.ndarray) -> "Nodes":
@@ -112,7 +112,7 @@ class Nodes(NamedTuple):
     @property
     def lift(self) -> np.ndarray:
         """Λ sin φ of the restitution model's orbit."""
-        fold = restitution_branch.saddle_node(self.n, self.restitution)
+        fold = restitution_saddle_node(self.n, self.restitution)
         return np.sqrt((self.amplitude - fold) * (self.amplitude + fold))
 
     @property

@@ -25,6 +25,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.elementary import (
     arctangent,
     exponential,
@@ -39,7 +40,6 @@ from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
 from bouncing_ball_beyond.models.linear_flow import flow as linear_flow
 from bouncing_ball_beyond.models.oscillator import steady_response, table_response
 from bouncing_ball_beyond.models.resumption import ResumingDynamics
-from bouncing_ball_beyond.models.sequence import Status
 
 # The number of steps after which the expensive bound of ``skip`` is used.
 _PATIENCE = 12

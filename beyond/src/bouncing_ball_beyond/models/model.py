@@ -28,11 +28,11 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, Range
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
-from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.models.sequence import Cycle, ImpactSequence
 
 RANGES: Mapping[str, Range] = {

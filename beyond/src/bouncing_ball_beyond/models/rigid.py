@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_beyond.models.damping import check_restitution
+from bouncing_ball.models.damping import check_restitution
 from bouncing_ball_beyond.models.instant import Instant, rigid_instant
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics

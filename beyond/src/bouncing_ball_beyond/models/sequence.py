@@ -1,11 +1,11 @@
 """Simulated impacts of many balls as arrays, and how the motion of each ball goes on."""
 
 from dataclasses import dataclass, replace
-from enum import IntEnum
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contact import FiniteContact
@@ -21,18 +21,6 @@ RECORDED = (
     "settling",
 )
 """The arrays of an :class:`ImpactSequence` with a row for each impact, in order."""
-
-
-class Status(IntEnum):
-    """The state of a ball after its last recorded impact."""
-
-    BOUNCING = 0
-    """More impacts follow."""
-    PERMANENT_CONTACT = 1
-    """The last contact never ends. This is proved for the linear contact only, see
-    :mod:`bouncing_ball_beyond.models.linear_contact`."""
-    UNDECIDED = 2
-    """The last contact lasts for hundreds of oscillations at a Λ at which none is permanent."""
 
 
 class Cycle(NamedTuple):

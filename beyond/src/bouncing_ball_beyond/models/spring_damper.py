@@ -25,15 +25,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.damping import check_positive
 from bouncing_ball_beyond.models import linear_flow
 from bouncing_ball_beyond.models.approach_threshold import approach_threshold
 from bouncing_ball_beyond.models.contact import ContactSpan
-from bouncing_ball_beyond.models.damping import (
-    Release,
-    check_positive,
-    damping_ratio,
-    restitution_coefficient,
-)
+from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import arctangent, reduce_angle
 from bouncing_ball_beyond.models.contacts_and_flights import Departure
 from bouncing_ball_beyond.models.flight import Flight, table
-from bouncing_ball_beyond.models.sequence import Status
 
 _TURN = 2 * np.pi
 

@@ -39,9 +39,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics, HasDynamics, Leg
-from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.motions.followed import (
     MARGINAL,
     REASONS,

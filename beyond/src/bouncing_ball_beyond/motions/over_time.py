@@ -31,10 +31,11 @@ from bouncing_ball.datasets.arguments import (
     require_memory,
 )
 from bouncing_ball.errors import ModelError, require, suggesting
+from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.ball import Ball, a_ball
 from bouncing_ball_beyond.models.flight import Flight, land, table
 from bouncing_ball_beyond.models.history import motion_at
-from bouncing_ball_beyond.models.sequence import ImpactSequence, Status
+from bouncing_ball_beyond.models.sequence import ImpactSequence
 
 # A single simulation of the command line needs no labels, and importing xarray takes longer: it is
 # imported where results are labelled.

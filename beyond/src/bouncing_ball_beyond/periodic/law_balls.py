@@ -28,6 +28,7 @@ from bouncing_ball.datasets.arguments import (
     is_array,
 )
 from bouncing_ball.errors import ParameterError, Range, shortened, suggesting
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
@@ -37,7 +38,6 @@ from bouncing_ball_beyond.models.makers import corrected, flattened
 from bouncing_ball_beyond.models.named_laws import law_named
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid

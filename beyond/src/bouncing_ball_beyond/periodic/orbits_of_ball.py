@@ -20,12 +20,12 @@ from bouncing_ball.datasets.arguments import (
     is_array,
 )
 from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.ball import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
 
 if TYPE_CHECKING:
     from bouncing_ball.drawing.result import Result

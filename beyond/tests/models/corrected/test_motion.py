@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 RELEASES = LINEAR

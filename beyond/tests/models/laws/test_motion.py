@@ -6,16 +6,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from loaded_laws import Sharing
 
+from bouncing_ball.models.model import Status
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.flight import Flight, land, table
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.laws.motion import sampled_resumption
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.resumption import resumption
-from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 CASES = [
     # n, r, ϖ, Λ

@@ -11,12 +11,12 @@ from functools import cache, lru_cache
 import numpy as np
 import scipy
 
+from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.laws.march import march
 from bouncing_ball_beyond.models.laws.panel import Start
 from bouncing_ball_beyond.models.laws.scales import rest, scales
-from bouncing_ball_beyond.models.sequence import Status
 
 SLOWED = 0.01
 """How much less a ball bounces than a free impact at the speed of :func:`slowed`."""

@@ -34,12 +34,13 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import VALID_BELOW, first_order, small_parameter
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import phase
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.measured.curves import CURVES
@@ -322,7 +323,7 @@ class _OrbitsOnShaker:
         speed = best.speed_on(table, n)
         r = float(best.restitution_at(speed))
         slope = r + float(best.trend_at(speed))
-        fold = float(restitution_branch.saddle_node(n, r))
+        fold = float(restitution_saddle_node(n, r))
         amplitude = fold + position * (_doubling(n, r, slope) - fold)
         return cls(table.motion, n, speed, r, slope, amplitude)
 
@@ -339,8 +340,8 @@ class _OrbitsOnShaker:
         constant = first.measured(fit.points)
         by_points = np.nan
         if np.isfinite(measured) and np.isfinite(constant):
-            fold = float(restitution_branch.saddle_node(self.n, measured))
-            by_points = float(restitution_branch.saddle_node(self.n, constant)) / fold - 1
+            fold = float(restitution_saddle_node(self.n, measured))
+            by_points = float(restitution_saddle_node(self.n, constant)) / fold - 1
         ratio = np.nan
         by_duration = np.full(len(COMPARED), np.nan)
         delta = np.nan
@@ -383,15 +384,15 @@ class _OrbitsOnShaker:
 
     def values(self, restitution: float, slope: float) -> np.ndarray:
         """The greatest height, the saddle-node and the period doubling."""
-        fold = float(restitution_branch.saddle_node(self.n, restitution))
+        fold = float(restitution_saddle_node(self.n, restitution))
         height = np.nan
         if self.amplitude >= fold:
-            phase = float(restitution_branch.phase(self.n, restitution, self.amplitude))
-            height = self.amplitude * np.sin(phase) + (self.n * np.pi) ** 2 / 2
+            angle = float(phase(self.n, restitution, self.amplitude))
+            height = self.amplitude * np.sin(angle) + (self.n * np.pi) ** 2 / 2
         return np.array([height, fold, _doubling(self.n, restitution, slope)])
 
 
 def _doubling(n: int, restitution: float, slope: float) -> float:
     """Λ of the period doubling of impacts with r(v)."""
     lift = 2 * (1 + restitution * slope) / ((1 + restitution) * (1 + slope))
-    return float(np.hypot(restitution_branch.saddle_node(n, restitution), lift))
+    return float(np.hypot(restitution_saddle_node(n, restitution), lift))

@@ -13,11 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
+from bouncing_ball.models.damping import check_positive
 from bouncing_ball_beyond.models.contact import ContactSpan
-from bouncing_ball_beyond.models.damping import (
-    check_damping,
-    check_positive,
-)
+from bouncing_ball_beyond.models.damping import check_damping
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.collocation import states

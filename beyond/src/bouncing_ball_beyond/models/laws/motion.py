@@ -22,6 +22,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball_beyond.models.contact import ContactSpan
@@ -40,7 +41,6 @@ from bouncing_ball_beyond.models.resumption import (
     leaves_fast,
     of_slow_balls,
 )
-from bouncing_ball_beyond.models.sequence import Status
 
 # Panels of two periods of the table on a contact with up to some twenty oscillations in one, and
 # the depth of the ball at rest, over g/Ω², from which on a contact has so few.

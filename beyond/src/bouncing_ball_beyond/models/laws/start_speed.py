@@ -44,7 +44,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball_beyond.models.damping import check_positive
+from bouncing_ball.models.damping import check_positive
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.force_law import NUMBER, ForceLaw, Scaled, Unit
 from bouncing_ball_beyond.models.laws.hertzian import Hertz, HuntCrossley

@@ -32,6 +32,7 @@ from bouncing_ball.numerics.continuation import continue_both_ways
 from bouncing_ball.numerics.corrector import Condition, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
 from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import (
     Followed,
 )
@@ -52,7 +53,6 @@ from bouncing_ball_beyond.periodic.orbits.normal_form import coefficient
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import Degenerate, Special, passed_by
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.steps import BY_DIFFERENCES, PATIENT, STEPS_OF_CURVES
 
 # A point on a resonance has multipliers that differ from it by less than this. Next to a double

@@ -19,6 +19,7 @@ from bouncing_ball.numerics.corrector import newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.steps import StepControl, WithEvents
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
 from bouncing_ball_beyond.periodic.orbits.ends import (
     AT_BOUND,
@@ -35,7 +36,6 @@ from bouncing_ball_beyond.periodic.orbits.halves import halves, turns_apart, tur
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import Coordinates, Degenerate, Special
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT, STEPS
 
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.

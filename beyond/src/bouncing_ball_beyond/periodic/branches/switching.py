@@ -12,12 +12,13 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.halves import turns_of_half, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, is_stable
+from bouncing_ball_beyond.periodic.orbits.stability import is_stable
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
 
 ASIDE = 0.02

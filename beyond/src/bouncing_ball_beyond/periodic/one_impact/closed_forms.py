@@ -14,6 +14,8 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
+from bouncing_ball.periodic.orbit import Side, check_index
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.impact import impact
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
@@ -21,13 +23,11 @@ from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import corrected_branch as line
-from bouncing_ball_beyond.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball_beyond.periodic.one_impact import spring_damper_bifurcations as bifurcations
 from bouncing_ball_beyond.periodic.one_impact.orbits_of_model import OrbitsOfModel
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import phase
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch
-from bouncing_ball_beyond.periodic.orbits.impacts import check_index
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
 # largest error found for ϖ = 0.6…10⁶ and n = 1…100, under both rules, was 3.9 units.
@@ -46,20 +46,20 @@ class RestitutionLine(OrbitsOfModel):
         """The n-T orbits at Λ on one side of the saddle-node; NaN below the saddle-node."""
         r = self.model.restitution
         lam = np.asarray(amplitude, dtype=float)
-        fold = formulas.saddle_node(n, r)
+        fold = restitution_saddle_node(n, r)
         exists = lam >= fold
-        phase = formulas.phase(n, r, np.where(exists, lam, fold), side)
-        return Orbit.of(self.model, n, lam, np.where(exists, phase, np.nan))
+        found = phase(n, r, np.where(exists, lam, fold), side)
+        return Orbit.of(self.model, n, lam, np.where(exists, found, np.nan))
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node (Eq. 7), where φ = 0."""
-        return Orbit.of(self.model, n, formulas.saddle_node(n, self.model.restitution), 0.0)
+        return Orbit.of(self.model, n, restitution_saddle_node(n, self.model.restitution), 0.0)
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """The orbits at the period doubling of the exact map; Eq. 8 is that of Holmes' map."""
         r = self.model.restitution
-        lam = formulas.period_doubling(n, r)
-        return Orbit.of(self.model, n, lam, formulas.phase(n, r, lam))
+        lam = restitution_period_doubling(n, r)
+        return Orbit.of(self.model, n, lam, phase(n, r, lam))
 
 
 @dataclass(frozen=True)

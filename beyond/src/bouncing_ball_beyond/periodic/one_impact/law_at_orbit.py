@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import checked, solve
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
@@ -14,7 +15,6 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 from bouncing_ball_beyond.periodic.orbits.steps import OF_A_ROUND
 
 # The largest number of rounds that compute the law and the orbit in turn. At given r and D the

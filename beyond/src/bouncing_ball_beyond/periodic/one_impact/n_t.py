@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.model import Model
@@ -26,7 +27,6 @@ from bouncing_ball_beyond.periodic.one_impact.closed_forms import (
 from bouncing_ball_beyond.periodic.one_impact.orbits_of_model import OrbitsOfModel
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import SearchedOrbits
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Side
 
 
 class Absence(StrEnum):

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball.numerics.corrector import checked, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import branches_through_points
@@ -24,11 +25,9 @@ from bouncing_ball_beyond.periodic.one_impact import corrected_branch as line
 from bouncing_ball_beyond.periodic.one_impact.orbits_of_model import OrbitsOfModel, in_order
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball_beyond.periodic.orbits.ends import ENDS, AtMargin, Window, ends_of_one_impact
-from bouncing_ball_beyond.periodic.orbits.impacts import check_index
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
 from bouncing_ball_beyond.periodic.orbits.steps import EXTENDED, IN_ROUNDS, STEPS_OF_SEARCHES
 
 # The largest number of Newton steps for the impact speed.

@@ -18,15 +18,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import blocks
+from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     BranchPoint,
     branch_point,
     orbits_on_branch,
 )
-from bouncing_ball_beyond.periodic.orbits.impacts import check_index
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, Side
 
 # Points of the scan on each side of ε = 0, spaced geometrically from this small
 # part of 1/ϖ, the scale of the fold, to the ends of the possible range.

@@ -18,6 +18,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import ContinuationError, EndKind
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import Followed, branches_through_points
 from bouncing_ball_beyond.periodic.one_impact import n_t
@@ -27,7 +28,6 @@ from bouncing_ball_beyond.periodic.orbits.ends import Window, ends_of_one_impact
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import passed_by
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 LARGEST_STEP = 0.1
 """Default of the largest step in arclength."""

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError, require
-from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.numerics.arrays import Batch, blocks
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
@@ -38,23 +38,6 @@ if TYPE_CHECKING:
 _OF_IMPACTS = ("turns", "phases", "velocities", "durations")
 # Number of orbits whose legs are in memory at the same time.
 _LEGS = 8192
-
-
-def check_index(n: ArrayLike) -> None:
-    """Raise :class:`ModelError` unless the index of the family is a positive integer.
-
-    Examples
-    --------
-    >>> check_index(1.5)
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ModelError: index of the family n = 1.5 is not a positive integer
-    """
-    name = "index of the family n"
-    allowed = "a positive integer"
-    index = as_numbers(n, name, allowed)
-    whole = (index == np.floor(index)) & (index >= 1) & np.isfinite(index)
-    require(whole, np.asarray(n), name, allowed)
 
 
 def _comparable(value: Any) -> Any:

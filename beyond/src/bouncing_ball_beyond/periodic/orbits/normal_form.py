@@ -31,11 +31,12 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.numerics.corrector import solve_linear
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.return_map import returned
 from bouncing_ball_beyond.periodic.orbits.special import Special
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
+from bouncing_ball_beyond.periodic.orbits.stability import multiplier_at
 
 # Weights of the central differences of the first and of the second derivative over the nine points
 # -4…4, which are exact for polynomials of degree eight (nine for the second one).
@@ -140,8 +141,8 @@ def coefficient(
     problem: OrbitEquations, y: np.ndarray, kind: Bifurcation
 ) -> tuple[float, float, np.ndarray, float]:
     """a or b of an orbit at a bifurcation, its error, q, and the other multiplier."""
-    right, left = eigenvectors(problem, y, kind.multiplier)
-    other = float(problem.trace_and_determinant(y)[1]) / kind.multiplier
+    right, left = eigenvectors(problem, y, multiplier_at(kind))
+    other = float(problem.trace_and_determinant(y)[1]) / multiplier_at(kind)
     _, speed = problem.states(y)
     longest = _STEP * min(1.0, float(np.min(np.abs(speed))))
     steps = longest * 0.5 ** np.arange(_HALVINGS)

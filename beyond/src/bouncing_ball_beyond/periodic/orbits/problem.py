@@ -48,15 +48,16 @@ from typing import Any, Self
 
 import numpy as np
 
+from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball_beyond.models.sequence import Status
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball_beyond.periodic.orbits.beside import LegsBeside
 from bouncing_ball_beyond.periodic.orbits.legs import Legs, lag_of, landed, without_force
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation, shifted_determinant
+from bouncing_ball_beyond.periodic.orbits.stability import multiplier_at, shifted_determinant
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
@@ -400,7 +401,7 @@ class OrbitEquations:
         """
         compared = self.compared(y, everywhere=True)
         matrices = compared.legs.matrices
-        value, weights = shifted_determinant(matrices[0], kind.multiplier)
+        value, weights = shifted_determinant(matrices[0], multiplier_at(kind))
         # tr(W_i dM_i) for each leg.
         change = [
             np.einsum("...ij,...ji->...", weights, right - left)

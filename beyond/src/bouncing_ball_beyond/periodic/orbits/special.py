@@ -29,11 +29,11 @@ from bouncing_ball import datasets
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.highest import heights_within
 from bouncing_ball_beyond.periodic.orbits.legs import rests_as_expected
 from bouncing_ball_beyond.periodic.orbits.lost_release import rise_of_release
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
-from bouncing_ball_beyond.periodic.orbits.stability import Bifurcation
 
 # The value of a function where there is no minimum or maximum, and thus no event near.
 _FAR = 1.0

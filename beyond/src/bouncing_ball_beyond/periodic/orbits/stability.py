@@ -10,13 +10,10 @@ a change dM_i of one leg contributes ``tr(W_i dM_i)`` with
 ``W_i = (M_{i-1} … M_1) adj(M - μ) (M_k … M_{i+1})``.
 """
 
-from enum import StrEnum
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball import datasets
-from bouncing_ball.errors import ModelError, shortened
+from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.deviations import Jacobian
 
 # The determinant of a contact that does not dissipate differs from 1 by rounding errors of its
@@ -45,39 +42,9 @@ def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     return np.stack([first, second], axis=-1)
 
 
-class Side(StrEnum):
-    """Side of the saddle-node on which an orbit lies; another name raises ModelError."""
-
-    STABLE = "stable"
-    """The side that is stable next to the saddle-node, with the shorter contact."""
-    UNSTABLE = "unstable"
-    """The side that is unstable next to the saddle-node, with the longer contact."""
-
-    @classmethod
-    def _missing_(cls, value: object) -> "Side":
-        raise ModelError(f"unknown side {shortened(value)}: one of {', '.join(cls)}")
-
-
-class Bifurcation(StrEnum):
-    """The two bifurcations at which an orbit loses its stability along the branch."""
-
-    SADDLE_NODE = datasets.SADDLE_NODE
-    PERIOD_DOUBLING = datasets.PERIOD_DOUBLING
-
-    @property
-    def multiplier(self) -> float:
-        """The Floquet multiplier at the bifurcation, +1 or -1."""
-        return 1.0 if self is Bifurcation.SADDLE_NODE else -1.0
-
-    def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-        """``1 ∓ tr + det``: zero at the bifurcation, positive where the orbit is stable.
-
-        Examples
-        --------
-        >>> [float(kind.test(1.5, 0.5)) for kind in Bifurcation]
-        [0.0, 3.0]
-        """
-        return 1 - self.multiplier * np.asarray(trace) + np.asarray(determinant)
+def multiplier_at(kind: Bifurcation) -> float:
+    """The Floquet multiplier at a bifurcation, +1 or -1."""
+    return 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
 
 
 def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:

@@ -114,13 +114,18 @@ class Result(xr.Dataset):
                 write(figure, Path(path), title)
         return figure
 
+    @staticmethod
+    def figures() -> "Mapping[str, Callable[[xr.Dataset], Figure]]":
+        """The figure of the result of each call, by its name."""
+        from bouncing_ball.drawing.result_figures import FIGURES
+
+        return FIGURES
+
     def _drawing(self) -> "tuple[Callable[[xr.Dataset], Figure], str]":
         """The function that draws this dataset, and the title of the file of the figure."""
         if MADE_BY in self.attrs:
-            from bouncing_ball.drawing.result_figures import FIGURES
-
             maker = self.attrs[MADE_BY]
-            return one_of("call", maker, FIGURES), f"bouncing-ball {maker}"
+            return one_of("call", maker, self.figures()), f"bouncing-ball {maker}"
         if DRAWING in self.attrs:
             return _function(self.attrs[DRAWING]), str(self.attrs["title"])
         if "title" in self.attrs:

@@ -22,11 +22,11 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError, suggesting
 from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
 from bouncing_ball_beyond.accuracy.thresholds import RATIOS
+from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball, a_known_ball
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.rigid import RestitutionModel

@@ -41,7 +41,7 @@ from bouncing_ball_beyond.models.sequence import ImpactSequence
 # imported where results are labelled.
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid
-    from bouncing_ball.drawing.result import Result
+    from bouncing_ball_beyond.drawing.result import Result
 
 # Number of impacts of a ball that are simulated at first, and the largest number allowed.
 _FIRST, _MOST = 4, 65_536
@@ -359,7 +359,7 @@ def _labelled_impacts(grid: Grid, sequence: ImpactSequence) -> Result:
     import xarray as xr
 
     from bouncing_ball.datasets.variables import Variable, describe
-    from bouncing_ball.drawing.result import Result
+    from bouncing_ball_beyond.drawing.result import Result
 
     status = [Status(number).name.lower().replace("_", " ") for number in sequence.status.tolist()]
     of_impacts = {
@@ -384,7 +384,7 @@ def _labelled_history(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]
     import xarray as xr
 
     from bouncing_ball.datasets.variables import describe
-    from bouncing_ball.drawing.result import Result
+    from bouncing_ball_beyond.drawing.result import Result
 
     rows = {name: ((CASE, "time"), values) for name, values in found.items()}
     return Result.of(grid.unfold(describe(xr.Dataset(rows, {"time": time}))), "history")

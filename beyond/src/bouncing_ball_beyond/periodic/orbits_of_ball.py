@@ -28,7 +28,7 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
 
 if TYPE_CHECKING:
-    from bouncing_ball.drawing.result import Result
+    from bouncing_ball_beyond.drawing.result import Result
 
 
 class TwoLimits(NamedTuple):

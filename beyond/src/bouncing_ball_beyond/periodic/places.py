@@ -10,8 +10,8 @@ from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import require_memory
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.periodic.branches.observables import VARIABLES
 

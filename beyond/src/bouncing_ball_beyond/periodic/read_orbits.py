@@ -6,8 +6,8 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.drawing.result import MADE_BY, Result
 from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesting
+from bouncing_ball_beyond.drawing.result import MADE_BY, Result
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.saved import has_orbits

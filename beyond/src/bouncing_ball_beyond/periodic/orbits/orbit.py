@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from bouncing_ball.drawing.result import Result
+    from bouncing_ball_beyond.drawing.result import Result
 
 OBSERVABLES = (
     "amplitude",

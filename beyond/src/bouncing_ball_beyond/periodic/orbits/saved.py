@@ -16,9 +16,9 @@ import xarray as xr
 
 from bouncing_ball.datasets.arguments import SAMPLES, checked_number, require_memory
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
-from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.as_text import model_of, text_of
 
 ORBIT = "orbit"

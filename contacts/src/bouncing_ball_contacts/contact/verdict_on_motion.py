@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from bouncing_ball_beyond.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.judgement import Basis, MotionJudgement

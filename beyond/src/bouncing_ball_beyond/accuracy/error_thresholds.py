@@ -27,8 +27,9 @@ from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
 from bouncing_ball_beyond.accuracy.thresholds import RATIOS
 from bouncing_ball_beyond.drawing.result import Result
-from bouncing_ball_beyond.models.ball import Ball, a_known_ball
+from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
+from bouncing_ball_beyond.models.given_ball import a_known_ball
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 
 
@@ -86,14 +87,15 @@ def error_thresholds(
     >>> found.error_threshold.values.round(3).tolist()
     [[82.177], [2.29]]
     """
-    if not isinstance(a_known_ball(ball), RestitutionModel):
+    given = a_known_ball(ball)
+    if not isinstance(given, RestitutionModel):
         raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
     family = checked("n", n, FAMILY)
     lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     level = checked("tolerance", tolerance, TOLERANCE)
     rule = Release.of(chosen("release", release, [str(each) for each in LINEAR]))
     asked = _names(quantities)
-    grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
+    grid = Grid(n=family, amplitude=lam, tolerance=level, **given.parameters)
     found = _on_grid(grid, asked, rule)
     return Result.of(grid.unfold(found), "error_thresholds")
 

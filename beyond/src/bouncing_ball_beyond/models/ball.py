@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import is_array
-from bouncing_ball.errors import ParameterError, shortened
 
 
 class Ball:
@@ -106,53 +105,3 @@ def _fields_of(law: Any) -> dict[str, Any]:
         else:
             found[field.name] = value if np.ndim(value) else np.asarray(value).item()
     return found
-
-
-def a_ball(ball: Any) -> Ball:
-    """The first argument of a call, after a check of its type.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball.
-
-    Examples
-    --------
-    >>> a_ball(0.85)
-    Traceback (most recent call last):
-    bouncing_ball.errors.ParameterError: the ball = 0.85 is not a ball: it is not made by rigid, \
-spring_damper, contact_law, corrected or ContactModel(law)
-    """
-    if not isinstance(ball, Ball):
-        how = "rigid, spring_damper, contact_law, corrected or ContactModel(law)"
-        raise ParameterError(
-            f"the ball = {{}} is not a ball: it is not made by {how}", shortened(ball)
-        )
-    return ball
-
-
-def a_known_ball(ball: Any) -> Any:
-    """The first argument of a call that needs a model but has no speed.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball, or its model is not known without a speed.
-    """
-    if not a_ball(ball).is_known:
-        raise ParameterError("{duration} needs {speed}")
-    return ball
-
-
-def a_single_ball(ball: Any) -> Any:
-    """The first argument of a call that takes one ball, whose model must be known.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball, a parameter is an array, or the model is not known without a speed.
-    """
-    for name, value in a_ball(ball).parameters.items():
-        if is_array(value):
-            raise ParameterError(f"{{{name}}} must be a single number here")
-    return a_known_ball(ball)

@@ -24,10 +24,11 @@ from bouncing_ball.datasets.arguments import (
     is_array,
 )
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
-from bouncing_ball_beyond.models.ball import Ball, a_ball
+from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
+from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

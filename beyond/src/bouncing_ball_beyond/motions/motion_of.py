@@ -23,7 +23,8 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.errors import ParameterError, suggesting
 from bouncing_ball_beyond.drawing.result import Result
-from bouncing_ball_beyond.models.ball import Ball, a_single_ball
+from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.given_ball import a_single_ball
 from bouncing_ball_beyond.motions import grids
 from bouncing_ball_beyond.motions.destination import IMPACTS
 from bouncing_ball_beyond.motions.over_time import first_impacts

@@ -32,8 +32,9 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ModelError, require, suggesting
 from bouncing_ball.models.model import Status
-from bouncing_ball_beyond.models.ball import Ball, a_ball
+from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.flight import Flight, land, table
+from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.sequence import ImpactSequence
 
@@ -61,7 +62,7 @@ class FirstImpacts(NamedTuple):
     def model(self, ball: Ball, grid: Grid) -> Any:
         """The model of each ball, whose law may depend on the speed of its first impact."""
         speed = self.amplitude * np.cos(self.phase) - self.velocity
-        return ball.row(grid).at_speed(speed if grid.shape else float(speed[0]))
+        return a_ball(ball).row(grid).at_speed(speed if grid.shape else float(speed[0]))
 
 
 def first_impacts(

@@ -19,7 +19,8 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball_beyond.models.ball import Ball, a_ball
+from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
@@ -91,9 +92,10 @@ def branch(
     def found(one: Ball, n: int) -> xr.Dataset:
         return n_t_columns(_branch_of(one.at_limits(n), n, top, count))
 
-    grid = Grid(n=family, **a_ball(ball).parameters)
+    given = a_ball(ball)
+    grid = Grid(n=family, **given.parameters)
     require_memory(count * grid.size, "points", "points or branches")
-    whole = by_place(grid, ball, ("n",), found, partial(no_branch, count), joined)
+    whole = by_place(grid, given, ("n",), found, partial(no_branch, count), joined)
     data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude", impacts=1)
     if "n" in data.attrs:
         data = data.assign_attrs(periods=data.attrs["n"])

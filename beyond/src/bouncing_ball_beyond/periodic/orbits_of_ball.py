@@ -21,7 +21,8 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.periodic.orbit import Bifurcation, Side
-from bouncing_ball_beyond.models.ball import Ball, a_ball, a_known_ball, a_single_ball
+from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.given_ball import a_ball, a_known_ball, a_single_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
@@ -91,7 +92,8 @@ release='displacement')
     family = checked("n", n, FAMILY)
     lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     branch_side = Side(chosen("side", side, list(Side)))
-    if _is_grid(a_ball(ball), family, lam):
+    given = a_ball(ball)
+    if _is_grid(given, family, lam):
         # Imported here, because a single orbit needs no labels, and importing xarray takes longer
         # than computing the orbit.
         from bouncing_ball_beyond.periodic.places import dataset_of_places
@@ -101,8 +103,8 @@ release='displacement')
             return _observables(n_t.orbit(model, n, amplitude, branch_side))
 
         none = _observables(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan))
-        return dataset_of_places("orbit", ball, {"n": family, "amplitude": lam}, found, none)
-    model = ball.at_orbit(family, lam, branch_side)
+        return dataset_of_places("orbit", given, {"n": family, "amplitude": lam}, found, none)
+    model = given.at_orbit(family, lam, branch_side)
     return n_t.require_orbit(model, family, lam, branch_side)
 
 
@@ -180,11 +182,12 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
     'saddle-node'
     """
     family = checked("n", n, FAMILY)
-    if _is_grid(a_ball(ball), family):
+    given = a_ball(ball)
+    if _is_grid(given, family):
         from bouncing_ball_beyond.periodic.places import dataset_of_places
 
-        return dataset_of_places("limits", ball, {"n": family}, _both_limits)
-    model = ball.at_limits(family)
+        return dataset_of_places("limits", given, {"n": family}, _both_limits)
+    model = given.at_limits(family)
     fold = n_t.saddle_node(model, family)
     doubling = n_t.period_doubling(model, family)
     return TwoLimits(

@@ -1,0 +1,60 @@
+"""The article on what goes past the paper: its numbers, figures, formulas and works."""
+
+import re
+
+import pytest
+from article_checks import (
+    check_metadata,
+    literals,
+    mathematics,
+    moved,
+    statements_on_unread_works,
+    typed_numbers,
+    works_of,
+)
+from article_texts import TEMPLATES as SHARED
+from beyond_texts import ARTIFACTS, READ, REPORT
+from docutils.utils.math.latex2mathml import tex2mathml
+
+TEMPLATES = sorted(REPORT.glob("*.md.j2"))
+
+
+@pytest.fixture(scope="module")
+def article(beyond_accepted):
+    return beyond_accepted["article"]
+
+
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: path.name)
+def test_no_number_is_typed(template):
+    text = template.read_text(encoding="utf-8")
+    assert typed_numbers(text) == []
+    assert literals(text) == []
+
+
+def test_every_formula_can_be_typeset(article):
+    formulas = [part.strip("$") for part in mathematics(article)]
+    assert len(formulas) > 10
+    for formula in formulas:
+        assert tex2mathml(formula).startswith("<math"), formula
+
+
+def test_it_adds_its_works_to_those_of_the_replication(article):
+    cited, known = works_of(REPORT)
+    _, shared = works_of(SHARED)
+    assert known == cited - shared
+    assert statements_on_unread_works(article) == []
+
+
+def test_it_shows_all_figures_of_its_studies(article):
+    picture = r"^!\[[^]]*\]\((figures/\w+)\.png\)"
+    shown = re.findall(picture, article, re.MULTILINE)
+    drawn = [each.place for name in READ if name in ARTIFACTS and (each := ARTIFACTS[name]).drawing]
+    assert sorted(shown) == sorted(drawn)
+
+
+def test_it_has_a_file_with_its_title_keywords_and_abstract(article):
+    assert check_metadata(article, REPORT.parent / "metadata.yaml") <= 7
+
+
+def test_rounding_changes_no_text(beyond_record, beyond_texts, beyond_accepted):
+    assert moved(beyond_texts, beyond_record, beyond_accepted) == []

@@ -1,0 +1,52 @@
+# The article of what goes past the paper, from the results of its studies and the accepted verdicts
+# on the paper.
+
+PAPER = os.path.relpath(Path(ROOT, "workflow/report/paper"))
+TEMPLATES = os.path.relpath(Path(HOUSE, "report"))
+
+
+rule beyond_article:
+    message:
+        "Writing results/article.md"
+    input:
+        code=code(
+            f"{ROOT}/workflow/scripts/paper.py",
+            *sorted(map(str, Path(TEMPLATES).glob("*.md.j2"))),
+            f"{TEMPLATES}/references.yaml",
+            f"{PAPER}/macros.md.j2",
+            f"{PAPER}/front_matter.md.j2",
+            f"{PAPER}/references.yaml",
+            f"{PAPER}/numbered.csl",
+            "../figures/claims.nc",
+        ),
+        citation=os.path.relpath(Path(ROOT, "CITATION.cff")),
+        data=[
+            rules.ext_instant_study.output,
+            rules.ext_orders_study.output,
+            rules.ext_map_study.output,
+            rules.ext_laws_study.output,
+            rules.ext_release_study.output,
+            rules.ext_impact_study.output,
+            rules.ext_flights_study.output,
+            rules.ext_proofs_study.output,
+            rules.ext_verdicts_study.output,
+            "../figures/claims.nc",
+        ],
+        tables=[
+            rules.set_ext_orders.output.md,
+            rules.set_ext_laws.output.md,
+            rules.set_ext_proofs.output.md,
+            rules.set_ext_verdicts.output.md,
+        ],
+    output:
+        "results/article.md",
+    params:
+        templates=[f"{TEMPLATES}/article.md.j2"],
+        shared=PAPER,
+        artifacts=ARTIFACTS,
+    log:
+        "results/logs/article.log",
+    conda:
+        ENVIRONMENT
+    script:
+        f"{ROOT}/workflow/scripts/paper.py"

@@ -25,9 +25,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.pipeline.artifacts import CARRIERS
+from bouncing_ball.pipeline.artifacts import CARRIERS, files_in
 from bouncing_ball.pipeline.provenance import read_provenance
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,14 +35,10 @@ HANGING = 1200
 # A fresh clone: neither results nor the state of earlier runs.
 OTHERS = ".git .venv* results .snakemake *.egg-info .*_cache"
 IGNORED = shutil.ignore_patterns(*OTHERS.split())
-# The studies that take longest have the first so many entries of these lists only.
-SHORTER = {
-    ("ext_laws", "further"): 1,
-}
-TEXTS = ("paper.md", "supplement.md", "motions.md")
+TEXTS = ("paper.md", "supplement.md")
 # What a whole run leaves: its results, and what Snakemake has noted about them.
 MADE = (
-    *(f"results/{name}" for name in ("figures", "code", "logs", "tally.txt", *TEXTS)),
+    *(f"results/{name}" for name in ("figures", "code", "logs", *TEXTS)),
     *(f".snakemake/{name}" for name in ("metadata", "incomplete")),
 )
 
@@ -80,6 +75,18 @@ class Tree:
         (said,) = [line for line in done.stderr.splitlines() if not line.startswith(own)]
         return said
 
+    def python_says(self, program: str, *arguments: str) -> str:
+        """What a program of Python prints in this tree."""
+        done = subprocess.run(
+            [sys.executable, "-c", program, *arguments],
+            cwd=self.path,
+            env=self.environment(),
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return done.stdout.strip()
+
     def environment(self) -> dict[str, str]:
         return os.environ | {"PYTHONPATH": str(self.path / self.package)}
 
@@ -107,12 +114,10 @@ class Tree:
         return self.git("rev-parse", "HEAD")
 
     def planned(self, *arguments: str) -> set[str]:
-        """Messages of the jobs that a run would execute, up to a colon, except that of the last
-        job.
-        """
+        """The rules whose jobs a run would execute, except that of everything."""
         done = self.run("--cores", "1", "--dry-run", *arguments)
-        jobs = set(re.findall(r"^Job \d+: ([^:\n]*)", done.stdout + done.stderr, re.MULTILINE))
-        return jobs - {"All figures, tables and the paper are up to date"}
+        jobs = re.findall(r"^(\w+) +1$", done.stdout + done.stderr, re.MULTILINE)
+        return {*jobs} - {"all"}
 
     def planned_files(self, *arguments: str) -> list[str]:
         """The files under results/figures that a run would make."""
@@ -240,26 +245,8 @@ def made_once(target: Path, make: Callable[[Path], None], python: str) -> Tree:
     return Tree(target, python)
 
 
-def fewer(section: str, key: str, number: int) -> str:
-    """A section of the configuration with this number, or the first entries of this list."""
-    in_one_line = rf"\b({key}: \[[^],]*(?:,[^],]*){{{number - 1}}})[^]]*"
-    of_lines = rf"\b({key}:\n(?: +- .*\n){{{number}}})(?: +- .*(?:\n|$))*"
-    found = re.sub(rf"\b({key}: )\d+", rf"\g<1>{number}", section)
-    found = re.sub(in_one_line, r"\1", found)
-    found = re.sub(of_lines, r"\1", found)
-    assert found != section, f"{key} is no number and no list"
-    return found
-
-
-def shorten(tree: Tree, coarse: dict) -> None:
+def shorten(tree: Tree) -> None:
     """Let a run of this tree take less time."""
-    config = tree.path / "config" / "config.yaml"
-    text = config.read_text(encoding="utf-8")
-    for (name, key), number in (coarse | SHORTER).items():
-        start = text.index(f"  {name}:")
-        end = text.index("\n\n", start)
-        text = text[:start] + fewer(text[start:end], key, number) + text[end:]
-    config.write_text(text, encoding="utf-8")
     # Who looks at pictures looks at those of `make`.
     settings = "src/bouncing_ball/drawing/style.mplstyle"
     tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
@@ -272,8 +259,7 @@ def made_by_this_commit() -> bool:
     Whether they are up to date is left to Snakemake.
     """
     checkout = Tree(ROOT)
-    made = {file for each in ARTIFACTS.values() for file in each.files}
-    made |= {f"results/{text}" for text in TEXTS}
+    made = {f"results/{file}" for file in files_in(ROOT)}
     if not all((checkout.path / file).exists() for file in made | {".git", ".snakemake"}):
         return False
     if checkout.git("status", "--porcelain"):
@@ -290,7 +276,7 @@ def made_by_this_commit() -> bool:
 
 
 @pytest.fixture(scope="session")
-def cloned(shared, warm, coarse) -> Tree:
+def cloned(shared, warm) -> Tree:
     """A fresh clone with one commit: that of the checkout if all of its results are of this
     commit, and otherwise one of a repository of its own in which runs are shorter.
     """
@@ -305,7 +291,7 @@ def cloned(shared, warm, coarse) -> Tree:
             tree.git("reset", "--quiet")
             assert tree.git("status", "--porcelain") == ""
         else:
-            shorten(tree, coarse)
+            shorten(tree)
             tree.git("init", "--quiet")
             tree.commit("All")
         # Once, and not by every process of every copy; what is compiled already stays.
@@ -316,10 +302,7 @@ def cloned(shared, warm, coarse) -> Tree:
 
 @pytest.fixture(scope="session")
 def pristine(shared, cloned) -> Tree:
-    """A complete run. Tests must not change it, nor run in it: other workers copy it.
-
-    What its last call of Snakemake said is in ``said.txt``.
-    """
+    """A complete run. Tests must not change it, nor run in it: other workers copy it."""
 
     def make(folder: Path) -> None:
         tree = copy_tree(cloned, folder)
@@ -330,8 +313,7 @@ def pristine(shared, cloned) -> Tree:
                 if (ROOT / name).exists():
                     (folder / name).parent.mkdir(exist_ok=True)
                     subprocess.run(["cp", "-pPR", ROOT / name, folder / name], check=True)
-        said = tree.run("--cores", "2").stdout
-        (shared / "said.txt").write_text(said, encoding="utf-8")
+        tree.run("--cores", "2")
 
     return made_once(shared / "pristine", make, cloned.python)
 

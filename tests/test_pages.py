@@ -1,24 +1,29 @@
-"""Every file and module that a page names exists, and everything that a docstring refers to."""
+"""Every file, module and command that a page names exists, its examples run, and docstrings refer
+to what there is.
+"""
 
-import builtins
+import doctest
 import re
 from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 
+import matplotlib.pyplot as plt
 import pytest
-from declared_artifacts import ARTIFACTS
+from page_checks import every_module_exists, lost_references
 from readme import pages
 
+import bouncing_ball
+from bouncing_ball.cli.commands import COMMANDS
+from bouncing_ball.cli.houses import how_to_install
+
 ROOT = Path(__file__).parents[1]
-LISTS = [ROOT / "figures" / "README.md", ROOT / "figures" / "beyond" / "README.md"]
-PAGES = [*ROOT.glob("*.md"), ROOT / "config" / "README.md", *LISTS, *(ROOT / "docs").glob("*.md")]
+LIST = ROOT / "figures" / "README.md"
+DOCS = sorted((ROOT / "docs").glob("*.md"))
+PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "config" / "README.md", LIST, *DOCS]
 # The changelog tells of files that are gone; the article is made and has tests of its own.
 MADE_TEXTS = ("paper.md", "supplement.md")
 PAGES = [page for page in PAGES if page.name not in ("CHANGELOG.md", *MADE_TEXTS)]
-FOLDERS = "src|tests|docs|config|workflow|figures|profiles"
+FOLDERS = "src|tests|docs|config|workflow|figures|profiles|beyond|contacts"
 PATH = re.compile(rf"(?<![\w/.-])(?:{FOLDERS})/[\w./-]*\w")
 MODULE = re.compile(r"\bbouncing_ball(?:\.\w+)+")
 LINK = re.compile(r"\]\(([^):\s#]+)[^):\s]*\)")
@@ -26,10 +31,14 @@ LINK = re.compile(r"\]\(([^):\s#]+)[^):\s]*\)")
 # is made and not in git.
 MADE = re.compile("heights|height_levels|schema.json")
 
+every_page = pytest.mark.parametrize(
+    "page", PAGES, ids=lambda page: f"{page.parent.name}/{page.name}"
+)
 
-def test_the_generated_parts_of_readme_and_the_lists_of_figures_follow_the_record():
+
+def test_the_generated_parts_of_readme_and_the_list_of_figures_follow_the_record():
     # Otherwise `make readme` writes them.
-    for path, text in pages(ROOT, ARTIFACTS).items():
+    for path, text in pages(ROOT).items():
         assert (ROOT / path).read_text(encoding="utf-8") == text, path
 
 
@@ -38,14 +47,12 @@ def test_readme_shows_the_sixteen_figures_in_their_order():
     assert shown == [f"{number:02}" for number in range(1, 17)]
 
 
-def test_every_accepted_file_is_in_the_list_of_its_folder():
-    for page in LISTS:
-        linked = {page.parent / path for path in LINK.findall(page.read_text("utf-8"))}
-        beside = {path for path in page.parent.iterdir() if path.is_file()} - {page}
-        assert beside <= linked
+def test_every_accepted_file_is_in_the_list():
+    linked = {LIST.parent / path for path in LINK.findall(LIST.read_text("utf-8"))}
+    assert {path for path in LIST.parent.iterdir() if path.is_file()} - {LIST} <= linked
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@every_page
 def test_every_file_that_a_page_names_exists(page):
     text = page.read_text(encoding="utf-8")
     named = {ROOT / path for path in PATH.findall(text)}
@@ -54,68 +61,47 @@ def test_every_file_that_a_page_names_exists(page):
     assert missing == []
 
 
+@every_page
+def test_every_command_that_a_page_shows_is_one(page):
+    shown = re.findall(r"bouncing-ball ([a-z][\w-]*)", page.read_text(encoding="utf-8"))
+    assert [name for name in shown if name not in COMMANDS and not how_to_install(name)] == []
+
+
+# The lesson draws pictures, and has a test of them.
+@pytest.mark.parametrize(
+    "page", [page for page in DOCS if page.name != "lesson.md"], ids=lambda page: page.name
+)
+def test_the_examples_of_a_page_run(page, monkeypatch):
+    monkeypatch.chdir(page.parent)
+    plt.switch_backend("agg")
+    try:
+        found = doctest.testfile(str(page), module_relative=False)
+    finally:
+        plt.close("all")
+    shown = re.findall("^>>> ", page.read_text(encoding="utf-8"), re.M)
+    assert (found.failed, found.attempted) == (0, len(shown))
+
+
 @cache
 def files_of_code():
     """The paths of all modules, scripts and rules, a line each."""
-    folders = (ROOT / name for name in ("src", "tests", "workflow", "docs"))
+    folders = (ROOT / name for name in ("src", "tests", "workflow", "docs", "beyond", "contacts"))
     files = [path for folder in folders for path in folder.rglob("*.[ps][ym]*")]
     return "\n".join(f"/{path.relative_to(ROOT).as_posix()}" for path in files)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@every_page
 def test_every_short_name_of_a_file_that_a_page_has_exists(page):
     named = re.findall(r"`([\w/]+\.(?:py|smk))`", page.read_text(encoding="utf-8"))
     missing = [name for name in named if not re.search(rf"/{name}$", files_of_code(), re.M)]
     assert [name for name in missing if not MADE.search(name)] == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@every_page
 def test_every_module_that_a_page_names_exists(page):
-    for name in MODULE.findall(page.read_text(encoding="utf-8")):
-        # The longest part that is a module has the rest as an attribute.
-        *parts, last = name.split(".")
-        module = ".".join(parts)
-        assert find_spec(module) is not None, name
-        assert hasattr(import_module(module), last) or find_spec(name) is not None, name
-
-
-SOURCE = ROOT / "src" / "bouncing_ball"
-ROLE = re.compile(r":(?:mod|func|class|meth|data|attr|exc):`(?:[^`<]*<)?[~.]*([\w.\s]+)>?`")
-OTHERS = ("numpy.", "scipy.", "xarray.", "matplotlib.", "pydantic.")
-
-
-def dotted(path):
-    name = ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
-    return name.removesuffix(".__init__")
-
-
-@cache
-def known_names():
-    """Names of all modules, of what they define, and of the attributes of their classes."""
-    names = set()
-    for path in SOURCE.rglob("*.py"):
-        module = import_module(dotted(path))
-        names.add(module.__name__)
-        # Public functions are loaded when they are first used: dir names more than vars.
-        for name in {*dir(module), *vars(module)}:
-            value = vars(module).get(name)
-            if isinstance(value, ModuleType):
-                continue
-            names.add(f"{module.__name__}.{name}")
-            if isinstance(value, type):
-                attributes = {*dir(value), *getattr(value, "__annotations__", {})}
-                names |= {f"{module.__name__}.{name}.{each}" for each in attributes}
-    return names
+    every_module_exists(page, MODULE, but=MADE)
 
 
 @pytest.mark.slow
 def test_everything_that_a_docstring_refers_to_exists():
-    ends = {name.split(".", k)[-1] for name in known_names() for k in range(name.count(".") + 1)}
-    lost = []
-    for path in SOURCE.rglob("*.py"):
-        for name in ROLE.findall(path.read_text(encoding="utf-8")):
-            whole = name.startswith("bouncing_ball")
-            elsewhere = name.startswith(OTHERS) or hasattr(builtins, name)
-            if not elsewhere and name not in (known_names() if whole else ends):
-                lost.append((str(path.relative_to(SOURCE)), name))
-    assert lost == []
+    assert lost_references(bouncing_ball) == []

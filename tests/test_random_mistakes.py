@@ -1,143 +1,53 @@
 """Mistakes drawn at random from what the package declares.
 
-These are the ranges and choices of options and arguments, the units of quantities, and the types of
-the configuration.
+These are the ranges and choices of options and arguments, and the types of the configuration.
 
 Each is refused with one line, which names what is wrong and says what is allowed. How each way of
 refusing words it is tested where this way is defined.
 """
 
-import argparse
 import copy
-import inspect
 import math
-import shlex
 import string
 import typing
 from pathlib import Path
 
-import numpy as np
 import pytest
-from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.quantities import quantities
-from bouncing_ball.contacts.question import EngineSetup, Question
-from bouncing_ball.contacts.table import Table
-from bouncing_ball.models.makers import LOSSES
-from declared_arguments import arguments
-from declared_artifacts import ARTIFACTS
+from declared_arguments import arguments_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from whole_configuration import configuration_type
+from random_mistakes import (
+    UNKNOWN,
+    WORDS,
+    given_arguments,
+    refuses_a_wrong_argument,
+    refuses_a_wrong_option,
+    refuses_an_unknown_option,
+    typed_options,
+)
 
 import bouncing_ball as bb
-from bouncing_ball.cli.answers import parser
 from bouncing_ball.cli.commands import COMMANDS
-from bouncing_ball.errors import ModelError, Range
+from bouncing_ball.models.model import Model
+from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration import check_parameters, place
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
 ROOT = Path(__file__).parents[1]
-NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
-# Words that begin no number, no name and no choice.
-WORDS = st.text("qxyz#_ ", min_size=1, max_size=30).filter(str.strip)
-
-
-def is_float(value: object) -> bool:
-    return isinstance(value, float)
-
-
-def outside(allowed: Range) -> st.SearchStrategy:
-    """Numbers outside a range, often just beyond its ends."""
-    low = allowed.low
-    high = allowed.high
-    ends = [math.nextafter(low, -math.inf), math.nextafter(high, math.inf)]
-    if allowed.ends[0] == "(":
-        ends.append(low)
-    if allowed.ends[1] == ")":
-        ends.append(high)
-    if allowed.whole:
-        ends.append(low + 0.5)
-    return st.sampled_from(ends) | NUMBERS.filter(lambda value: value not in allowed)
-
 
 # The command line.
 
-
-def options(command: str) -> dict[str, argparse.Action]:
-    """The options of a command that take a number in a range, or one of several names."""
-    (commands,) = parser([command])._subparsers._group_actions
-    found = commands.choices[command]._option_string_actions
-    return {k: each for k, each in found.items() if each.choices or range_of(each)}
-
-
-def range_of(action: argparse.Action) -> Range | None:
-    """The range that the parser of a number holds."""
-    if not inspect.isfunction(action.type):
-        return None
-    return inspect.getclosurevars(action.type).nonlocals.get("allowed")
-
-
-TYPED = [
-    (about.examples[0], name, action)
-    for command, about in COMMANDS.items()
-    for name, action in options(command).items()
-]
+TYPED = typed_options(COMMANDS)
 
 
 @given(st.data(), st.sampled_from(TYPED))
 def test_a_wrong_option_is_refused(refused, data, case):
-    example, name, action = case
-    allowed = range_of(action)
-    wrong = WORDS if allowed is None else WORDS | outside(allowed).map(repr)
-    if action.nargs == 2:
-        more = [name, "1", data.draw(wrong.filter(lambda text: not text.startswith("-")))]
-    else:
-        # After a sign of equality any text is a value, even if it begins with a dash.
-        more = [f"{name}={data.draw(wrong)}"]
-    words = shlex.split(example) + more
-    status, line = refused(*words)
-    assert status == 2 and line.startswith(f"bouncing-ball: argument {name}: ")
-    assert all(choice in line for choice in action.choices or [str(allowed)]), line
+    refuses_a_wrong_option(refused, data.draw, case)
 
 
-@given(st.sampled_from(sorted(COMMANDS)), st.text("qxyz", min_size=1, max_size=12))
+@given(st.sampled_from(sorted(COMMANDS)), UNKNOWN)
 def test_an_unknown_option_is_refused(refused, command, word):
-    status, line = refused(*shlex.split(COMMANDS[command].examples[0]), f"--{word}=1")
-    assert status == 2 and f"unrecognized arguments: --{word}=1" in line
-
-
-# Quantities with units.
-
-MEASURED = [
-    (kind, name, quantity)
-    for kind in (Contact, Table, Question, EngineSetup)
-    for name, quantity in quantities(kind).items()
-]
-
-
-def example_of_another_unit(unit: str) -> st.SearchStrategy:
-    """Quantities in units that are not those of a parameter, by any meaning of g and of a turn."""
-    same = next((pair for pair in ({"Hz", "rad/s"}, {"kg", "m/s^2"}) if unit in pair), {unit})
-    return st.sampled_from([x.example for *_, x in MEASURED if x.name and x.name not in same])
-
-
-@given(st.data(), st.sampled_from(MEASURED))
-def test_a_wrong_quantity_is_refused(refusal, data, case):
-    kind, name, quantity = case
-    number = outside(quantity.allowed).filter(lambda x: abs(x) < 1e300)
-    wrong = data.draw(number | WORDS | example_of_another_unit(quantity.name))
-    engine = {"engine": "mujoco"} if kind is EngineSetup else {}
-    if isinstance(wrong, str):
-        with refusal(ModelError, name, "write it as", quantity.example):
-            kind(**engine, **{name: wrong})
-    else:
-        said = "not a finite number" if math.isnan(wrong) else f"is not {quantity.allowed}"
-        if wrong <= 0 < quantity.allowed.low:
-            said = "is not a positive number"
-        if wrong < 0 == quantity.allowed.low:
-            said = "is negative"
-        with refusal(ModelError, name, said):
-            kind(**engine, **{name: wrong})
+    refuses_an_unknown_option(refused, COMMANDS[command].examples[0], word)
 
 
 # Arguments of public functions.
@@ -145,58 +55,30 @@ def test_a_wrong_quantity_is_refused(refusal, data, case):
 BALL = bb.rigid(restitution=0.85)
 CALLS = {
     "rigid": {}, "spring_damper": {"restitution": 0.85, "frequency_ratio": 10.0},
-    "contact_law": {"law": "tsuji", "restitution": 0.85, "duration": 0.1},
     "simulate": {"ball": BALL, "amplitude": 1.0}, "history": {"ball": BALL, "amplitude": 1.0},
     "drop": {"ball": BALL, "height": 1.0}, "orbit": {"ball": BALL, "amplitude": 1.0},
     "orbits": {"ball": BALL, "amplitude": 1.0}, "limits": {"ball": BALL},
     "branch": {"ball": BALL}, "error_thresholds": {"ball": BALL, "amplitude": 1.0},
-    "motion_of": {"ball": BALL, "amplitude": 1.0},
-    "lyapunov_exponent": {"ball": BALL, "amplitude": 1.0},
-    "orbit_diagram": {"ball": BALL, "amplitude": [0.9, 1.0]},
-    "basins": {"ball": BALL, "amplitude": 1.0},
-    "orbit_of_motion": {"ball": BALL, "amplitude": 1.0},
 }  # fmt: skip
 """Arguments of calls that are right."""
 
 
-GIVEN = [
-    (call, name, allowed)
-    for call in CALLS
-    for name, allowed in arguments(call).items()
-    # A release is for the parameters of one law only.
-    if (call, name) != ("contact_law", "release")
-]
+GIVEN = given_arguments(arguments_of(bb, Model), CALLS)
 
 
 @given(st.data(), st.sampled_from(GIVEN))
-def test_a_wrong_argument_is_refused(refusal, data, case):
-    call, name, allowed = case
-    right = {k: v for k, v in CALLS[call].items() if not {k, name} <= set(LOSSES)}
-    if isinstance(allowed, Range):
-        number = outside(allowed)
-        odd = st.sampled_from([True, "1", b"1", 1j, {}, object()])
-        several = st.lists(number, min_size=1, max_size=3)
-        array = st.lists(outside(allowed).filter(is_float), min_size=1, max_size=3).map(np.array)
-        wrong = data.draw(number | WORDS | odd | several | array)
-        said = "must be a single number", f"is not {allowed}"
-    else:
-        wrong = data.draw(WORDS | NUMBERS | st.just(True))
-        said = (f"is not one of {', '.join(allowed)}",)
-    with pytest.raises(ModelError) as error:
-        getattr(bb, call)(**right | {name: wrong})
-    line = str(error.value)
-    assert "\n" not in line and line.startswith(name) and any(x in line for x in said), line
+def test_a_wrong_argument_is_refused(data, case):
+    refuses_a_wrong_argument(data.draw, bb, CALLS, case)
 
 
 def test_the_declarations_are_found():
-    assert len(TYPED) > 60 and len(MEASURED) > 20 and len(GIVEN) > 40
+    assert len(TYPED) > 30 and len(GIVEN) > 25
     assert {call for call, *_ in GIVEN} == CALLS.keys()
 
 
 # The configuration.
 
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
-STUDIES = configuration_type(ARTIFACTS.values())
 # The whole configuration is checked each time, with a search for the orbits that are new.
 FEW = settings(max_examples=15)
 
@@ -223,7 +105,7 @@ def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
         section = section[key]
     section[path[-1]] = wrong
     with refusal(ConfigurationError, place(path), " must "):
-        check_parameters(STUDIES, config)
+        check_parameters(Configuration, config)
 
 
 @given(
@@ -240,7 +122,7 @@ def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
     known = list(section)
     section[word] = section.pop(path[-1])
     with pytest.raises(ConfigurationError) as error:
-        check_parameters(STUDIES, config)
+        check_parameters(Configuration, config)
     # The key that has another name now is missing.
     unknown, *missing = str(error.value).splitlines()
     assert unknown.startswith(f"unknown key {place((*path[:-1], word))} = ")

@@ -5,10 +5,8 @@ import json
 from pathlib import Path
 
 import pytest
-from adapter import function
-from declared_artifacts import ARTIFACTS
-from whole_configuration import configuration_type
 
+from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration import check_configuration, check_parameters
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
@@ -22,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("searched_once")
 
 @pytest.fixture(scope="module")
 def model():
-    return configuration_type(ARTIFACTS.values())
+    return Configuration
 
 
 def changed(keys, value):
@@ -43,7 +41,6 @@ def test_the_shipped_configuration_is_accepted(model):
 
 FIG05 = ("paper", "fig05")
 FIG08 = ("paper", "fig08")
-ENGINES = ("beyond", "ext_engines")
 SPAN = (*FIG05, "frequency_ratio")
 
 
@@ -61,9 +58,9 @@ SPAN = (*FIG05, "frequency_ratio")
         (FIG08, 3, "paper.fig08 = 3 must be a mapping of the keys n, restitution, "),
         (("paper", "fig2"), 1, "unknown key paper.fig2 = 1, did you mean fig"),
         (("paper",), 3, "paper = 3 must be a mapping"),
-        (("beyond",), REMOVED, "missing section beyond"),
-        # An artifact of the other set of studies.
-        (("beyond", "fig08"), {}, "unknown key beyond.fig08 = {}. Allowed here: "),
+        (("paper",), REMOVED, "missing section paper"),
+        # An artifact of another house.
+        (("paper", "ext_map"), {}, "unknown key paper.ext_map = {}"),
         (("paper", "fig11"), 3, "frequency_ratio (The threshold of permanent contact of one"),
         ((*FIG08, "frequency_ratio", 1), 0.09, "frequency_ratio[1] = 0.09 must be at least 0.1"),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
@@ -79,26 +76,15 @@ SPAN = (*FIG05, "frequency_ratio")
         # What fits together.
         ((*SPAN, "max"), 1.0, "fig05.frequency_ratio: min = 1 must be less than max = 1"),
         (("continuation", "largest_step"), 0.01, "continuation.largest_step = 0.01 must be at lea"),
-        (
-            ("beyond", "ext_map", "restitution", "max"),
-            0.05,
-            "restitution: min = 0.05 must be less than max",
-        ),
         # What the physics forbids.
         ((*FIG05, "cases", 3, "amplitude"), 2.57, "must be at least 2.57039, the saddle-node of"),
         ((*FIG05, "cases", 3, "amplitude"), 2.5704, ""),
-        # What the physics engines ran.
-        ((*ENGINES, "restitution"), 0.7, "restitution = 0.7 must be 0.65 or 0.85, those of"),
-        ((*ENGINES, "n"), 3, "beyond.ext_engines.n = 3 must be 1 or 2, those of the orbits that"),
-        ((*ENGINES, "restitution"), 0.85, ""),
         (("paper", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
         (("paper", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
         ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),
         # Of several families the highest decides how far branches must reach.
         (("paper", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
         (("paper", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
-        # A name that the package does not know.
-        (("beyond", "ext_measured", "experiments"), ["croqet"], "'croqet' must be one of "),
     ],
 )
 def test_a_mistake_is_named_in_one_line(model, keys, value, message):
@@ -112,25 +98,13 @@ def test_a_mistake_is_named_in_one_line(model, keys, value, message):
     assert bool(message) == bool(said), said
 
 
-@pytest.mark.parametrize(
-    ("module", "study"),
-    [
-        ("paper.exhibits.nothing", "here"),
-        ("paper.exhibits.continuation_of_orbits", "nothing"),
-    ],
-)
-def test_a_study_that_does_not_exist_is_named_in_one_line(refusal, module, study):
-    with refusal(ConfigurationError, f"{module}.{study}", "nothing"):
-        function(module, study)
-
-
 def test_all_mistakes_are_in_one_answer(model):
     config = copy.deepcopy(CONFIG)
     config["paper"]["fig08"]["n"] = 0
     config["paper"]["fig05"]["frequency_ratio"]["min"] = -1.0
     config["paper"]["fig14"]["toleranc"] = config["paper"]["fig14"].pop("tolerance")
     del config["paper"]["table1"]["restitution"]
-    del config["beyond"]
+    del config["continuation"]
     with pytest.raises(ConfigurationError) as error:
         check_parameters(model, config)
     lines = error.value.mistakes
@@ -140,7 +114,7 @@ def test_all_mistakes_are_in_one_answer(model):
         "paper.fig08.n = 0 must be at least 1",
         "paper.fig05.frequency_ratio.min = -1.0 must be at least",
         "missing key paper.table1.restitution",
-        "missing section beyond",
+        "missing section continuation",
     ):
         assert sum(line.startswith(said) for line in lines) == 1
 

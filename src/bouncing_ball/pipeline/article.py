@@ -1,4 +1,4 @@
-"""The article and its supplement: from datasets and templates to Markdown and PDF.
+"""Articles: from datasets and templates to Markdown and PDF.
 
 A template takes every number from a dataset and prints it by one of the functions in
 :data:`FORMATS`. Then headings, figures and tables get their numbers, and pandoc (part of
@@ -19,8 +19,8 @@ import pypandoc
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from bouncing_ball.datasets.artifact import Artifact
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifacts import Artifact
 
 # Numbers.
 
@@ -85,8 +85,12 @@ def percent_at_most(share: float, digits: int) -> str:
     --------
     >>> rounded_percent(0.00345, 1), percent_at_most(0.00345, 1), percent_at_most(0.03, 2)
     ('0.3 %', '0.4 %', '3 %')
+    >>> percent_at_most(float("nan"), 2)
+    '– %'
     """
     value = 100 * abs(float(share))
+    if math.isnan(value):
+        return rounded_percent(value)
     step = 10.0 ** (math.floor(math.log10(value)) - digits + 1) if value else 1.0
     # A share that has so few digits itself is not raised by its rounding error.
     return f"{short(step * math.ceil(value / step * (1 - 1e-9)), digits)} %"
@@ -222,11 +226,11 @@ def pandoc(text: str, reader: str, writer: str, *options: str) -> str:
         raise ModelError(f"pandoc: {' '.join(str(error).split())}") from None
 
 
-def with_citations(markdown: str, folder: str | Path) -> str:
+def with_citations(markdown: str, *folders: str | Path) -> str:
     """The text with numbers in place of ``[@key; ...]``, and with the list of works at ``#refs``.
 
-    Pandoc makes both from ``references.yaml`` and ``numbered.csl`` in the folder; the rest of the
-    text is unchanged.
+    Pandoc makes both from the ``references.yaml`` of all folders and the ``numbered.csl`` of the
+    last one; the rest of the text is unchanged.
 
     Raises
     ------
@@ -238,8 +242,8 @@ def with_citations(markdown: str, folder: str | Path) -> str:
         return markdown
     options = [
         "--citeproc",
-        f"--bibliography={folder}/references.yaml",
-        f"--csl={folder}/numbered.csl",
+        *(f"--bibliography={folder}/references.yaml" for folder in folders),
+        f"--csl={folders[-1]}/numbered.csl",
     ]
     bare = "\n\n".join([*citations, _LIST])
     paragraphs = pandoc(bare, "markdown-smart", "plain", *options).strip().split("\n\n")
@@ -295,13 +299,15 @@ def render_article(
     *,
     about: Mapping[str, Any] | None = None,
     sections: Mapping[str, str] | None = None,
+    shared: str | Path | None = None,
 ) -> str:
     """The text of a template with numbered sections, figures, tables and citations.
 
-    Each sentence has a line. A template may include other templates of its folder. Templates can
-    use ``data``, ``tables`` and ``artifacts`` by name, ``claims``, the functions in
-    :data:`FORMATS`, and with ``about`` what CITATION.cff says: authors, version, address. Citations
-    have the syntax of pandoc, ``[@key]``; ``sections`` is that of :func:`numbered`.
+    Each sentence has a line. A template may include other templates of its folder, or of the folder
+    ``shared``, whose references it can cite. Templates can use ``data``, ``tables`` and
+    ``artifacts`` by name, ``claims``, the functions in :data:`FORMATS`, and with ``about`` what
+    CITATION.cff says: authors, version, address. Citations have the syntax of pandoc, ``[@key]``;
+    ``sections`` is that of :func:`numbered`.
 
     Raises
     ------
@@ -310,9 +316,9 @@ def render_article(
     KeyError, jinja2.UndefinedError
         If a template uses any other name that does not exist.
     """
-    folder = Path(template).parent
+    folders = [Path(template).parent, *([Path(shared)] if shared else [])]
     environment = Environment(
-        loader=FileSystemLoader(folder),
+        loader=FileSystemLoader(folders),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -324,7 +330,7 @@ def render_article(
     environment.globals.update(FORMATS, **known)
     text = environment.get_template(Path(template).name).render()
     with_formulas = by_sentence(numbered(text, sections)).replace("Λ_SD", r"$\Lambda_{SD}$")
-    return with_citations(with_formulas, folder)
+    return with_citations(with_formulas, *folders)
 
 
 # The PDF.

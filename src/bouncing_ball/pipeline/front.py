@@ -4,11 +4,10 @@ README holds its generated parts between comments; the rest of it is written by 
 read from the accepted datasets, so that ``make readme`` follows ``make accept``.
 """
 
-import os
 from collections.abc import Iterable, Mapping
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
-from bouncing_ball.pipeline.artifacts import Artifact, folder_of
+from bouncing_ball.datasets.artifact import Artifact
 
 KINDS = {
     ".nc": "dataset",
@@ -46,32 +45,13 @@ def with_parts(page: str, parts: Mapping[str, str]) -> str:
     return page
 
 
-def links(artifact: Artifact) -> str:
-    """Links to the accepted files of an artifact, from the page of its folder."""
-    folder = PurePosixPath(artifact.place).parent
-    paths = [file.removeprefix("results/") for file in artifact.files]
-    if artifact.accepted:
-        paths = [artifact.accepted, *paths]
+def links(folder: Path, artifact: Artifact) -> str:
+    """Links to the accepted files of an artifact, from the page of their folder."""
     return ", ".join(
-        f"[{KINDS[Path(path).suffix]}]({os.path.relpath(path, folder)})" for path in paths
+        f"[{kind}]({artifact.name}{suffix})"
+        for suffix, kind in KINDS.items()
+        if (folder / f"{artifact.name}{suffix}").exists()
     )
-
-
-def page_of(part: str) -> str:
-    """The path of the page that lists the artifacts of the paper, or those beyond it.
-
-    Examples
-    --------
-    >>> page_of("paper"), page_of("beyond")
-    ('figures/README.md', 'figures/beyond/README.md')
-    """
-    return f"{folder_of(part)}/README.md"
-
-
-def _by_number(artifact: Artifact) -> tuple[bool, str]:
-    """The order of a list: the figures of the paper by their numbers, then the rest as declared."""
-    is_figure = artifact.name.startswith("fig")
-    return not is_figure, artifact.name if is_figure else ""
 
 
 _IN_A_ROW = 4
@@ -79,8 +59,7 @@ _IN_A_ROW = 4
 
 def thumbnails(artifacts: Iterable[Artifact]) -> str:
     """A table of small pictures with their names below; a forge links each to the whole."""
-    drawn = (each for each in artifacts if each.part == "paper" and each.drawing)
-    shown = sorted(drawn, key=_by_number)
+    shown = [each for each in artifacts if each.name.startswith("fig")]
     names = [each.name.replace("fig", "Fig. ").replace(". 0", ". ") for each in shown]
     pictures = [f'<img src="{each.place}.png" alt="{each.title}" width="200">' for each in shown]
     lines = []
@@ -91,22 +70,6 @@ def thumbnails(artifacts: Iterable[Artifact]) -> str:
     return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
-_ABOUT = {
-    "paper": """\
-# The figures and tables of the paper
-
-The accepted results of the replication. Each figure, table and check has a dataset (netCDF), its
-picture (PNG and SVG) and its table (Markdown and CSV); two figures are schematics without data.
-What goes past the paper is in [beyond](beyond/README.md).
-""",
-    "beyond": """\
-# Beyond the paper
-
-The accepted results of the studies that go past [the paper](../README.md), in the same form.
-Datasets that take longer to compute than a run should are in `config/`.
-[The explorer](explorer.html) is a page to open from a clone in a browser.
-""",
-}
 _HOW = """\
 The name of a file is that of its target: `snakemake --cores 2 {name}` makes the files anew in
 `results/`, and `bouncing-ball explain FILE` prints from which commit, parameters and versions a
@@ -117,9 +80,8 @@ file was made.
 """
 
 
-def folder_page(part: str, artifacts: Iterable[Artifact]) -> str:
-    """The page of ``figures/``, or of ``figures/beyond/``: a line for each artifact."""
-    here = [each for each in artifacts if page_of(each.part) == page_of(part) and each.files]
-    shown = sorted(here, key=_by_number)
-    rows = [f"| `{each.name}` | {each.title} | {links(each)} |\n" for each in shown]
-    return f"{_ABOUT[part]}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"
+def folder_page(about: str, folder: Path, artifacts: Iterable[Artifact]) -> str:
+    """The page of the accepted files of a house: what they are, and a line for each artifact."""
+    shown = list(artifacts)
+    rows = [f"| `{each.name}` | {each.title} | {links(folder, each)} |\n" for each in shown]
+    return f"{about}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"

@@ -27,19 +27,12 @@ from bouncing_ball.pipeline.artifacts import (
 )
 from bouncing_ball.pipeline.diff.causes import causes, suspects, touched_files
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
-from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole, worst
+from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
 from bouncing_ball.pipeline.diff.pictures import compare_drawings, compare_pixels
 from bouncing_ball.pipeline.diff.texts import compare_texts, words_of
 from bouncing_ball.pipeline.provenance import provenance_in
-from bouncing_ball.pipeline.sources import code_of_note
+from bouncing_ball.pipeline.sources import parts_of_note
 
-_CAUSES = {
-    Outcome.STALE: "made by older code than that of the working tree",
-    Outcome.MISSING: "a file is missing",
-    Outcome.EXTRA: "a file is not in the record",
-    Outcome.NOT_MADE: "not made",
-    Outcome.UNREADABLE: "a file could not be compared",
-}
 # Without a cause, by the first file that differs.
 _KINDS = {DATASET: "numbers moved", **dict.fromkeys(PICTURES, "the picture changed")}
 
@@ -59,7 +52,9 @@ class _Comparison:
         files |= {file for file in not_made if PurePosixPath(file).parts[0] in (FIGURES, file)}
         for folder in self.folders:
             found = files_in(folder)
-            if not found and not not_made:
+            # The record of a new house is empty.
+            is_empty = not found and (folder == new or not folder.is_dir())
+            if is_empty and not not_made:
                 raise ModelError(f"nothing to compare in {folder}: neither figures/ nor a text")
             files |= found
         self.artifacts = by_artifact(files)
@@ -89,7 +84,8 @@ class _Comparison:
         ``data`` is the outcome of the datasets from which a picture or a text is made.
         """
         if file in self.not_made:
-            return Whole(file, (Row("", Outcome.NOT_MADE, self.not_made[file]),))
+            why = f"not made, {self.not_made[file]}"
+            return Whole(file, (Row("", Outcome.NOT_MADE, why),))
         # Warnings of the libraries about a damaged file become one line.
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
@@ -98,13 +94,18 @@ class _Comparison:
             # On a damaged file the libraries raise errors of many types.
             except Exception as error:
                 why = " ".join(str(error).split()) or type(error).__name__
-                return Whole(file, (Row("", Outcome.UNREADABLE, why),))
+                told = f"a file could not be compared, {why}"
+                return Whole(file, (Row("", Outcome.UNREADABLE, told),))
 
     def _compared(self, file: str, data: Outcome) -> Whole:
         old, now = both = [folder / file for folder in self.folders]
-        for path, outcome in ((old, Outcome.EXTRA), (now, Outcome.MISSING)):
+        alone = (
+            Row("", Outcome.EXTRA, "a file is not in the record"),
+            Row("", Outcome.MISSING, "a file is missing"),
+        )
+        for path, row in zip(both, alone, strict=True):
             if not path.is_symlink() and not path.exists():
-                return Whole(file, (Row("", outcome),))
+                return Whole(file, (row,))
             require_readable(path)
         if old.suffix in CARRIERS:
             self.made[file] = [provenance_in(path) for path in both]
@@ -116,31 +117,30 @@ class _Comparison:
         if data is Outcome.PARAMETERS and "/" in file:
             rows = [replace(row, outcome=Outcome.PARAMETERS) for row in rows]
         # A run notes the code with which it would make a file now.
-        note = self.folders[1] / "code" / f"{'' if old.suffix == DATASET else 'draw_'}{old.stem}"
+        note = self.folders[1] / "code" / made[1].get("rule", "").removesuffix("_study")
         code = made[1].get("code")
-        if code and note.is_file() and code != code_of_note(note.read_text(errors="replace")):
-            rows.append(Row("", Outcome.STALE))
+        if code and note.is_file() and code != parts_of_note(note.read_text(errors="replace"))[0]:
+            told = "made by older code than that of the working tree"
+            rows.append(Row("", Outcome.STALE, told))
         return Whole(file, tuple(rows), contents if old.suffix == ".png" else ())
 
     def artifact(self, name: str) -> Whole:
         """The comparison of an artifact, with its cause if it does not agree with the record."""
         data = self.dataset(name)
         sources = [name] if data.name or "/" in self.artifacts[name][0] else self.inputs(name)
-        outcome = worst(self.dataset(source).outcome for source in sources)
+        outcome = Whole("", tuple(map(self.dataset, sources))).outcome
         others = [self.file(x, outcome) for x in self.artifacts[name] if x != data.name]
         whole = Whole(name, tuple([data, *others] if data.name else others))
-        if whole.outcome.agrees:
-            return whole
-        # Of the first file that differs, which is the dataset or else a picture.
         moved = [file for file in whole.parts if not file.outcome.agrees]
-        made = self.made[next((x.name for x in moved if x.name in self.made), "")]
+        rows = [row.told for file in moved for row in file.parts if row.outcome is whole.outcome]
+        if not moved or whole.outcome.rank >= Outcome.STALE.rank:
+            return replace(whole, cause=rows[0] if moved else "")
+        # Of the first file that differs, which is the dataset or else a picture.
+        made = self.made[next((file.name for file in moved if file.name in self.made), "")]
         code = suspects(made, self.touched)
         inputs = [x for x in self.inputs(name) if not self.dataset(x).outcome.agrees and x != name]
         kind = _KINDS.get(PurePosixPath(moved[0].name).suffix, "the text changed")
         found = causes(made, code, inputs) or [kind]
-        if whole.outcome in _CAUSES:
-            told = next(row.told for x in moved for row in x.parts if row.outcome is whole.outcome)
-            found = [", ".join(filter(None, [_CAUSES[whole.outcome], told]))]
         return replace(whole, cause="; ".join(found), code=tuple(code))
 
 
@@ -169,7 +169,8 @@ def compare_folders(
     Raises
     ------
     ModelError
-        If one of the folders holds no artifact, or neither folder has a named artifact.
+        If there is nothing in the new folder, if there is no folder of the record, or if neither
+        folder has a named artifact.
     """
     comparison = _Comparison(record, new, not_made)
     known = comparison.artifacts

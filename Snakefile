@@ -1,67 +1,72 @@
 # Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), from the equations to the figures.
-# `snakemake --cores 2` makes all figures, tables and texts, `snakemake --cores 2 replication` the paper alone,
-# `snakemake --cores 2 permanent_contact` a stage, `snakemake --cores 2 fig08` one figure, `snakemake --cores 1 accept` copies the results over the
-# record.
+# `snakemake --cores 2` makes all figures, tables and texts, `snakemake --cores 2 permanent_contact` a
+# stage, `snakemake --cores 2 fig08` one figure, `snakemake --cores 2 diff` compares the results with
+# the record, and `snakemake --cores 1 accept` copies them over it.
 
 from snakemake.utils import min_version
 
 min_version("9.5")
 
+from bouncing_ball.paper.artifacts import ARTIFACTS
+from bouncing_ball.paper.exhibits.budgets import BUDGETS
+
 
 include: "workflow/rules/common.smk"
-# Snakemake reads the configuration next, and a file that is no text of YAML would give a traceback.
-include: "workflow/rules/readable.smk"
 
 
 configfile: here("config/config.yaml")
+
+
+if workflow.is_main_process:
+    from bouncing_ball.paper.configuration import Configuration
+
+    check(Configuration)
 
 
 # The first page of `snakemake --report`; `make report`.
 report: "workflow/report/workflow.rst"
 
 
-# From parameters to datasets: what all stages have in common, and the stages of the
-# studies, with the study, the drawing and the table of each artifact.
-include: "workflow/rules/stage.smk"
-include: "workflow/rules/paper.smk"
-include: "workflow/rules/check.smk"
-# From datasets to figures and tables.
-include: "workflow/rules/shown.smk"
-# From datasets and tables to the article.
+# From parameters to datasets, from datasets to figures and tables, and from these to the article.
+include: "workflow/rules/datasets.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/tables.smk"
 include: "workflow/rules/article.smk"
-# A target for each artifact and each stage, with its name.
+# A target for each stage.
 include: "workflow/rules/targets.smk"
 
 
 rule all:
+    """Figures 1 to 16, Table 1, the thresholds, the claims and the article."""
     default_target: True
     localrule: True
-    message:
-        "All figures, tables and the paper are up to date"
     input:
-        artifacts=sorted(file for each in TARGETS for file in each.files),
-        paper=rules.paper.output,
-        tally=rules.set_claims.output.tally,
-    log:
-        "results/logs/all.log",
-    conda:
-        ENVIRONMENT
-    shell:
-        "tee {log} < results/tally.txt"
-
-
-rule replication:
-    """The paper alone: Figures 1 to 16, Table 1, the thresholds, the claims and the article."""
-    localrule: True
-    message:
-        "The figures, tables and claims of the paper and its article are up to date"
-    input:
-        [file for each in TARGETS for file in each.files],
+        rules.schematics.input,
+        rules.restitution_model.input,
+        rules.apparent_restitution.input,
+        rules.time_histories.input,
+        rules.continuation_of_orbits.input,
+        rules.permanent_contact.input,
+        rules.error_thresholds.input,
+        rules.lowest_period_doubling.input,
+        rules.kinds_of_motion.input,
+        rules.formulas.input,
+        rules.forensics.input,
+        rules.witness.input,
+        rules.claims.input,
         rules.paper.output,
 
 
-# The accepted record in git, and the comparison of the results with it.
+rule replication:
+    """Another name of `all`."""
+    localrule: True
+    input:
+        rules.all.input,
+
+
+# The accepted record in git, and the comparison of the results with it; and pages made from it.
 include: "workflow/rules/record.smk"
+include: "workflow/rules/written.smk"
 
 
 # `snakemake --list` shows the message of a rule without a docstring.

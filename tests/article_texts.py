@@ -4,10 +4,10 @@ import functools
 from pathlib import Path
 
 import pytest
-from declared_artifacts import ARTIFACTS
 from jinja2 import BytecodeCache, Environment
 
 from bouncing_ball.drawing.tables import to_csv, to_markdown
+from bouncing_ball.paper.artifacts import ARTIFACTS
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
@@ -88,7 +88,7 @@ def all_texts(data):
 
     They are made from the artifacts of the paper alone, whatever else is given.
     """
-    data = {name: data[name] for name, each in OF_PAPER.items() if each.study and name in data}
+    data = {name: data[name] for name in OF_PAPER if name in data}
     templates = {name: TEMPLATES / f"{name}.md.j2" for name in ("supplement", "article")}
     return rendered(templates, {**data, "claims": claims(data)}, TABLES, OF_PAPER)
 

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 from declared_arguments import arguments_of
-from declared_artifacts import ARTIFACTS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_mistakes import (
@@ -26,11 +25,11 @@ from random_mistakes import (
     refuses_an_unknown_option,
     typed_options,
 )
-from whole_configuration import configuration_type
 
 import bouncing_ball as bb
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.models.model import Model
+from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration import check_parameters, place
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
@@ -80,7 +79,6 @@ def test_the_declarations_are_found():
 # The configuration.
 
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
-STUDIES = configuration_type(ARTIFACTS.values())
 # The whole configuration is checked each time, with a search for the orbits that are new.
 FEW = settings(max_examples=15)
 
@@ -107,7 +105,7 @@ def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
         section = section[key]
     section[path[-1]] = wrong
     with refusal(ConfigurationError, place(path), " must "):
-        check_parameters(STUDIES, config)
+        check_parameters(Configuration, config)
 
 
 @given(
@@ -124,7 +122,7 @@ def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
     known = list(section)
     section[word] = section.pop(path[-1])
     with pytest.raises(ConfigurationError) as error:
-        check_parameters(STUDIES, config)
+        check_parameters(Configuration, config)
     # The key that has another name now is missing.
     unknown, *missing = str(error.value).splitlines()
     assert unknown.startswith(f"unknown key {place((*path[:-1], word))} = ")

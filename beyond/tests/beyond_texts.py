@@ -2,7 +2,6 @@
 
 import pytest
 from article_texts import ROOT, TEMPLATES, rendered
-from declared_artifacts import declared
 
 from bouncing_ball_beyond.exhibits import (
     certified_verdicts_figures,
@@ -10,11 +9,11 @@ from bouncing_ball_beyond.exhibits import (
     corrected_model_figures,
     proofs_figures,
 )
+from bouncing_ball_beyond.exhibits.artifacts import ARTIFACTS
 from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
 
 HOUSE = ROOT / "beyond"
 REPORT = HOUSE / "report"
-ARTIFACTS = declared(HOUSE / "workflow" / "studies.smk", "beyond")
 READ = (
     *("ext_instant", "ext_orders", "ext_map", "ext_laws", "ext_release", "ext_impact"),
     *("ext_flights", "ext_proofs", "claims"),

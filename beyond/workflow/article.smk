@@ -3,43 +3,41 @@
 
 PAPER = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 TEMPLATES = os.path.relpath(Path(HOUSE, "report"))
-SHOWN = [
-    ARTIFACTS[name]
-    for name in (
-        "ext_instant",
-        "ext_orders",
-        "ext_map",
-        "ext_laws",
-        "ext_release",
-        "ext_impact",
-        "ext_flights",
-        "ext_proofs",
-        "ext_verdicts",
-        "claims",
-    )
-]
 
 
 rule beyond_article:
     message:
         "Writing results/article.md"
     input:
-        code=lambda wildcards: code(
-            "beyond_article",
-            "paper.py",
-            files=[
-                *sorted(map(str, Path(TEMPLATES).glob("*.md.j2"))),
-                f"{TEMPLATES}/references.yaml",
-                f"{PAPER}/macros.md.j2",
-                f"{PAPER}/front_matter.md.j2",
-                f"{PAPER}/references.yaml",
-                f"{PAPER}/numbered.csl",
-            ],
-            data=[each.dataset for each in SHOWN],
+        code=code(
+            f"{ROOT}/workflow/scripts/paper.py",
+            *sorted(map(str, Path(TEMPLATES).glob("*.md.j2"))),
+            f"{TEMPLATES}/references.yaml",
+            f"{PAPER}/macros.md.j2",
+            f"{PAPER}/front_matter.md.j2",
+            f"{PAPER}/references.yaml",
+            f"{PAPER}/numbered.csl",
+            "../figures/claims.nc",
         ),
         citation=os.path.relpath(Path(ROOT, "CITATION.cff")),
-        data=[each.dataset for each in SHOWN],
-        tables=[f"results/{each.place}.md" for each in SHOWN if each.table],
+        data=[
+            rules.ext_instant_study.output,
+            rules.ext_orders_study.output,
+            rules.ext_map_study.output,
+            rules.ext_laws_study.output,
+            rules.ext_release_study.output,
+            rules.ext_impact_study.output,
+            rules.ext_flights_study.output,
+            rules.ext_proofs_study.output,
+            rules.ext_verdicts_study.output,
+            "../figures/claims.nc",
+        ],
+        tables=[
+            rules.set_ext_orders.output.md,
+            rules.set_ext_laws.output.md,
+            rules.set_ext_proofs.output.md,
+            rules.set_ext_verdicts.output.md,
+        ],
     output:
         "results/article.md",
     params:
@@ -51,4 +49,4 @@ rule beyond_article:
     conda:
         ENVIRONMENT
     script:
-        f"{SCRIPTS}/paper.py"
+        f"{ROOT}/workflow/scripts/paper.py"

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from adapter import function
-from declared_artifacts import ARTIFACTS
+from declared_artifacts import DRAWINGS
 from matplotlib.contour import ContourSet
 
 import bouncing_ball
@@ -22,17 +21,12 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMATICS = ("fig01", "fig04")
 # A new one is drawn here as soon as its dataset is accepted.
-WITH_DATA = [
-    name
-    for name, each in ARTIFACTS.items()
-    if each.drawing and (ROOT / f"{each.place}.nc").exists()
-]
+WITH_DATA = [name for name in DRAWINGS if (ROOT / f"figures/{name}.nc").exists()]
 
 
 def drawn(name, *data):
-    draw = function(ARTIFACTS[name].figures, ARTIFACTS[name].drawing)
     with style():
-        return draw(*data)
+        return DRAWINGS[name](*data)
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +37,7 @@ def accepted_figure():
 
     @functools.cache
     def figure(name):
-        artifact = ARTIFACTS[name]
-        return bouncing_ball.open(ROOT / (artifact.accepted or f"{artifact.place}.nc")).plot()
+        return bouncing_ball.open(ROOT / f"figures/{name}.nc").plot()
 
     return figure
 

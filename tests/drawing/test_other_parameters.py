@@ -9,15 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from adapter import function
-from declared_artifacts import ARTIFACTS
+from declared_artifacts import DRAWINGS, STUDIES, by_key
 from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from bouncing_ball.drawing.canvas import lay_out
 from bouncing_ball.drawing.style import LINES, MARKS, style
 from bouncing_ball.pipeline.configuration import arguments, typed
-from bouncing_ball.pipeline.jobs import recorded
+from bouncing_ball.pipeline.datasets import recorded
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -70,14 +69,12 @@ def drawn(name, changes):
 @functools.cache
 def drawn_once(name, changes):
     """A figure that several tests look at; the changes are a text, which is a key."""
-    artifact = ARTIFACTS[name]
     configuration = read_yaml(ROOT / "config" / "config.yaml")
     configuration["paper"][name] |= json.loads(changes)
-    study = function(artifact.module, artifact.study)
-    given = arguments(study, "paper", name, configuration)
-    data = typed(study)(**given).assign_attrs(recorded(given))
+    given = arguments(STUDIES[name], name, by_key(configuration))
+    data = typed(STUDIES[name])(**given).assign_attrs(recorded(given))
     with style():
-        figure = function(artifact.figures, artifact.drawing)(data)
+        figure = DRAWINGS[name](data)
         figure.draw_without_rendering()
         lay_out(figure, figure.get_layout_engine())
     return figure

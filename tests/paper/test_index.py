@@ -5,10 +5,11 @@ from importlib.util import find_spec
 from pkgutil import resolve_name
 
 import pytest
-from declared_artifacts import ARTIFACTS
+from declared_artifacts import DRAWINGS, STUDIES
 
 import bouncing_ball.paper
 import bouncing_ball.paper.exhibits
+from bouncing_ball.paper.artifacts import ARTIFACTS
 
 # The equations of each row of the index, none in a row that belongs to the one before, and the
 # place in the package.
@@ -68,8 +69,11 @@ def test_the_index_of_figures_leads_to_the_functions_that_make_each_figure():
     row = re.compile(r"^Fig\. ([\d, ]+?)  *:mod:`\.(\w+)` +(\S+) +``(\w+)``$", flags=re.M)
     for numbers, module, study, drawing in row.findall(index):
         for number in numbers.split(","):
-            artifact = ARTIFACTS[f"fig{int(number):02d}"]
+            name = f"fig{int(number):02d}"
+            place = f"bouncing_ball.paper.exhibits.{module}"
             # The schematics have pictures only.
-            expected = artifact.module if artifact.study else artifact.figures
-            assert expected == f"bouncing_ball.paper.exhibits.{module}"
-            assert study.strip("`–") == (artifact.study or "") and drawing == artifact.drawing
+            if made := STUDIES.get(name):
+                assert (made.__module__, made.__name__) == (place, study.strip("`"))
+                place += "_figures"
+            assert DRAWINGS[name] is resolve_name(f"{place}:{drawing}")
+            assert ARTIFACTS[name].drawing == (f"{place}:{drawing}" if made else "")

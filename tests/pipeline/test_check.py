@@ -5,10 +5,8 @@ import json
 from pathlib import Path
 
 import pytest
-from adapter import function
-from declared_artifacts import ARTIFACTS
-from whole_configuration import configuration_type
 
+from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration import check_configuration, check_parameters
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
@@ -22,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("searched_once")
 
 @pytest.fixture(scope="module")
 def model():
-    return configuration_type(ARTIFACTS.values())
+    return Configuration
 
 
 def changed(keys, value):
@@ -98,18 +96,6 @@ def test_a_mistake_is_named_in_one_line(model, keys, value, message):
         said = str(error)
     assert message in said and "\n" not in said and "\\n" not in said
     assert bool(message) == bool(said), said
-
-
-@pytest.mark.parametrize(
-    ("module", "study"),
-    [
-        ("bouncing_ball.paper.exhibits.nothing", "here"),
-        ("bouncing_ball.paper.exhibits.continuation_of_orbits", "nothing"),
-    ],
-)
-def test_a_study_that_does_not_exist_is_named_in_one_line(refusal, module, study):
-    with refusal(ConfigurationError, f"{module}.{study}", "nothing"):
-        function(module, study)
 
 
 def test_all_mistakes_are_in_one_answer(model):

@@ -7,7 +7,8 @@ import xarray as xr
 
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input, using
+from bouncing_ball.pipeline.datasets import make_datasets, publish, read_input, using
+from bouncing_ball.pipeline.job import logged
 
 
 @pytest.fixture
@@ -24,19 +25,20 @@ def interruptible(monkeypatch):
     ],
 )
 def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
-    log = tmp_path / "logs" / "job.log"
-    job = SimpleNamespace(rule="stage", wildcards=["fig08"], log=[str(log)])
-    with pytest.raises(SystemExit) as exit_, logged(job):
+    def study():
         raise error
+
+    log = tmp_path / "logs" / "job.log"
+    job = SimpleNamespace(rule="stage", log=[str(log)], input={}, params={})
+    with pytest.raises(SystemExit) as exit_, logged(job):
+        make_datasets(job, fig08=study)
     one_line(exit_, f"{said}{log})")
     assert "Traceback" in log.read_text(encoding="utf-8")
 
 
 def test_a_variable_without_a_unit_is_refused(refusal):
-    output = SimpleNamespace(data="results/one.nc")
-    job = SimpleNamespace(params=SimpleNamespace(arguments={}), input={}, output=output)
     with refusal(ModelError, "phase has no unit: the study ends with described(...)"):
-        make_dataset(job, lambda: xr.Dataset({"phase": 0.0}))
+        publish(SimpleNamespace(), "one", xr.Dataset({"phase": 0.0}), {})
 
 
 def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):

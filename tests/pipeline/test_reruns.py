@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from declared_artifacts import ARTIFACTS, STUDIES
+from declared_artifacts import SCRIPTS, STUDIES, by_key, made_by
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.configuration import arguments
@@ -23,7 +23,7 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
 def arguments_in(run):
-    return {x: arguments(study, ARTIFACTS[x].section, x, run) for x, study in STUDIES.items()}
+    return {x: arguments(study, x, by_key(run)) for x, study in STUDIES.items()}
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,8 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
 def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
     changed = PACKAGE / file
     assert changed.is_file()
-    users = {name for name in STUDIES if changed in sources([ARTIFACTS[name].module])}
+    scripts = {name: SCRIPTS / f"{made_by(name)}.py" for name in STUDIES}
+    users = {name for name, script in scripts.items() if changed in sources([], [script])}
     assert users == expected
 
 
@@ -94,7 +95,7 @@ def test_the_data_that_a_module_reads_belong_to_its_code(module, data):
 
 
 def test_the_modules_that_a_script_imports_belong_to_its_code():
-    script = ROOT / "workflow" / "scripts" / "table.py"
+    script = ROOT / "workflow" / "scripts" / "set_table1.py"
     assert {script, PACKAGE / "drawing" / "tables.py"} <= {*sources([], [script])}
 
 

@@ -5,7 +5,12 @@ from dataclasses import replace
 import yaml
 
 SNAKEFILE = """\
+from bouncing_ball.datasets.artifact import Artifact, by_name
+
+DRAWING = "bouncing_ball.paper.exhibits.restitution_model_figures:restitution_history"
 HOUSE = workflow.basedir
+ARTIFACTS = by_name(Artifact("fig02", "Another history", DRAWING))
+BUDGETS = {}
 
 
 include: "../workflow/rules/common.smk"
@@ -14,32 +19,49 @@ include: "../workflow/rules/common.smk"
 configfile: here("config/config.yaml")
 
 
-include: "../workflow/rules/stage.smk"
+rule history:
+    input:
+        code=code("history.py"),
+    output:
+        fig02="results/figures/fig02.nc",
+    params:
+        artifacts=about("fig02"),
+        fig02=config["paper"]["fig02"],
+    log:
+        "results/logs/history.log",
+    script:
+        "workflow/scripts/history.py"
 
 
-use rule study as restitution_model_study with:
-    wildcard_constraints:
-        artifact=stage(
-            "bouncing_ball.paper.exhibits.restitution_model",
-            fig02=dict(
-                title="Another history",
-                study="restitution_history",
-                drawing="restitution_history",
-            ),
-        ),
-
-
-include: "../workflow/rules/shown.smk"
-include: "../workflow/rules/targets.smk"
+rule draw_fig02:
+    input:
+        code=code(f"{ROOT}/workflow/scripts/draw_fig02.py"),
+        data="results/figures/fig02.nc",
+    output:
+        "results/figures/fig02.png",
+        "results/figures/fig02.svg",
+    log:
+        "results/logs/draw_fig02.log",
+    script:
+        f"{ROOT}/workflow/scripts/draw_fig02.py"
 
 
 rule all:
     default_target: True
     input:
-        ARTIFACTS["fig02"].files,
+        rules.history.output,
+        rules.draw_fig02.output,
 
 
 include: "../workflow/rules/record.smk"
+"""
+SCRIPT = """\
+import bouncing_ball.pipeline.job as job
+from bouncing_ball.paper.exhibits.restitution_model import restitution_history
+from bouncing_ball.pipeline.datasets import make_datasets
+
+with job.logged(snakemake):
+    make_datasets(snakemake, fig02=restitution_history)
 """
 
 
@@ -48,6 +70,8 @@ def test_a_house_has_its_own_configuration_results_and_record(fresh):
     whole = yaml.safe_load((fresh.path / "config/config.yaml").read_text(encoding="utf-8"))
     (house.path / "config").mkdir(parents=True)
     (house.path / "Snakefile").write_text(SNAKEFILE, encoding="utf-8")
+    (house.path / "workflow" / "scripts").mkdir(parents=True)
+    (house.path / "workflow/scripts/history.py").write_text(SCRIPT, encoding="utf-8")
     own = {"paper": {"fig02": whole["paper"]["fig02"] | {"periods": 3}}}
     (house.path / "config/config.yaml").write_text(yaml.safe_dump(own), encoding="utf-8")
     commit = fresh.commit("Another house")

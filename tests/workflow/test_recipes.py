@@ -3,7 +3,9 @@
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.provenance import read_provenance
 
-PAPER = "workflow/rules/paper.smk"
+RULES = "workflow/rules"
+SCRIPTS = "workflow/scripts"
+PAPER = "src/bouncing_ball/paper"
 CONFIG = "config/config.yaml"
 EXHIBITS = "src/bouncing_ball/paper/exhibits"
 FIGURES = f"{EXHIBITS}/apparent_restitution_figures.py"
@@ -15,11 +17,6 @@ def changed(tree):
     return {line.split()[-1] for line in tree.git("status", "--porcelain").splitlines()}
 
 
-FIRST = "            fig05=dict("
-ENTRY = """            heights=dict(
-                title="Greatest height", study="frequency_sweep", drawing="heights"
-            ),
-"""
 PARAMETERS = """paper:
   heights:
     n: 1
@@ -39,15 +36,35 @@ def heights(data: xr.Dataset) -> Figure:
 '''
 
 
-RULE = """use rule study as lowest_study with:
-    wildcard_constraints:
-        artifact=stage(
-            "bouncing_ball.paper.exhibits.lowest",
-            threshold=dict(title="Lowest threshold", study="lowest", reads=("fig11",)),
-        ),
+RULE = """rule lowest_study:
+    message:
+        "Computing threshold"
+    input:
+        code=code("lowest.py"),
+        data=["results/figures/fig11.nc"],
+    output:
+        threshold="results/figures/threshold.nc",
+    params:
+        artifacts=about("threshold"),
+        threshold=config["paper"]["threshold"],
+    log:
+        "results/logs/lowest.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/lowest.py"
 
 
 """
+SCRIPT = '''"""A number from the curve of another stage."""
+
+import bouncing_ball.pipeline.job as job
+from bouncing_ball.paper.exhibits.lowest import lowest
+from bouncing_ball.pipeline.datasets import make_datasets
+
+with job.logged(snakemake):
+    make_datasets(snakemake, threshold=lowest)
+'''
 STUDY = '''"""A number from the curve of another stage."""
 
 from collections.abc import Mapping
@@ -73,28 +90,84 @@ def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
 '''
 
 
-def test_a_figure_and_a_stage_on_the_dataset_of_another_need_the_files_of_the_recipes_only(fresh):
-    fresh.rewrite(PAPER, FIRST, ENTRY + FIRST)
+def copy_of(text, first, last):
+    """The part of a text from one line up to another one, with the name of the new figure."""
+    part = text[text.index(first) : text.index(last)]
+    return part.replace("fig10", "heights").replace("Figure 10", "The greatest height")
+
+
+def test_a_figure_needs_the_files_of_its_recipe_only(fresh):
+    artifacts = f"{PAPER}/artifacts.py"
+    drawn = "apparent_restitution_figures:heights"
+    heights = f'    Artifact("heights", "Greatest height", f"{{_EXHIBITS}}.{drawn}"),\n'
+    fresh.rewrite(artifacts, "by_name(\n", f"by_name(\n{heights}")
+    types = f"{PAPER}/configuration.py"
+    fresh.rewrite(types, "    fig10: Sweep\n", "    fig10: Sweep\n    heights: Sweep\n")
     assert fresh.refusal().startswith("configuration: missing key paper.heights: ")
     fresh.rewrite(CONFIG, "paper:\n", PARAMETERS)
+    datasets = f"{RULES}/datasets.smk"
+    for old in (
+        '        fig10="results/figures/fig10.nc",\n',
+        '        fig10=config["paper"]["fig10"],\n',
+    ):
+        fresh.rewrite(datasets, old, old + old.replace("fig10", "heights"))
+    fresh.rewrite(datasets, 'about("fig10", "fig13")', 'about("fig10", "fig13", "heights")')
+    study = f"{SCRIPTS}/frequency_sweeps.py"
+    fresh.rewrite(study, "fig10=frequency_sweep", "fig10=frequency_sweep, heights=frequency_sweep")
     with (fresh.path / FIGURES).open("a", encoding="utf-8") as module:
         module.write(DRAWING)
-    assert changed(fresh) == {PAPER, CONFIG, FIGURES}
-    (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    first = "use rule study as permanent_contact_study with:"
-    fresh.rewrite(PAPER, first, RULE + first)
-    fresh.rewrite(CONFIG, "paper:\n", "paper:\n  threshold: { n: 110 }\n")
-    assert changed(fresh) == {PAPER, CONFIG, FIGURES, STAGE}
-    assert fresh.refusal().startswith("configuration: paper.threshold.n = 110 must be at most 20")
-    fresh.rewrite(CONFIG, "threshold: { n: 110 }", "threshold: { n: 11 }")
-    # The stage has the name of its module, and the figure its own.
-    fresh.run("--cores", "1", "heights", "lowest")
-    made = {path.name: path for path in fresh.path.glob("results/figures/**/*.*")}
-    figure = {f"heights.{kind}" for kind in ("nc", "png", "svg")}
-    assert made.keys() == {*figure, "fig11.nc", "threshold.nc"}
-    assert read_dataset(made["threshold.nc"]).lowest_amplitude.long_name == "lowest threshold"
+    pictures = fresh.path / RULES / "figures.smk"
+    text = pictures.read_text(encoding="utf-8")
+    rules = copy_of(text, "rule draw_fig10:", "rule draw_fig11:")
+    pictures.write_text(f"{text}\n\n{rules.strip()}\n", encoding="utf-8")
+    script = (fresh.path / SCRIPTS / "draw_fig10.py").read_text(encoding="utf-8")
+    draw = f"{SCRIPTS}/draw_heights.py"
+    (fresh.path / draw).write_text(script.replace("bounce_velocity", "heights"), encoding="utf-8")
+    caption = "workflow/report/heights.rst"
+    (fresh.path / caption).write_text("The greatest height.", encoding="utf-8")
+    targets = f"{RULES}/targets.smk"
+    line = "        rules.fig10.input,\n"
+    fresh.rewrite(targets, line, line + line.replace("fig10", "heights"))
+    named = {artifacts, types, CONFIG, datasets, study, FIGURES, f"{RULES}/figures.smk", targets}
+    assert changed(fresh) == named | {draw, caption}
+    fresh.run("--cores", "1", "heights")
+    made = {path.name: path for path in fresh.path.glob("results/figures/*.*")}
+    assert made.keys() == {
+        *(f"heights.{kind}" for kind in ("nc", "png", "svg")),
+        # Computed by the same job.
+        *("fig10.nc", "fig13.nc"),
+    }
     # The tree has changes that its commit has not.
     assert {read_provenance(path)["dirty"] for path in made.values()} == {"yes"}
+    # It is part of a whole run.
+    assert "results/figures/heights.png" in fresh.planned_files()
+
+
+def test_a_study_on_the_dataset_of_another_needs_the_files_of_its_recipe_only(fresh):
+    artifacts = f"{PAPER}/artifacts.py"
+    threshold = '    Artifact("threshold", "Lowest threshold"),\n'
+    fresh.rewrite(artifacts, "by_name(\n", f"by_name(\n{threshold}")
+    types = f"{PAPER}/configuration.py"
+    imported = "from bouncing_ball.paper.exhibits.lowest_period"
+    lowest = "from bouncing_ball.paper.exhibits.lowest import Lowest\n"
+    fresh.rewrite(types, imported, lowest + imported)
+    fresh.rewrite(
+        types, "    formulas: Formulas\n", "    formulas: Formulas\n    threshold: Lowest\n"
+    )
+    (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
+    script = f"{SCRIPTS}/lowest.py"
+    (fresh.path / script).write_text(SCRIPT, encoding="utf-8")
+    datasets = f"{RULES}/datasets.smk"
+    first = "rule permanent_contact_study:"
+    fresh.rewrite(datasets, first, RULE + first)
+    fresh.rewrite(CONFIG, "paper:\n", "paper:\n  threshold: { n: 110 }\n")
+    assert changed(fresh) == {artifacts, types, STAGE, script, datasets, CONFIG}
+    assert fresh.refusal().startswith("configuration: paper.threshold.n = 110 must be at most 20")
+    fresh.rewrite(CONFIG, "threshold: { n: 110 }", "threshold: { n: 11 }")
+    fresh.run("--cores", "1", "results/figures/threshold.nc")
+    data = read_dataset(fresh.path / "results/figures/threshold.nc")
+    assert data.lowest_amplitude.long_name == "lowest threshold"
+    assert data.attrs["title"] == "Lowest threshold"
 
 
 def test_a_parameter_needs_a_line_beside_its_study_and_a_value(fresh):

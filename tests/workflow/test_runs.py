@@ -8,75 +8,50 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.paper.artifacts import ARTIFACTS
+from bouncing_ball.pipeline.artifacts import files_in
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def made_by_a_run():
-    """The names of the datasets that a run makes."""
-    return {name for name, each in ARTIFACTS.items() if each.study}
+def test_a_run_makes_every_file_of_the_record(pristine):
+    made = {name for name in pristine.contents("results")}
+    assert made == files_in(ROOT)
 
 
-def test_a_run_makes_every_figure_and_table(pristine):
-    made = set(pristine.contents("results"))
-    figures = ROOT / "figures"
-    drawn = {str(path.with_suffix("").relative_to(ROOT)) for path in figures.rglob("*.svg")}
-    pictures = {f"{place}.{kind}" for place in drawn for kind in ("png", "svg")}
-    data = {f"{ARTIFACTS[name].place}.nc" for name in made_by_a_run()}
-    recorded = {str(path.with_suffix("").relative_to(ROOT)) for path in figures.rglob("*.csv")}
-    texts = {f"{place}.{kind}" for place in recorded for kind in ("csv", "md")}
-    pages = {"paper.md", "supplement.md", "tally.txt"}
-    assert made == pictures | data | texts | pages
+def test_the_replication_is_another_name_of_everything(fresh):
+    assert fresh.planned("replication") - {"replication"} == fresh.planned()
 
 
-def test_the_replication_makes_the_artifacts_of_the_paper_and_nothing_else(fresh):
-    jobs = fresh.planned("replication") - {
-        "The figures, tables and claims of the paper and its article are up to date",
-        "Writing results/paper.md and results/supplement.md",
-    }
-    # Messages such as "fig08", "Drawing fig08" and "Setting table1".
-    made = {job.split()[-1] for job in jobs}
-    assert made == {name for name, each in ARTIFACTS.items()}
+STAGES = {
+    "schematics": {"fig01", "fig04"},
+    "restitution_model": {"fig02", "fig03"},
+    "apparent_restitution": {"fig05", "fig06", "fig10", "fig13"},
+    "time_histories": {"fig07", "fig12"},
+    "continuation_of_orbits": {"fig08", "fig09", "fig15", "table1"},
+    "permanent_contact": {"fig11", "fig16"},
+    "error_thresholds": {"fig14", "thresholds"},
+    "lowest_period_doubling": {"lowest_doubling"},
+    "kinds_of_motion": {"three_balls"},
+}
 
 
-def stages():
-    """The artifacts of each stage of both sets of studies."""
-    found = {}
-    for each in ARTIFACTS.values():
-        if not each.accepted:
-            found.setdefault(each.stage, []).append(each)
-    return found
-
-
-# One of them, and weekly further ones of both sets of studies; below all of them at once.
-SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in ("proofs", "formulas", "schematics")]
-
-
-@pytest.mark.parametrize("name", ["permanent_contact", *SELDOM])
-def test_a_stage_is_a_target_that_makes_its_datasets_pictures_and_tables(fresh, name):
-    made = set(fresh.planned_files(name))
-    own = {file for each in stages()[name] for file in each.files}
-    # The rest is what its studies read.
-    assert own and own <= made
-    assert all(ARTIFACTS[Path(file).stem].stage != name for file in made - own)
-
-
-def test_every_stage_is_a_target(fresh):
-    names = sorted(stages())
-    assert {"apparent_restitution", "continuation_of_orbits", "error_thresholds"} <= {*names}
+def test_every_artifact_and_every_stage_is_a_target_with_all_of_its_files(fresh):
+    alone = {name: {name} for name in ARTIFACTS}
     # It ends with an error if there is no such target.
-    made = set(fresh.planned_files(*names))
-    for artifacts in stages().values():
-        for each in artifacts:
-            assert {*each.files} <= made
+    made = set(fresh.planned_files(*alone, *STAGES))
+    assert made == {f"results/{file}" for file in files_in(ROOT) if file.startswith("figures/")}
+    # One of each.
+    for target, names in ({"fig08": {"fig08"}} | STAGES).items():
+        files = {Path(file).stem for file in fresh.planned_files(target)}
+        assert names <= files, target
 
 
 def test_a_run_gives_the_accepted_datasets(pristine, recorded):
-    made = {name: read_dataset(pristine.path / ARTIFACTS[name].dataset) for name in made_by_a_run()}
+    made = {name: read_dataset(pristine.path / f"results/figures/{name}.nc") for name in recorded}
     rows = {name: compare_datasets(recorded[name], data) for name, data in made.items()}
     assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
 
@@ -88,12 +63,14 @@ def test_a_run_touches_no_tracked_file(pristine, cloned):
 
 
 def test_a_killed_run_is_resumed_without_loss(fresh, pristine):
-    files = ("results/figures/fig11.nc", "results/figures/fig12.nc")
+    names = ("fig11", "fig16", "fig12")
+    files = [f"results/figures/{name}.nc" for name in names]
     fresh.interrupt(signal.SIGKILL, "--cores", "1", *files, after=1, of="figures/[!.]*.nc")
     early = fresh.contents("results")
     fresh.run("--cores", "1", *files)
     after = fresh.contents("results")
-    assert len(early) == 1 and len(after) == 2
+    # Each is computed with another one.
+    assert len(early) < 4 and {Path(name).stem for name in after} == {"fig07", *names}
     # What is there under its own name is whole, even after a kill, and stays.
     assert [name for name in early if early[name] != after[name]] == []
     # A run that nothing interrupts makes the same.
@@ -158,6 +135,8 @@ def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_by
     found.append(elsewhere.contents("results"))
     kinds = ("nc", "png", "svg")
     whole = {f"figures/{name}.{kind}" for name in run[-2:] for kind in kinds}
+    # Computed by the same jobs.
+    whole |= {"figures/fig16.nc", "figures/fig07.nc"}
     # What the job that was stopped had just written, Snakemake removes.
     assert found[0].keys() < whole and found[1].keys() < whole and found[2].keys() == whole
     assert [name for made in found for name in made if made[name] != expected[name]] == []
@@ -168,7 +147,7 @@ def test_the_report_shows_every_figure_offline(complete):
     complete.run("--report", "results/report.html")
     page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")
     for name, each in ARTIFACTS.items():
-        if not each.drawing:
+        if not name.startswith("fig"):
             continue
         assert f"results/{each.place}.png" in page
         assert not name.startswith("fig") or f"Figure {int(name[3:])}." in page

@@ -1,10 +1,18 @@
-# Names and functions shared by the rules.
+# Names and functions shared by the rules. The Snakefile of a house names before it includes them:
+# ARTIFACTS and BUDGETS of its package, and HOUSE, its folder with the configuration and the accepted
+# record; this is the root if no other house is named.
 
+import gc
 import os
 import shlex
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+
+from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
+
+# Looking for garbage among all that is imported takes a tenth of the time before the first job.
+gc.set_threshold(100_000)
 
 # Snakemake starts jobs with the path of Python without quotes.
 if shlex.quote(sys.executable) != sys.executable:
@@ -12,15 +20,9 @@ if shlex.quote(sys.executable) != sys.executable:
         f"{sys.executable}: a path of Python with a space or a quote in it; put the .venv elsewhere"
     )
 
-# The repository, for both Snakefiles.
+# The repository, for all Snakefiles.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
-# The folder with the configuration and the accepted record; the Snakefile of another house names its
-# own before it includes these rules.
 HOUSE = globals().get("HOUSE", ROOT)
-# The section of the configuration with the parameters of the studies, and the module with the budgets
-# of single artifacts.
-SECTION = globals().get("SECTION", "paper")
-BUDGETS = globals().get("BUDGETS", "bouncing_ball.paper.exhibits.budgets")
 # The environment of all rules for `--sdm conda`; otherwise a job has the Python of Snakemake itself.
 ENVIRONMENT = f"{ROOT}/environment.yml"
 # The package may belong to another checkout whose environment is active.
@@ -35,16 +37,6 @@ if found.resolve() != HERE.resolve():
 if os.path.lexists("results") and not os.path.isdir("results"):
     sys.exit("results is no folder, but the run writes its files there: move it away")
 
-SCRIPTS = Path(ROOT, "workflow", "scripts")
-
-# Each process of a run imports these; what only some need is imported where they do.
-from bouncing_ball.pipeline.artifacts import Artifact
-from bouncing_ball.pipeline.yaml_files import ConfigurationError
-
-sys.path.append(str(SCRIPTS))
-
-from adapter import function
-
 # Snakemake writes these lines before and after every job, and they do not name what it makes; and
 # once that the environments for `--sdm conda` are not used.
 IDLE = ("Select jobs", "Execute ", "Finished jobid", "Conda environments: ignored")
@@ -52,61 +44,57 @@ logger.addFilter(lambda record: not str(record.msg).startswith(IDLE))
 
 
 # A file in `config`: that of the working directory if there is one, otherwise that of the house, so
-# that `--directory` makes a run of its own beside others.
+# that `--directory` makes a run of its own beside others. Snakemake reads it next, and a file that is
+# no text of YAML would give a traceback.
 def here(path):
-    return path if os.path.exists(path) else os.path.relpath(Path(HOUSE, path))
-
-
-# All artifacts by name, as the stages list them.
-ARTIFACTS = {}
-# The files of the datasets that are accepted by hand.
-ACCEPTED = set()
-
-
-# The artifacts of a stage: its module in the package, with the studies, and the module of its
-# figures and tables, which has the same name with `_figures`, unless another one is given. The
-# result is a pattern of their names.
-def stage(module, figures=None, **artifacts):
-    for name, given in artifacts.items():
-        if accepted := given.get("accepted"):
-            given = {**given, "accepted": here(accepted)}
-            ACCEPTED.add(given["accepted"])
-        given = {"module": module, "figures": figures or f"{module}_figures", **given}
-        ARTIFACTS[name] = Artifact(name=name, section=SECTION, **given)
-    return "|".join(artifacts)
-
-
-# The values that a study takes from the configuration.
-def arguments_of(artifact):
-    from bouncing_ball.pipeline.configuration import arguments
-
-    return arguments(
-        function(artifact.module, artifact.study), artifact.section, artifact.name, config
-    )
-
-
-# The budgets of single artifacts stand with the studies, in the module `budgets` beside them.
-def budgets_of(artifact):
-    return function(BUDGETS, "BUDGETS").get(artifact.name, {})
-
-
-# The one input that stands for the code of a job: its note, see the module `sources`. `--touch` leaves
-# it as it is, so that a digest that has changed is written by the next run.
-def code(job, script, *modules, files=(), data=()):
-    path = Path("results", "code", job)
-    if path.exists() and (workflow.touch or not workflow.is_main_process):
-        return str(path)
-    from bouncing_ball.pipeline.sources import recall, sources, write_note
-
-    recall(path.parent)
-
-    # An accepted dataset counts as code, because no job makes it.
-    accepted = [file for file in data if file in ACCEPTED and os.path.isfile(file)]
-    read = [SCRIPTS / "adapter.py", SCRIPTS / script, *files, *accepted]
-    read = [Path(file).resolve() for file in read]
+    if not os.path.exists(path):
+        return os.path.relpath(Path(HOUSE, path))
     try:
-        found = sources(modules, read)
-        write_note(path, found, os.path.relpath(HOUSE))
-    except OSError as error:
-        sys.exit(f"{path} cannot be written: {error.strerror}")
-    return str(path)
+        read_yaml(path)
+    except ConfigurationError as error:
+        sys.exit(f"{path}: {error}")
+    return path
+
+
+# The configuration is checked before any rule reads it, against its type. Jobs do not check it again.
+def check(model):
+    from bouncing_ball.pipeline.configuration import check_configuration
+
+    try:
+        check_configuration(map(os.path.relpath, workflow.configfiles), config, model)
+    except ConfigurationError as error:
+        sys.exit(error)
+
+
+# What a dataset says of itself, for each artifact of a stage.
+def about(*names):
+    return {
+        name: {
+            "title": ARTIFACTS[name].title,
+            "drawing": ARTIFACTS[name].drawing,
+            "budgets": BUDGETS.get(name, {}),
+        }
+        for name in names
+    }
+
+
+# The one input that stands for the code of a job: its note, see the module `sources`, with the digests
+# of the script of the house, of what the script imports, and of other files that it reads. It is found
+# when the job is planned. `--touch` leaves it as it is, so that a digest that has changed is written
+# by the next run.
+def code(script, *files):
+    def note(wildcards):
+        path = Path("results", "code", Path(script).stem)
+        if path.exists() and (workflow.touch or not workflow.is_main_process):
+            return str(path)
+        from bouncing_ball.pipeline.sources import recall, sources, write_note
+
+        recall(path.parent)
+        read = [Path(file).resolve() for file in (Path(HOUSE, "workflow/scripts", script), *files)]
+        try:
+            write_note(path, sources([], read), os.path.relpath(HOUSE))
+        except OSError as error:
+            sys.exit(f"{path} cannot be written: {error.strerror}")
+        return str(path)
+
+    return note

@@ -2,16 +2,14 @@
 
 from pathlib import Path
 
-from whole_configuration import configuration_type
-
+import bouncing_ball.pipeline.job as job
 from bouncing_ball.datasets.files import write_text
+from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
-from bouncing_ball.pipeline.jobs import logged
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
-with logged(snakemake):
+with job.logged(snakemake):
     folder = Path(snakemake.scriptdir).resolve().parents[1] / "config"
-    model = configuration_type(snakemake.params.artifacts)
-    page = configuration_page(model, read_yaml(folder / "config.yaml"))
+    page = configuration_page(Configuration, read_yaml(folder / "config.yaml"))
     write_text(folder / "README.md", page)
-    write_text(folder / "schema.json", configuration_schema(model))
+    write_text(folder / "schema.json", configuration_schema(Configuration))

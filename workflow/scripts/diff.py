@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+import bouncing_ball.pipeline.job as job
 from bouncing_ball.pipeline.diff.report import write_reports
-from bouncing_ball.pipeline.jobs import conclude, logged
 
-with logged(snakemake):
+with job.logged(snakemake):
     given = snakemake.params
     if sentence := write_reports(Path(given.house), given.artifacts):
-        conclude(sentence)
+        job.conclude(sentence)

@@ -2,12 +2,13 @@
 
 from pathlib import Path
 
+import bouncing_ball.pipeline.job as job
 from bouncing_ball.datasets.files import read_dataset, write_text
+from bouncing_ball.paper.artifacts import ARTIFACTS
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.front import folder_page, thumbnails, with_parts
-from bouncing_ball.pipeline.jobs import logged
 
 ABOUT = """\
 # The figures and tables of the paper
@@ -17,24 +18,27 @@ picture (PNG and SVG) and its table (Markdown and CSV); two figures are schemati
 """
 
 
-def pages(top, artifacts):
+def pages(top):
     """The texts by their paths, from the accepted datasets of a checkout."""
     data = {name: read_dataset(top / f"figures/{name}.nc") for name in ("claims", "table1")}
     tables = {"tally": tally(data["claims"])}
     claims = Claims(data["claims"])
     templates = sorted(top.glob("workflow/report/front/*.md.j2"))
     parts = {
-        path.name.removesuffix(".md.j2"): render_article(path, data, tables, claims, artifacts)
+        path.name.removesuffix(".md.j2"): render_article(path, data, tables, claims, ARTIFACTS)
         for path in templates
     }
-    parts["figures"] = thumbnails(artifacts.values())
+    parts["figures"] = thumbnails(ARTIFACTS.values())
     readme = with_parts((top / "README.md").read_text(encoding="utf-8"), parts)
-    return {"README.md": readme, "figures/README.md": folder_page(ABOUT, artifacts.values())}
+    return {
+        "README.md": readme,
+        "figures/README.md": folder_page(ABOUT, top / "figures", ARTIFACTS.values()),
+    }
 
 
 if "snakemake" in globals():
-    with logged(snakemake) as written:
+    with job.logged(snakemake) as written:
         top = Path(snakemake.scriptdir).resolve().parents[1]
-        for path, text in pages(top, snakemake.params.artifacts).items():
+        for path, text in pages(top).items():
             write_text(top / path, text)
             written.append(path)

@@ -47,7 +47,9 @@ def test_every_accepted_dataset_is_that_of_a_study_with_parameters():
 def test_a_study_gives_the_accepted_dataset(recorded, name):
     study = STUDIES[name]
     record = recorded[name]
-    found = budgeted(typed(study)(**arguments(study, "beyond", name, RUN)), BUDGETS.get(name, {}))
+    found = budgeted(
+        typed(study)(**arguments(study, name, {**RUN, **RUN["beyond"]})), BUDGETS.get(name, {})
+    )
     again = found.assign_attrs(record.attrs)
     rows = compare_datasets(record, again)
     assert [str(row) for row in rows if not row.outcome.agrees] == []

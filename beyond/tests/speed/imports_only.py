@@ -25,14 +25,6 @@ LATE_FIGURE = (
     "import matplotlib.backends.backend_agg, matplotlib.backends.backend_svg\n"
     "import PIL.Image, PIL.PngImagePlugin\nPIL.Image.preinit()\n"
 )
-# Scripts that import a function by its name: the parameters with its module and its name.
-BY_NAME = {
-    "study": ("module", "study"),
-    "figure": ("figures", "drawing"),
-    "table": ("figures", "table"),
-}
-# What the scripts and the rules share, and what the rules import themselves.
-SHARED = {"adapter", "whole_configuration"}
 FINISH = """
 for path in (*snakemake.output, *snakemake.log):
     open(path, "w").close()
@@ -44,11 +36,7 @@ def reduce_to_imports(script: Path) -> None:
     tree = ast.parse(script.read_text(encoding="utf-8"))
     imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
-    named = BY_NAME.get(script.stem)
-    if named is not None:
-        module, name = named
-        text += f"function(snakemake.params.{module}, snakemake.params.{name})\n"
-    if script.stem == "figure":
+    if script.stem.startswith("draw_"):
         text += LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")
 
@@ -72,8 +60,7 @@ def compared(repetitions: int) -> str:
         for tree in (whole, bare):
             shutil.copytree(ROOT, tree, ignore=IGNORED)
         for script in (bare / "workflow" / "scripts").glob("*.py"):
-            if script.stem not in SHARED:
-                reduce_to_imports(script)
+            reduce_to_imports(script)
         times = [(cold_run(whole), cold_run(bare)) for _ in range(repetitions)]
     pipeline, imports = (statistics.median(column) for column in zip(*times, strict=True))
     return (

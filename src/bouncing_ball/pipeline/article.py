@@ -19,8 +19,8 @@ import pypandoc
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from bouncing_ball.datasets.artifact import Artifact
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifacts import Artifact
 
 # Numbers.
 

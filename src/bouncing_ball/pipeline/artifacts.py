@@ -1,15 +1,13 @@
-"""Artifacts: a dataset, and the figure, the table or the page that are made from it.
+"""The files of artifacts: a dataset, and the figure, the table or the page made from it.
 
-The workflow declares the artifacts of its stages as :class:`Artifact`. A run writes to a folder,
-``results/``; the accepted record has the same layout at the top of a *house*, a folder with a
-Snakefile and its configuration. ``figures/`` holds the artifacts, and all files of one have its
-name: ``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the pictures drawn from it,
-``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. Texts, such as
-``paper.md``, stand beside ``figures/`` and are made from all datasets.
+A run writes to a folder, ``results/``; the accepted record has the same layout at the top of a
+*house*, a folder with a Snakefile and its configuration. ``figures/`` holds the artifacts, and all
+files of one have its name: ``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the
+pictures drawn from it, ``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a
+page. Texts, such as ``paper.md``, stand beside ``figures/`` and are made from all datasets.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from bouncing_ball.errors import ModelError
@@ -21,7 +19,6 @@ _ABOUT = "README.md"  # The page that lists a folder's files; no artifact.
 
 DATASET = ".nc"
 PICTURES = (".png", ".svg")
-TABLES = (".csv", ".md")
 PAGE = ".html"
 TEXT = ".md"
 
@@ -30,101 +27,6 @@ CARRIERS = (DATASET, *PICTURES)
 
 # In the order in which files are compared: other files are judged by the outcome of their dataset.
 _SUFFIXES = (DATASET, ".csv", *PICTURES, ".md", PAGE)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Artifact:
-    """An artifact as its stage in the workflow names it.
-
-    Parameters
-    ----------
-    name : str
-        The name on the command line, in the configuration and of the files.
-    section : str
-        The section of the configuration with its parameters.
-    module, figures : str
-        The modules of the stage, with its studies, and of its figures and tables.
-    title : str
-        The title of the dataset.
-    study : str, optional
-        The function of ``module`` that computes the dataset.
-    drawing, table : str, optional
-        Functions of ``figures`` that take the dataset and return a figure, or the columns of a
-        table.
-    reads : sequence of str
-        Names of the artifacts whose datasets the study takes as ``data``.
-    accepted : str, optional
-        The file of a dataset that is accepted by hand. A run reads it and does not make it.
-    page : bool
-        Whether the dataset becomes a page in HTML.
-
-    Examples
-    --------
-    >>> artifact = Artifact(
-    ...     name="table1",
-    ...     section="paper",
-    ...     module="bouncing_ball.paper.exhibits.continuation_of_orbits",
-    ...     figures="bouncing_ball.paper.exhibits.continuation_of_orbits_figures",
-    ...     title="Table 1",
-    ...     study="stability_ranges",
-    ...     table="table1",
-    ... )
-    >>> artifact.files
-    ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
-    >>> artifact.stage, artifact.place, artifact.dataset
-    ('continuation_of_orbits', 'figures/table1', 'results/figures/table1.nc')
-    """
-
-    name: str
-    section: str
-    module: str
-    figures: str
-    title: str
-    study: str | None = None
-    drawing: str | None = None
-    table: str | None = None
-    reads: tuple[str, ...] = ()
-    accepted: str | None = None
-    page: bool = False
-
-    @property
-    def stage(self) -> str:
-        """The name of its stage, which is that of the module."""
-        return self.module.rpartition(".")[2]
-
-    @property
-    def place(self) -> str:
-        """The path of its files in a run and in the record, without their suffixes."""
-        return f"{FIGURES}/{self.name}"
-
-    @property
-    def drawn_by(self) -> str | None:
-        """The function that draws its figure, as its dataset names it; None without a figure."""
-        return f"{self.figures}:{self.drawing}" if self.drawing else None
-
-    @property
-    def computed(self) -> str | None:
-        """The dataset that the study computes, also where an accepted one is read in its place."""
-        return f"results/{self.place}{DATASET}" if self.study else None
-
-    @property
-    def dataset(self) -> str | None:
-        """The dataset that others read; None for a figure without data, such as a schematic."""
-        return self.accepted or self.computed
-
-    @property
-    def files(self) -> list[str]:
-        """The files that a run makes."""
-        suffixes: list[str] = []
-        if self.study and not self.accepted:
-            suffixes += [DATASET]
-        if self.drawing:
-            suffixes += PICTURES
-        if self.table:
-            suffixes += TABLES
-        if self.page:
-            suffixes += [PAGE]
-        return [f"results/{self.place}{suffix}" for suffix in suffixes]
 
 
 def files_in(folder: Path) -> set[str]:

@@ -1,10 +1,10 @@
-"""The configuration of a run: how it is read, what each study takes from it, and its check.
+"""The configuration of a run: what each study takes from it, and its check.
 
 The signature of a study declares what it takes, for example ``study(parameters, release,
 continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
-the datasets that the stage names; and each further argument is the setting of the run with that
-name. The annotations of the arguments are the types of the configuration, so that the allowed
-values and the reasons for them are defined beside the study.
+the datasets that the job reads; and each further argument is the setting of the run with that name.
+The types of the parameters are classes beside the studies, so that the allowed values and the
+reasons for them are defined there, and the type of the whole configuration names them in order.
 
 Every mistake gives one line, and all mistakes are in one message.
 """
@@ -15,9 +15,8 @@ from difflib import get_close_matches
 from functools import cache
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError, create_model, validate_call
+from pydantic import BaseModel, ConfigDict, ValidationError, validate_call
 
-from bouncing_ball.datasets.parameters import Parameters
 from bouncing_ball.errors import printable
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
@@ -38,62 +37,20 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
     return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
 
 
-def taken(study: Callable[..., Any]) -> dict[str, Any]:
-    """The arguments that a study takes from the configuration, with their types.
-
-    Examples
-    --------
-    >>> def study(data, parameters: int, release: str):
-    ...     pass
-    >>> taken(study)
-    {'parameters': <class 'int'>, 'release': <class 'str'>}
-    """
-    signature = inspect.signature(study).parameters.items()
-    return {name: each.annotation for name, each in signature if name != "data"}
-
-
-def arguments(
-    study: Callable[..., Any], section: str, artifact: str, run: Mapping[str, Any]
-) -> dict[str, Any]:
+def arguments(study: Callable[..., Any], artifact: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """The arguments of a study for an artifact, in the form that the configuration has.
+
+    ``given`` has the parameters of each artifact and the settings of the run, by their names.
 
     Examples
     --------
     >>> def study(parameters, release):
     ...     pass
-    >>> arguments(study, "paper", "fig05", {"release": "force", "paper": {"fig05": {"n": 1}}})
+    >>> arguments(study, "fig05", {"release": "force", "fig05": {"n": 1}, "fig06": {"n": 2}})
     {'parameters': {'n': 1}, 'release': 'force'}
     """
-    return {
-        name: run[section][artifact] if name == "parameters" else run[name] for name in taken(study)
-    }
-
-
-class _Sections(Parameters, strict=False):
-    """Base of the complete configuration; it converts values, because YAML has no release rules."""
-
-
-def configuration_model(
-    studies: Mapping[str, Mapping[str, Callable[..., Any]]],
-) -> type[BaseModel]:
-    """The type of the complete configuration.
-
-    Parameters
-    ----------
-    studies : mapping
-        For each section, the study of each artifact in it.
-    """
-    keys: dict[str, Any] = {}
-    for section, of_artifacts in studies.items():
-        fields: dict[str, Any] = {}
-        for artifact, study in of_artifacts.items():
-            for name, kind in taken(study).items():
-                if name == "parameters":
-                    fields[artifact] = (kind, ...)
-                else:
-                    keys[name] = (kind, ...)
-        keys[section] = (create_model(section, __base__=Parameters, **fields), ...)
-    return create_model("Configuration", __base__=_Sections, **keys)
+    names = [name for name in inspect.signature(study).parameters if name != "data"]
+    return {name: given[artifact if name == "parameters" else name] for name in names}
 
 
 def check_configuration(

@@ -15,8 +15,8 @@ page from the types beside the studies. Change those, and not the page. It also 
 `config/schema.json`, which is not in git: with it, an editor that knows YAML schemas completes the
 keys of `config.yaml` and marks mistakes. Without it nothing is missing but this.
 
-The section `paper` holds the parameters of the paper's figures, tables and claims, and `beyond`
-those of everything built on it; `release` and `continuation` are settings of the whole run.
+The section `paper` holds the parameters of the paper's figures, tables and claims; `release` and
+`continuation` are settings of the whole run.
 Everything is dimensionless except angles, which are in radians. Numbers in powers of ten need a
 point and a sign, as in `1.0e+4`, because YAML reads `1e4` as text. To try a change without editing
 `config.yaml`, write only the changed keys into another file and name it last:
@@ -55,7 +55,8 @@ def _row(
 ) -> str:
     """The row of one key: where it is, what is allowed, what it means, and its default."""
     items = resolved(schema.get("items", {}), root)
-    meaning = schema.get("description", items.get("description", ""))
+    # Of a docstring the first sentence, which has a line.
+    meaning = schema.get("description", items.get("description", "")).partition("\n\n")[0]
     shown = json.dumps(default, ensure_ascii=False)
     shown = f"`{shown}`" if len(shown) <= _LONGEST_DEFAULT else "see `config.yaml`"
     return f"| `{'.'.join(path)}` | {_allowed(schema, root)} | {meaning} | {shown} |\n"

@@ -4,11 +4,10 @@ README holds its generated parts between comments; the rest of it is written by 
 read from the accepted datasets, so that ``make readme`` follows ``make accept``.
 """
 
-import os
 from collections.abc import Iterable, Mapping
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
-from bouncing_ball.pipeline.artifacts import Artifact
+from bouncing_ball.datasets.artifact import Artifact
 
 KINDS = {
     ".nc": "dataset",
@@ -46,21 +45,13 @@ def with_parts(page: str, parts: Mapping[str, str]) -> str:
     return page
 
 
-def links(artifact: Artifact) -> str:
-    """Links to the accepted files of an artifact, from the page of its folder."""
-    folder = PurePosixPath(artifact.place).parent
-    paths = [file.removeprefix("results/") for file in artifact.files]
-    if artifact.accepted:
-        paths = [artifact.accepted, *paths]
+def links(folder: Path, artifact: Artifact) -> str:
+    """Links to the accepted files of an artifact, from the page of their folder."""
     return ", ".join(
-        f"[{KINDS[Path(path).suffix]}]({os.path.relpath(path, folder)})" for path in paths
+        f"[{kind}]({artifact.name}{suffix})"
+        for suffix, kind in KINDS.items()
+        if (folder / f"{artifact.name}{suffix}").exists()
     )
-
-
-def _by_number(artifact: Artifact) -> tuple[bool, str]:
-    """The order of a list: the figures of the paper by their numbers, then the rest as declared."""
-    is_figure = artifact.name.startswith("fig")
-    return not is_figure, artifact.name if is_figure else ""
 
 
 _IN_A_ROW = 4
@@ -68,8 +59,7 @@ _IN_A_ROW = 4
 
 def thumbnails(artifacts: Iterable[Artifact]) -> str:
     """A table of small pictures with their names below; a forge links each to the whole."""
-    drawn = (each for each in artifacts if each.drawing)
-    shown = sorted(drawn, key=_by_number)
+    shown = [each for each in artifacts if each.name.startswith("fig")]
     names = [each.name.replace("fig", "Fig. ").replace(". 0", ". ") for each in shown]
     pictures = [f'<img src="{each.place}.png" alt="{each.title}" width="200">' for each in shown]
     lines = []
@@ -90,8 +80,8 @@ file was made.
 """
 
 
-def folder_page(about: str, artifacts: Iterable[Artifact]) -> str:
+def folder_page(about: str, folder: Path, artifacts: Iterable[Artifact]) -> str:
     """The page of the accepted files of a house: what they are, and a line for each artifact."""
-    shown = sorted((each for each in artifacts if each.files), key=_by_number)
-    rows = [f"| `{each.name}` | {each.title} | {links(each)} |\n" for each in shown]
+    shown = list(artifacts)
+    rows = [f"| `{each.name}` | {each.title} | {links(folder, each)} |\n" for each in shown]
     return f"{about}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"

@@ -40,7 +40,7 @@ _NESTED: dict[str, Callable[[Any], Any]] = {
     "inputs": lambda names: list(map(str, names)),
     "versions": dict,
 }
-_PLAIN = ("commit", "dirty", "target", "code")
+_PLAIN = ("commit", "dirty", "target", "rule", "code")
 _NO_PARAMETERS = {*TEXTUAL, *(f"{PREFIX}{name}" for name in (*_NESTED, *_PLAIN))}
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 # Git ignores this file, so that it does not mark the next run as dirty.

@@ -83,14 +83,10 @@ def not_made(workflow: Any) -> dict[str, str]:
     for job in workflow.scheduler.failed:
         found |= {str(file): reason_of(job) for file in job.output}
     for job in workflow.dag.needrun_jobs():
-        failed = {_name(each) for each in failed_behind(job, workflow)}
+        failed = {each.rule.name for each in failed_behind(job, workflow)}
         for file in map(str, job.output):
             found.setdefault(file, f"needs {', '.join(sorted(failed))}")
     return found
-
-
-def _name(job: Any) -> str:
-    return Path(str(job.output[0])).stem
 
 
 def lines_by_reason(files: Mapping[str, str]) -> list[str]:
@@ -98,9 +94,9 @@ def lines_by_reason(files: Mapping[str, str]) -> list[str]:
 
     Examples
     --------
-    >>> needs = dict.fromkeys(["results/figures/claims.nc", "results/paper.md"], "needs fig05")
-    >>> lines_by_reason({"results/figures/fig05.nc": "fig05: no orbit", **needs})
-    ['not made: fig05 (fig05: no orbit)', 'not made: claims, paper (needs fig05)']
+    >>> needs = dict.fromkeys(["results/figures/claims.nc", "results/paper.md"], "needs set_fig")
+    >>> lines_by_reason({"results/figures/fig.md": "set_fig: no orbit", **needs})
+    ['not made: fig (set_fig: no orbit)', 'not made: claims, paper (needs set_fig)']
     """
     reasons: dict[str, str] = {}
     for file, reason in files.items():

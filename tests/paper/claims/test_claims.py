@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from declared_artifacts import ARTIFACTS
+from declared_artifacts import read_by
 
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
@@ -21,7 +21,7 @@ DEFINITIONS = ("Eq. 17", "Eqs. 37-38", "ϖ = Ω/ω, Ω of the table")
 
 @pytest.fixture(scope="module")
 def data(recorded):
-    of_paper = ARTIFACTS["claims"].reads
+    of_paper = read_by("claims")
     assert {*of_paper} == {*PAPER, "formulas", "forensics", "witness"}
     return {name: recorded[name] for name in of_paper}
 

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from declared_artifacts import ARTIFACTS
+from declared_artifacts import read_by
 
 from bouncing_ball.models.history import next_impact
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -25,7 +25,7 @@ from bouncing_ball.periodic.orbit import monodromy
 
 @pytest.fixture(scope="module")
 def result(recorded, described):
-    names = ARTIFACTS["witness"].reads
+    names = read_by("witness")
     return described(witness({name: recorded[name] for name in names}))
 
 
@@ -46,7 +46,7 @@ def test_all_routes_agree_on_all_that_is_shown(result, recorded):
     assert result.orbits.sel(artifact="fig08", comparison=FORMULA).item() == 1803 + 9
 
 
-ORBITS = {name for name in ARTIFACTS["witness"].reads if name != "table1"}
+ORBITS = {name for name in read_by("witness") if name != "table1"}
 
 
 @pytest.mark.parametrize(("name", "k"), [*((name, 0) for name in sorted(ORBITS)), ("fig15", 1)])

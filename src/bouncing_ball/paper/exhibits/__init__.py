@@ -20,9 +20,9 @@ Fig. 16   :mod:`.permanent_contact`      ``permanent_contact_error`` ``permanent
 Table 1   :mod:`.continuation_of_orbits` ``stability_ranges``        ``table1``
 ========= ============================== =========================== ===========================
 
-A stage is a rule of ``workflow/rules/paper.smk``. For each of its artifacts the rule names a
-study, a function ``study(parameters, …)`` of the module that returns a dataset, and the function in
-the module ``…_figures`` that draws this dataset and computes nothing. Two stages have no picture
-and decide claims in words: :mod:`.lowest_period_doubling` and :mod:`.kinds_of_motion`. Stages share
+A study is a function ``study(parameters, …)`` of the module that returns a dataset, and a function
+in the module ``…_figures`` draws this dataset and computes nothing. The rules in
+``workflow/rules/datasets.smk`` and ``figures.smk`` run them. Two modules have no picture and decide
+claims in words: :mod:`.lowest_period_doubling` and :mod:`.kinds_of_motion`. Modules share
 :mod:`.orbit_parameters`, :mod:`.errors_along_ratio` and :mod:`.printed_table1`.
 """

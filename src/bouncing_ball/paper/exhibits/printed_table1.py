@@ -19,11 +19,15 @@ _ENTRIES = [
     [["0.238", "1.035"], ["0.495", "1.126"], ["0.750", "1.262"]],
     [["0.187", "1.082"], ["0.463", "1.170"], ["0.733", "1.298"]],
 ]
-_TEXTS = xr.DataArray(_ENTRIES, AXES)
 LAST_DIGIT = 0.001
 """Unit of the last printed digit."""
 
 RESTITUTION = 0.85
+
+
+# Only when it is asked for, because xarray then imports a library that jobs do without.
+def _texts() -> xr.DataArray:
+    return xr.DataArray(_ENTRIES, AXES)
 
 
 def printed_text(ratio: float, n: int, bound: str) -> str:
@@ -39,7 +43,7 @@ def printed_text(ratio: float, n: int, bound: str) -> str:
     >>> printed_text(2.0, 2, "period doubling")
     '1.170'
     """
-    return _TEXTS.sel(frequency_ratio=ratio, n=n, bound=bound).item()
+    return _texts().sel(frequency_ratio=ratio, n=n, bound=bound).item()
 
 
 def printed_table() -> xr.DataArray:
@@ -50,7 +54,7 @@ def printed_table() -> xr.DataArray:
     >>> printed_table().sel(frequency_ratio=10.0, n=1).values.tolist()
     [0.238, 1.035]
     """
-    return _TEXTS.astype(float)
+    return _texts().astype(float)
 
 
 PERMANENT_CONTACT = 6.0

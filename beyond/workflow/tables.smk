@@ -1,0 +1,116 @@
+# The tables of beyond, each as CSV and in Markdown from its dataset, and the page of the explorer.
+
+TITLE = f"{ROOT}/workflow/report/title.rst"
+
+
+rule set_ext_orders:
+    message:
+        "Setting ext_orders"
+    input:
+        code=code("set_ext_orders.py"),
+        data="results/figures/ext_orders.nc",
+    output:
+        csv=report(
+            "results/figures/ext_orders.csv",
+            caption=TITLE,
+            category="Tables",
+            labels={"table": "ext_orders"},
+        ),
+        md="results/figures/ext_orders.md",
+    params:
+        title=ARTIFACTS["ext_orders"].title,
+    log:
+        "results/logs/set_ext_orders.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "scripts/set_ext_orders.py"
+
+
+rule set_ext_laws:
+    message:
+        "Setting ext_laws"
+    input:
+        code=code("set_ext_laws.py"),
+        data="results/figures/ext_laws.nc",
+    output:
+        csv=report(
+            "results/figures/ext_laws.csv",
+            caption=TITLE,
+            category="Tables",
+            labels={"table": "ext_laws"},
+        ),
+        md="results/figures/ext_laws.md",
+    params:
+        title=ARTIFACTS["ext_laws"].title,
+    log:
+        "results/logs/set_ext_laws.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "scripts/set_ext_laws.py"
+
+
+rule set_ext_proofs:
+    message:
+        "Setting ext_proofs"
+    input:
+        code=code("set_ext_proofs.py"),
+        data="results/figures/ext_proofs.nc",
+    output:
+        csv=report(
+            "results/figures/ext_proofs.csv",
+            caption=TITLE,
+            category="Tables",
+            labels={"table": "ext_proofs"},
+        ),
+        md="results/figures/ext_proofs.md",
+    params:
+        title=ARTIFACTS["ext_proofs"].title,
+    log:
+        "results/logs/set_ext_proofs.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "scripts/set_ext_proofs.py"
+
+
+rule set_ext_verdicts:
+    message:
+        "Setting ext_verdicts"
+    input:
+        code=code("set_ext_verdicts.py"),
+        data="results/figures/ext_verdicts.nc",
+    output:
+        csv=report(
+            "results/figures/ext_verdicts.csv",
+            caption=TITLE,
+            category="Tables",
+            labels={"table": "ext_verdicts"},
+        ),
+        md="results/figures/ext_verdicts.md",
+    params:
+        title=ARTIFACTS["ext_verdicts"].title,
+    log:
+        "results/logs/set_ext_verdicts.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "scripts/set_ext_verdicts.py"
+
+
+# With reference orbits for the check of its results.
+rule draw_explorer:
+    message:
+        "Writing results/figures/explorer.html"
+    input:
+        code=code("draw_explorer.py"),
+        data="results/figures/explorer.nc",
+    output:
+        html="results/figures/explorer.html",
+    log:
+        "results/logs/draw_explorer.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "scripts/draw_explorer.py"

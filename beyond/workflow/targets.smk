@@ -1,0 +1,82 @@
+# A target for each artifact, with its dataset: `snakemake --cores 2 ext_map`.
+
+
+rule ext_instant:
+    """Flights before and after a contact meet at the centroid of its force."""
+    localrule: True
+    input:
+        rules.ext_instant_study.output,
+        rules.draw_ext_instant.output,
+
+
+rule ext_orders:
+    """Order of convergence of the restitution model and of the corrected one."""
+    localrule: True
+    input:
+        rules.ext_orders_study.output,
+        rules.draw_ext_orders.output,
+        rules.set_ext_orders.output,
+
+
+rule ext_map:
+    """How stiff a contact must be for the greatest height, over r and Λ."""
+    localrule: True
+    input:
+        rules.ext_map_study.output,
+        rules.draw_ext_map.output,
+
+
+rule ext_release:
+    """Bifurcations and thresholds under both release rules."""
+    localrule: True
+    input:
+        rules.ext_release_study.output,
+
+
+rule ext_impact:
+    """Restitution and duration of a free impact, by damping and release rule."""
+    localrule: True
+    input:
+        rules.ext_impact_study.output,
+        rules.draw_ext_impact.output,
+
+
+rule ext_laws:
+    """Errors of the restitution model and of the corrected one on the contacts of engineers."""
+    localrule: True
+    input:
+        rules.ext_laws_study.output,
+        rules.draw_ext_laws.output,
+        rules.set_ext_laws.output,
+
+
+rule ext_flights:
+    """From permanent contact to chattering: the cascade of flights in a period."""
+    localrule: True
+    input:
+        rules.ext_flights_study.output,
+        rules.draw_ext_flights.output,
+
+
+rule explorer:
+    """A page to explore the models, and the orbits that it checks itself against."""
+    localrule: True
+    input:
+        rules.explorer_study.output,
+        rules.draw_explorer.output,
+
+
+rule ext_proofs:
+    """Printed numbers, certified by ball arithmetic."""
+    localrule: True
+    input:
+        rules.ext_proofs_study.output,
+        rules.set_ext_proofs.output,
+
+
+rule ext_verdicts:
+    """Verdicts on the printed numbers by certified intervals."""
+    localrule: True
+    input:
+        rules.ext_verdicts_study.output,
+        rules.set_ext_verdicts.output,

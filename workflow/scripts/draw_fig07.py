@@ -1,0 +1,8 @@
+"""Figure 7."""
+
+import bouncing_ball.pipeline.job as job
+from bouncing_ball.paper.exhibits.time_histories_figures import contact_history
+from bouncing_ball.pipeline.pictures import draw
+
+with job.logged(snakemake):
+    draw(snakemake, contact_history)

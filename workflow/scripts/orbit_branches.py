@@ -1,0 +1,8 @@
+"""Existence and stability of n-T orbits of the spring-damper model, by continuation."""
+
+import bouncing_ball.pipeline.job as job
+from bouncing_ball.paper.exhibits.continuation_of_orbits import orbit_branches
+from bouncing_ball.pipeline.datasets import make_datasets
+
+with job.logged(snakemake):
+    make_datasets(snakemake, fig08=orbit_branches, fig09=orbit_branches)

@@ -1,0 +1,8 @@
+"""The check of the printed formulas."""
+
+import bouncing_ball.pipeline.job as job
+from bouncing_ball.paper.claims.tables import formulas
+from bouncing_ball.pipeline.tables import write_table
+
+with job.logged(snakemake):
+    write_table(snakemake, formulas)

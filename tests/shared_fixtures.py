@@ -27,10 +27,12 @@ from bouncing_ball.cli.main import main
 pytest.register_assert_rewrite(
     "answer_checks",
     "gallery_checks",
+    "labels_of_arguments",
     "page_checks",
     "patience_checks",
     "random_arguments",
     "random_mistakes",
+    "surveys_of_balls",
 )
 
 # Programs that the tests start keep what they have compiled, whatever the shell says: else

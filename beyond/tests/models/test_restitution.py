@@ -150,3 +150,31 @@ def test_the_bound_on_the_bounces_of_a_ball_that_comes_to_rest_is_not_too_short(
     monkeypatch.setattr(RestitutionDynamics, "_rests_within", lambda self, impact, left: left < 0)
     assert np.array_equal(settles, dynamics.comes_to_rest(impact))
     assert 0.4 < np.mean(settles) < 1
+
+
+def longest_bounces(v, r, g, most):
+    """The sum of all bounces of a ball that lands each time as fast as gravities in [g, most] let it."""
+    whole = 0.0
+    while v > 1e-12:
+        whole += 2 * v / g
+        v *= r * (2 * most / g - 1)
+    return whole
+
+
+@pytest.mark.parametrize("r", [0.3, 0.6, 0.8])
+def test_the_bound_on_all_bounces_is_their_longest_sum(r):
+    """Within 1.25 times the bounces at constant gravity, which may change by Λ times that."""
+    lam = np.linspace(0.0, 2.5, 500)
+    speed = 0.05
+    dynamics = RestitutionDynamics.of(r, lam)
+    impact = dynamics.start(np.zeros(500), np.full(500, -speed))
+    found = dynamics._rests_within(impact, np.full(500, np.inf))
+    window = 1.25 * 2 * r * speed / (1 - r)
+    least, most = 1 - lam * window, 1 + lam * window
+    converges = (least > 0) & (r * (2 * most / least - 1) < 1 - 1e-6)
+    right = [
+        bool(yes) and longest_bounces(r * speed, r, g, a) <= window
+        for yes, g, a in zip(converges, least, most, strict=True)
+    ]
+    assert found.tolist() == right
+    assert 0 < np.sum(found) < 500

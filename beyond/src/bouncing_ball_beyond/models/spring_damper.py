@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.damping import check_positive
-from bouncing_ball_beyond.models import linear_flow
+from bouncing_ball.models.spring_damper import ContactState
 from bouncing_ball_beyond.models.approach_threshold import approach_threshold
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
@@ -34,7 +34,7 @@ from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
-from bouncing_ball_beyond.models.linear_flow import ContactFlow
+from bouncing_ball_beyond.models.oscillator import responses
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 
 
@@ -303,7 +303,7 @@ class SpringDamper(OscillatorLaw):
         velocity: ArrayLike,
         phase: ArrayLike,
         amplitude: ArrayLike,
-    ) -> ContactFlow:
+    ) -> ContactState:
         """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
 
         If the damper acts on approach only, this is the motion up to the greatest penetration. The
@@ -316,7 +316,8 @@ class SpringDamper(OscillatorLaw):
             χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ,          β = -2ζϖ/γ
 
         Here τ = s and δ = z - Λ sin(s + φ); δ₀ and δ′₀ at s = 0 determine A and B, which do not
-        appear (:mod:`bouncing_ball_beyond.models.linear_flow`). The class ``ClosedFormMotion`` in
+        appear: as in :mod:`bouncing_ball.models.spring_damper` the flow is a sum of responses, here
+        those of every damping (:mod:`.oscillator`). The class ``ClosedFormMotion`` in
         :mod:`bouncing_ball_beyond.models.linear_contact` has them.
 
         Parameters
@@ -326,7 +327,7 @@ class SpringDamper(OscillatorLaw):
 
         Returns
         -------
-        ContactFlow
+        ContactState
             Its fields have the shape to which the arguments and the contact broadcast.
 
         Examples
@@ -337,8 +338,18 @@ class SpringDamper(OscillatorLaw):
         >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
         (-0.25, 0.0)
         """
-        numbers = self.frequency_ratio, self.damping_ratio
-        return linear_flow.flow(*numbers, time, displacement, velocity, phase, amplitude)
+        state = time, displacement, velocity, phase, amplitude
+        columns = (*state, self.frequency_ratio, self.damping_ratio)
+        rows = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in columns))
+        s, d0, v0, phi, lam, omega, zeta = rows
+        loss = 2 * zeta * omega
+        stiffness = omega * omega
+        g, G, h = responses(s, omega, zeta)
+        drive = lam * np.exp(1j * phi)
+        d = d0 * (g.rate + loss * g.value) + v0 * g.value - G.value + np.imag(drive * h.value)
+        v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
+        acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
+        return ContactState(d, v, acc)
 
     def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""

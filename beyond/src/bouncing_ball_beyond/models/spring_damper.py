@@ -40,30 +40,12 @@ from bouncing_ball_beyond.models.permanent_contact import permanent_contact_thre
 
 @dataclass(frozen=True, repr=False)
 class SpringDamper(OscillatorLaw):
-    """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
-
-    Its motion has a closed form, see :meth:`flow`.
-
-    Parameters
-    ----------
-    frequency_ratio, damping_ratio : float or array
-        ϖ > 0 and ζ ≥ 0, dimensionless.
-    release : Release or str
-        The condition that ends the contact; the paper's is the default.
-
-    Raises
-    ------
-    ModelError
-        If ϖ or ζ is no number in its range, their shapes do not broadcast, or the release is
-        unknown.
+    """The root's contact of the same name as a law, for every ζ ≥ 0 and every :class:`.Release`.
 
     Examples
     --------
-    >>> contact = SpringDamper.from_restitution(1.0, [5.0, 10.0], "force")
-    >>> contact[1].release, float(contact[1].frequency_ratio)
-    (<Release.FORCE: 'force'>, 10.0)
-    >>> contact[1].label
-    'ϖ = 10, ζ = 0'
+    >>> SpringDamper(10.0, 2.0, "force").label
+    'ϖ = 10, ζ = 2'
     """
 
     release: Release = Release.DISPLACEMENT
@@ -144,34 +126,16 @@ class SpringDamper(OscillatorLaw):
         restitution: ArrayLike,
         frequency_ratio: ArrayLike,
         release: str = Release.DISPLACEMENT,
-        *,
-        measured: bool = False,
     ) -> SpringDamper:
-        """The contact whose damping follows from a restitution coefficient r.
-
-        Parameters
-        ----------
-        restitution, frequency_ratio : array_like
-            r in (0, 1] and ϖ.
-        release : Release or str
-            The condition that ends the contact.
-        measured : bool
-            Whether r is the restitution coefficient of a free impact with this release.
-            Otherwise r is that of the displacement release (Eq. 16).
+        """The contact whose damping follows from the r of the displacement release (Eq. 16).
 
         Raises
         ------
         ModelError
             If r or ϖ is outside its range, or the release is unknown.
-
-        Examples
-        --------
-        >>> float(SpringDamper.from_restitution(1.0, 10.0).damping_ratio)
-        0.0
         """
-        rule = Release.of(release)
-        zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
-        return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
+        omega = check_positive(frequency_ratio, "frequency ratio ϖ")
+        return cls(omega, damping_ratio(restitution), Release.of(release))
 
     @classmethod
     def of_impact(

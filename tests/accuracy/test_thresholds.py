@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball import error_thresholds, rigid, spring_damper
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
-from bouncing_ball.accuracy.thresholds import ThresholdStatus, last_crossing, search
+from bouncing_ball.accuracy.thresholds import ThresholdStatus, last_crossing, search, thresholds
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.restitution import RestitutionModel
@@ -13,6 +13,12 @@ from bouncing_ball.models.spring_damper import SpringDamper
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, NEVER = ThresholdStatus
+
+
+def of(function, *tolerances):
+    scanned = function(RATIOS)[np.newaxis]
+    found = thresholds(lambda ratio, _: function(ratio), RATIOS, scanned, tolerances)
+    return found.ratio[0], found.status[0].tolist()
 
 
 def test_each_function_has_its_own_last_crossing():
@@ -44,6 +50,23 @@ def test_the_last_of_several_crossings_counts_and_a_sample_may_be_the_root():
     scanned = (at_sample - RATIOS)[np.newaxis]
     found = last_crossing(lambda x, _: at_sample - x, RATIOS, scanned)
     assert found[0] == pytest.approx(at_sample, rel=1e-13)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_power_is_closed_to_the_last_digit(sign):
+    ratio, status = of(lambda x: sign * x**-2.0, 0.01, 0.0004, 2.0, 1e-9)
+    assert ratio == pytest.approx([10.0, 50.0, np.nan, np.nan], rel=1e-14, nan_ok=True)
+    assert status == [FOUND, FOUND, ALWAYS, NEVER]
+    # The tolerance itself is within the tolerance.
+    assert of(lambda x: np.full_like(x, sign * 0.01), 0.01)[1] == [ALWAYS]
+
+
+@pytest.mark.parametrize("absent", [np.nan, np.inf])
+def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
+    (ratio,), status = of(lambda x: np.where(x < 7, absent, 0.001), 0.01)
+    assert status == [FOUND] and ratio == pytest.approx(7.0, rel=1e-12)
+    (ratio,), status = of(lambda x: np.where(x > 7, absent, 0.001), 0.01)
+    assert status == [NEVER] and np.isnan(ratio)
 
 
 @pytest.mark.parametrize("release", Release)

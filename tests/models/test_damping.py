@@ -21,7 +21,7 @@ def test_the_damping_ratio_agrees_with_fifty_digits(r):
     with mpmath.workdps(50):
         log = mpmath.log(mpmath.mpf(r))
         exact = float(-log / mpmath.sqrt(mpmath.pi**2 + log**2))
-    # log, hypot and one division: three roundings.
+    # The logarithm, the root and one division: three roundings.
     assert float(damping_ratio(r)) == pytest.approx(exact, rel=3 * EPS, abs=0)
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.models.flight import Flight, flight_derivative, fly, lowest_minimum, table
+from bouncing_ball.models.flight import Flight, flight_derivative, fly, table
 
 EPS = np.finfo(float).eps
 # A gap is known to about four units in the last place of its terms, which are of order 10 here.
@@ -138,7 +138,7 @@ def test_a_flight_that_just_touches_lands_and_one_that_just_misses_flies_on(dept
 @pytest.mark.parametrize("depth", [-1e-3, -1e-9, 0.0, 1e-9, 1e-3])
 def test_the_lowest_minimum_of_a_flight_is_that_of_its_dip(depth):
     s0, _, phase, height, velocity, lam = dips()
-    found = lowest_minimum(phase, height + depth, velocity, lam, s0 + 1e-6)
+    found = Flight(phase, height + depth, velocity, lam).lowest(s0 + 1e-6)
     # The gap is positive before s₀ but for another dip, which is not deeper.
     assert np.all(found <= depth + NOISE)
     grid = np.linspace(0, 1, 20001)[1:-1, None] * (s0 + 1e-6)
@@ -150,9 +150,9 @@ def test_the_lowest_minimum_of_a_flight_is_that_of_its_dip(depth):
 def test_without_a_minimum_in_a_flight_the_lowest_is_one():
     # The dip is after the end of the flight, or the table is too slow, or the flight does not end.
     s0, _, phase, height, velocity, lam = dips()
-    assert np.mean(lowest_minimum(phase, height, velocity, lam, s0 - 1e-6) == 1.0) > 0.9
-    slow = lowest_minimum(*rows(0.0, 0.0, 3.0, 1.0, 6.0))
-    endless = lowest_minimum(*rows(0.0, 0.0, 3.0, 2.0, np.inf))
+    assert np.mean(Flight(phase, height, velocity, lam).lowest(s0 - 1e-6) == 1.0) > 0.9
+    slow = Flight(*rows(0.0, 0.0, 3.0, 1.0)).lowest(np.full(1, 6.0))
+    endless = Flight(*rows(0.0, 0.0, 3.0, 2.0)).lowest(np.full(1, np.inf))
     assert slow.tolist() == endless.tolist() == [1.0]
 
 

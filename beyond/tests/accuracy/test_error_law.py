@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import (
@@ -13,7 +14,7 @@ from bouncing_ball_beyond.accuracy.error_law import (
     scale,
     small_parameter,
 )
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball_beyond.models.damping import (

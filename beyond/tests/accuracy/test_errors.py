@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.errors import Quantity, modulus
 from bouncing_ball_beyond.accuracy.errors import (
     OF_IMPACTS,
     OF_LIMITS,
     OF_ORBITS,
-    Quantity,
     as_deviation,
     deviation,
-    modulus,
     paper_error,
     relative_errors,
     values,

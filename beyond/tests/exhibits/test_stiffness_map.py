@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.drawing.style import style
 from bouncing_ball_beyond.accuracy.error_law import remainder
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors, search
-from bouncing_ball_beyond.accuracy.thresholds import RATIOS
 from bouncing_ball_beyond.exhibits.stiffness_map import (
     Nodes,
     StiffnessMap,

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.flight import land, table
 from bouncing_ball_beyond.models.damping import LINEAR, Release
-from bouncing_ball_beyond.models.flight import Flight, land, table
+from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import orbits_on_branch

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.model import Status
+from bouncing_ball.models.restitution import lift_off_phase
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.sticking import lift_off_phase
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():

@@ -8,11 +8,12 @@ from orbits_found import FOUND, balls, first, found_orbit, legs_of
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_beyond.models.flight import Flight, table
+from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.motions.orbit_of_motion import of_impact, of_motion
 from bouncing_ball_beyond.periodic.branches.following import branch_from

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point

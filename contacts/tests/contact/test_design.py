@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from asked_contacts import answered, assessed
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.accuracy import error_law
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release

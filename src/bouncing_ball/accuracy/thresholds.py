@@ -37,6 +37,9 @@ from bouncing_ball.models.spring_damper import SpringDamper
 if TYPE_CHECKING:
     from bouncing_ball.drawing.result import Result
 
+Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
+
 RATIOS = np.geomspace(1.0, 1e6, 97)
 """ϖ at which errors are scanned, from contacts that last a considerable part of the table's period
 to contacts stiffer than those of any simulation. The steps are fine, so that two crossings hardly
@@ -57,11 +60,15 @@ class ThresholdStatus(StrEnum):
     NEVER_WITHIN = "outside"
 
 
-def last_crossing(
-    function: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    ratios: np.ndarray,
-    scanned: np.ndarray,
-) -> np.ndarray:
+class Thresholds(NamedTuple):
+    """Thresholds and the outcomes of the searches for them, arrays of one shape."""
+
+    ratio: np.ndarray
+    """ϖ; NaN where the status is not ``FOUND``."""
+    status: np.ndarray
+
+
+def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -> np.ndarray:
     """The largest ϖ at which each function changes its sign.
 
     The last change between two samples is located to the last digit; an even number of changes
@@ -70,7 +77,7 @@ def last_crossing(
     Parameters
     ----------
     function : callable
-        Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape.
+        Values of the functions; see :data:`Numbered`.
     ratios : ndarray, shape (N,)
         Increasing grid.
     scanned : ndarray, shape (k, N)
@@ -112,6 +119,50 @@ def last_crossing(
     end = np.where(at_ends[0] < at_ends[1], *bracket)
     found[which] = np.exp(np.where(root.success, root.x, end))
     return found
+
+
+def thresholds(
+    error: Numbered, ratios: np.ndarray, scanned: np.ndarray, tolerances: ArrayLike
+) -> Thresholds:
+    """The ϖ above which each error stays within each tolerance, shape (k, m).
+
+    Parameters
+    ----------
+    error : callable
+        Signed relative errors.
+    ratios : ndarray, shape (N,)
+        Increasing grid.
+    scanned : ndarray, shape (k, N)
+        The k errors on the grid.
+    tolerances : array_like, shape (m,)
+
+    Examples
+    --------
+    >>> grid = np.geomspace(1, 1e4, 50)
+    >>> thresholds(lambda ratio, _: 1 / ratio, grid, 1 / grid[np.newaxis], [0.01, 2.0]).ratio
+    array([[100.,  nan]])
+    """
+    level = np.atleast_1d(np.asarray(tolerances, dtype=float))
+    size = modulus(scanned)[:, np.newaxis]
+    tolerance = level[:, np.newaxis]
+
+    def crossing(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
+        which, place = np.divmod(number, level.size)
+        return _excess(error(ratio, which), level[place])
+
+    outside = size > tolerance
+    rows = _excess(size, tolerance).reshape(-1, ratios.size)
+    found = last_crossing(crossing, ratios, rows).reshape(outside.shape[:2])
+    never = outside[..., -1]
+    always = ~outside.any(axis=-1)
+    within = np.where(always, ThresholdStatus.ALWAYS_WITHIN, ThresholdStatus.FOUND)
+    status = np.where(never, ThresholdStatus.NEVER_WITHIN, within)
+    return Thresholds(np.where(never, np.nan, found), status)
+
+
+def _excess(error: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
+    """The logarithm of an error over its tolerance, which is nearly a straight line in ln ϖ."""
+    return np.log(np.clip(modulus(error), _SMALLEST, _LARGEST) / tolerance)
 
 
 class Search(NamedTuple):
@@ -166,7 +217,6 @@ def search(
     [[[10.0]]]
     """
     orbits = np.broadcast_arrays(*map(np.atleast_1d, (damping, restitution, n, amplitude)))
-    level = np.array(tolerances, dtype=float)
 
     def errors(ratio: np.ndarray, orbit: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
         zeta, r, family, lam = (each[orbit] for each in orbits)
@@ -177,28 +227,16 @@ def search(
     count = orbits[0].size
     orbit, place = np.divmod(np.arange(count * ratios.size), ratios.size)
     error = errors(ratios[place], orbit, quantities).reshape(-1, count, ratios.size)
-    outside = modulus(error)[..., np.newaxis, :] > level[:, np.newaxis]
 
-    def crossing(quantity: str, scanned: np.ndarray) -> np.ndarray:
-        """The last ϖ at which the errors of all orbits cross all tolerances."""
+    def error_of(quantity: str) -> Numbered:
+        return lambda ratio, orbit: errors(ratio, orbit, [quantity])[0]
 
-        def excess(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
-            which, tolerance = np.divmod(number, level.size)
-            return _excess(errors(ratio, which, [quantity])[0], level[tolerance])
-
-        rows = _excess(scanned[:, np.newaxis], level[:, np.newaxis]).reshape(-1, ratios.size)
-        return last_crossing(excess, ratios, rows).reshape(count, level.size)
-
-    found = np.array([crossing(*each) for each in zip(quantities, error, strict=True)])
-    never = outside[..., -1]
-    within = np.where(outside.any(axis=-1), ThresholdStatus.FOUND, ThresholdStatus.ALWAYS_WITHIN)
-    status = np.where(never, ThresholdStatus.NEVER_WITHIN, within)
-    return Search(error, np.where(never, np.nan, found), status)
-
-
-def _excess(error: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
-    """The logarithm of an error over its tolerance, which is nearly a straight line in ln ϖ."""
-    return np.log(np.clip(modulus(error), _SMALLEST, _LARGEST) / tolerance)
+    found = [
+        thresholds(error_of(quantity), ratios, scanned, tolerances)
+        for quantity, scanned in zip(quantities, error, strict=True)
+    ]
+    ratio = np.stack([each.ratio for each in found])
+    return Search(error, ratio, np.stack([each.status for each in found]))
 
 
 @suggesting
@@ -263,7 +301,7 @@ def error_thresholds(
     if not isinstance(a_ball(ball), RestitutionModel):
         raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
-    wanted = _names(quantities)
+    wanted = quantity_names(quantities)
     grid = Grid(
         n=checked("n", n, FAMILY),
         amplitude=checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT),
@@ -294,8 +332,14 @@ def error_thresholds(
     return Result.of(grid.unfold(rows), "error_thresholds")
 
 
-def _names(quantities: Any) -> list[str]:
-    """The names of the quantities that a user asks for, one name or several."""
+def quantity_names(quantities: Any) -> list[str]:
+    """The names of the quantities that a user asks for, one name or several, or None for all.
+
+    Raises
+    ------
+    ModelError
+        If there is no such quantity.
+    """
     if quantities is None:
         return [str(each) for each in Quantity]
     try:

@@ -2,7 +2,7 @@
 
 import argparse
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from bouncing_ball.errors import did_you_mean
 
@@ -19,8 +19,8 @@ _WORDS = {
     "lambda": "amplitude",
 }
 # Dashes that an editor puts in place of two hyphens.
-_DASHES = "-—–−"
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+DASHES = "-—–−"
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
 def advice(
@@ -50,16 +50,18 @@ def advice(
     ': numbers of limits have no unit'
     """
     name = unknown.partition("=")[0]
-    word = name.lstrip(_DASHES).replace("_", "-")
-    if name[:1] not in tuple(_DASHES):
+    if not is_option(name):
         return _of_value(name, arguments, command, known)
-    # A negative number is a value.
-    if _NUMBER.match(name):
-        return _of_value(name, arguments, command, known)
+    word = name.lstrip(DASHES).replace("_", "-")
     meant = _WORDS.get(word, word)
     if f"--{meant}" in known:
         return f"; did you mean --{meant}?"
     return meaning(f"--{word}", known)
+
+
+def is_option(argument: str) -> bool:
+    """Whether an argument is no value; a negative number is a value."""
+    return argument[:1] in tuple(DASHES) and not NUMBER.match(argument)
 
 
 def _of_value(
@@ -68,18 +70,31 @@ def _of_value(
     """A clause on an argument that is no option."""
     if f"--{value}" in known:
         return f"; did you mean --{value}?"
-    place = list(arguments).index(value) if value in arguments else 0
-    options = [each for each in arguments[:place] if each.partition("=")[0] in known]
-    if not options:
+    name, before = preceding(value, arguments, known)
+    if not name:
         return ""
-    name, has_value, _ = options[-1].partition("=")
     action = known[name]
     if action.nargs == 0:
         return f": {name} takes no value"
-    if _NUMBER.fullmatch(arguments[place - 1].partition("=")[2 if has_value else 0]):
-        if not _NUMBER.fullmatch(value):
-            return f": numbers of {command} have no unit"
+    if NUMBER.fullmatch(before) and not NUMBER.fullmatch(value):
+        return f": numbers of {command} have no unit"
     return f": {name} takes {'one value' if action.nargs is None else f'{action.nargs} values'}"
+
+
+def preceding(value: str, arguments: Sequence[str], known: Collection[str]) -> tuple[str, str]:
+    """The last option before an argument, empty if there is none, and the value just before it.
+
+    Examples
+    --------
+    >>> preceding("Hz", ["--frequency=10", "Hz"], ["--frequency"])
+    ('--frequency', '10')
+    """
+    place = list(arguments).index(value) if value in arguments else 0
+    options = [each for each in arguments[:place] if each.partition("=")[0] in known]
+    if not options:
+        return "", ""
+    name, has_value, _ = options[-1].partition("=")
+    return name, arguments[place - 1].partition("=")[2 if has_value else 0]
 
 
 def meaning(text: str, known: Iterable[str]) -> str:

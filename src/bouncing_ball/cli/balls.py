@@ -52,20 +52,25 @@ _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_veloci
 # A ball.
 
 
-def add_contact(parser: Parser, *, with_ratio: bool) -> None:
-    """Add the options for the loss of an impact, the release and, if asked for, the ratio ϖ."""
+def add_loss(parser: Parser) -> None:
+    """Add the options for the loss of an impact, of which one is needed."""
     texts = meanings(spring_damper)
     add_number(parser, "restitution", RESTITUTION, texts["restitution"])
-    if with_ratio:
-        add_number(parser, "frequency_ratio", FREQUENCY_RATIO, texts["frequency_ratio"])
-    add_choice(parser, "release", Release, texts["release"])
     add_number(parser, "damping_ratio", DAMPING_RATIO, texts["damping_ratio"])
     add_number(parser, "measured_restitution", RESTITUTION, texts["measured_restitution"])
 
 
+def add_contact(parser: Parser) -> None:
+    """Add the options for the loss of an impact and the release."""
+    add_loss(parser)
+    add_choice(parser, "release", Release, meanings(spring_damper)["release"])
+
+
 def add_ball(parser: Parser) -> None:
     """Add the options of :func:`ball_of`."""
-    add_contact(parser, with_ratio=True)
+    text = meanings(spring_damper)["frequency_ratio"]
+    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, text)
+    add_contact(parser)
     add_choice(parser, "model", MODELS, _MODEL)
 
 
@@ -122,13 +127,18 @@ def law_of(model: Model) -> Answer:
 # Orbits.
 
 
-def orbit_options(parser: Parser) -> None:
-    """Add the options of :func:`orbit`."""
+def add_orbit(parser: Parser) -> None:
+    """Add the options for one orbit of a ball, or several."""
     texts = meanings(calls.orbit)
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
     add_choice(parser, "side", get_args(SideOrAll), _SIDE, default="stable")
     add_number(parser, "index", FAMILY, _INDEX)
+
+
+def orbit_options(parser: Parser) -> None:
+    """Add the options of :func:`orbit`."""
+    add_orbit(parser)
     add_ball(parser)
 
 
@@ -240,7 +250,7 @@ def permanent_contact_options(parser: Parser) -> None:
     """Add the options of :func:`permanent_contact`."""
     text = meanings(spring_damper)["frequency_ratio"]
     add_number(parser, "frequency_ratio", FREQUENCY_RATIO, text, required=True)
-    add_contact(parser, with_ratio=False)
+    add_contact(parser)
 
 
 def permanent_contact(*, release: ReleaseName | None, **contact: Any) -> Answer:

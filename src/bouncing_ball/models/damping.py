@@ -8,6 +8,9 @@ During half a period of a free damped oscillator, without gravity, the speed is 
 ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instead the contact ends where its force
 vanishes, at the angle π - 2 arcsin ζ, the speed is multiplied by
 ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and Pöschel, Granular Matter 9, 2007).
+
+All functions are evaluated by :mod:`bouncing_ball.numerics.elementary`, so that a contact has the
+same ζ on every processor: a chaotic motion turns another last digit into another motion.
 """
 
 from enum import StrEnum
@@ -17,6 +20,13 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import RESTITUTION, one_of, require
 from bouncing_ball.numerics.arrays import as_numbers
+from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
+
+# Newton steps for ζ of the force release. The initial error is below 10 %, and each step doubles
+# the number of correct digits.
+_NEWTON_STEPS = 6
+# The difference between π/2 and the double nearest to it.
+_REST = 6.123233995736766e-17
 
 
 class Release(StrEnum):
@@ -62,8 +72,9 @@ class Release(StrEnum):
         >>> [round(float(rule.free_angle(0.5)) / np.pi, 12) for rule in Release]
         [1.0, 0.666666666667]
         """
-        # This form keeps its digits as ζ → 1, where π - 2 arcsin ζ would lose them.
-        return 2 * np.arccos(self.sine(damping_ratio))
+        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin ζ would lose them.
+        sine = self.sine(damping_ratio)
+        return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
 
 
 def check_positive(value: ArrayLike, name: str) -> np.ndarray:
@@ -157,31 +168,41 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
     (0.1359, 0.1499)
     """
     r = check_restitution(restitution)
-    decrement = np.abs(np.log(r))
+    decrement = np.abs(logarithm(r))
     if Release.of(release) is Release.DISPLACEMENT:
-        return decrement / np.hypot(np.pi, decrement)
+        return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
     allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
-    return _force_damping(decrement)
+    return force_damping_ratio(decrement)
 
 
-# Newton steps for ζ of the force release. The initial error is below 10 %, and each step doubles
-# the number of correct digits.
-_NEWTON_STEPS = 6
+def force_damping_ratio(decrement: np.ndarray) -> np.ndarray:
+    """ζ = cos β with ``2β cot β = decrement``, -ln r of the force release, in [0, 2).
 
+    Newton's method finds β in (0, π/2]. The left side falls from 2 to 0 and is concave, so that the
+    steps converge from the right without leaving the interval. The starting point replaces it by
+    the parabola 2 - 8 (β/π)², which agrees with it at both ends.
 
-def _force_damping(decrement: np.ndarray) -> np.ndarray:
-    """ζ = sin α with ``(π - 2α) tan α = decrement`` < 2, by Newton's method for α in [0, π/2).
-
-    The left side rises from 0 to 2, and is concave as a function of α. The starting point replaces
-    it by the parabola 2 - 2(1 - 2α/π)², which agrees with it at both ends.
+    Examples
+    --------
+    >>> round(float(force_damping_ratio(np.array(np.pi / 2)) ** 2), 12)
+    0.5
     """
-    alpha = np.pi / 2 * (1 - np.sqrt(1 - decrement / 2))
+    beta = np.maximum(np.pi / 2 * np.sqrt(1 - decrement / 2), np.finfo(float).tiny)
     for _ in range(_NEWTON_STEPS):
-        tangent = np.tan(alpha)
-        rest = np.pi - 2 * alpha
-        alpha = alpha - (rest * tangent - decrement) / (rest * (1 + tangent**2) - 2 * tangent)
-    return np.sin(alpha)
+        sine = sine_and_versine(beta)[0]
+        cosine = _cosine(beta)
+        value = 2 * beta * cosine / sine - decrement
+        # The bound of the slope is its limit at β = 0, where rounding leaves no slope.
+        slope = np.minimum(2 * (cosine * sine - beta) / (sine * sine), -4 / 3 * beta)
+        beta = beta - value / slope
+    # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
+    return np.where(decrement > 0, _cosine(beta), 0.0)[()]
+
+
+def _cosine(beta: np.ndarray) -> np.ndarray:
+    """cos β, accurate near π/2 because the rounding error of π/2 is added."""
+    return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
 
 
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
@@ -211,4 +232,4 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     """
     rule = Release.of(release)
     zeta = check_damping(damping)
-    return np.exp(-rule.free_angle(zeta) * zeta / np.sqrt((1 - zeta) * (1 + zeta)))
+    return exponential(-rule.free_angle(zeta) * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -11,6 +11,7 @@ The rounding errors of this form vanish with s. The ball has landed where δ = 0
 while it is above the table's highest point, z > Λ, and the search skips this part.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -18,10 +19,12 @@ import numpy as np
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import sine_and_versine
-from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 
 # Newton steps to a local minimum of δ, each of which squares the error or halves the bracket.
 _STEPS = 60
+# Intervals of all flights that are searched for minima at the same time.
+_TOGETHER = 8192
 _NO_MINIMUM = 1.0
 
 
@@ -131,13 +134,73 @@ class Flight(Motion):
         by_lift = np.minimum(lift / np.maximum(np.abs(self.x), 1e-300), np.sqrt(3 * lift / top))
         return np.where(left_behind, np.maximum(by_lift, 4 * self.x / top), time)
 
+    def lowest(self, time: np.ndarray) -> np.ndarray:
+        """The smallest local minimum of δ within each flight of this duration, 1 if there is none.
 
-class _Unloaded(Motion):
+        Where it falls to 0 the flight grazes the table. A minimum is unique in each interval in
+        which Λ sin τ > 1, because δ″ = Λ sin τ - 1 is positive there and nowhere else. All minima
+        are therefore found.
+
+        Examples
+        --------
+        >>> one = np.ones(1)
+        >>> Flight(0 * one, 0 * one, 3 * one, 0 * one).lowest(6 * one).tolist()
+        [1.0]
+        """
+        lowest = np.full(time.shape, _NO_MINIMUM)
+        amplitude = np.broadcast_to(self.amplitude, time.shape)
+        may = np.flatnonzero((amplitude > 1) & np.isfinite(time))
+        if not may.size:
+            return lowest
+        part = self.take(may)
+        longest = time[may]
+        opening = np.arcsin(1 / amplitude[may])
+        start = np.arctan2(part.y, part.x)
+        # The first interval with Λ sin τ > 1 that ends after the start of the flight.
+        low = opening - start
+        width = np.pi - 2 * opening
+        low = low - 2 * np.pi * np.floor((low + width) / (2 * np.pi))
+        # This interval and the next ones along a first axis.
+        count = math.ceil(min((longest - low).max() / (2 * np.pi), _TOGETHER / may.size))
+        low = low + 2 * np.pi * np.arange(max(count, 1))[:, np.newaxis]
+        while np.any(low < longest):
+            left, right = ends = np.clip([low, low + width], 0.0, longest)
+            before, after = part.gap(ends)[1]
+            turning = (before < 0) & (after > 0)
+            if turning.any():
+                _, turns = turning.nonzero()
+                bottom = _bottom(part.take(turns), left[turning], right[turning])
+                np.minimum.at(lowest, may[turns], bottom)
+            low = low + 2 * np.pi * len(low)
+        return lowest
+
+
+def _bottom(flight: Flight, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The minimum of δ between times at which δ falls and rises, with δ″ > 0 between them.
+
+    Newton's method for δ′ = 0 takes the steps, and a bisection where it would leave the bracket.
+    """
+    time = (left + right) / 2
+    for _ in range(_STEPS):
+        _, rate, second, _ = flight.gap(time)
+        left = np.where(rate < 0, time, left)
+        right = np.where(rate < 0, right, time)
+        ahead = time - rate / second
+        inside = (ahead >= left) & (ahead <= right)
+        before = time
+        time = np.where(inside, ahead, (left + right) / 2)
+        if np.all(time == before):
+            break
+    return flight.gap(time)[0]
+
+
+class Unloaded(Motion):
     """The motion -(δ + κ δ′) after a release by vanishing force; the search ends where δ ≥ 0."""
 
     def __init__(self, flight: Flight, lag: np.ndarray) -> None:
         self.flight = flight
         self.lag = lag
+        self.forcing = flight.amplitude * np.sqrt(1 + lag * lag)
 
     def __call__(self, time: np.ndarray) -> Derivatives:
         displacement, rate, second, third = self.flight.gap(time)
@@ -145,15 +208,14 @@ class _Unloaded(Motion):
         value = np.where(time == 0, 0.0, displacement + self.lag * rate)
         # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
         fourth = -(1 + second)
-        forcing = self.flight.amplitude * np.sqrt(1 + self.lag * self.lag)
         return Derivatives(
             value=-value,
             rate=-(rate + self.lag * second),
             second=-(second + self.lag * third),
             third=-(third + self.lag * fourth),
-            second_bound=1 + forcing,
-            third_bound=forcing,
-            fourth_bound=forcing,
+            second_bound=1 + self.forcing,
+            third_bound=self.forcing,
+            fourth_bound=self.forcing,
             ended=displacement >= 0,
         )
 
@@ -207,15 +269,39 @@ def fly(
     slow = np.flatnonzero(~_leaves_fast(flight, lag))
     if slow.size:
         start[slow], resumed[slow] = _above_the_level(flight.take(slow), pick(lag, slow))
-    landing = first_zero(flight, flight.skip(start))
-    if np.any(landing.undecided):
-        raise ModelError("a landing was not found: the flight is out of floating-point range")
+    landing = land(flight, start)
     gap, rate, *_ = flight.gap(start)
     return Landing(
         time=np.where(resumed, start, landing.time),
         displacement=np.where(resumed, gap, 0.0),
         velocity=np.where(resumed, rate, -landing.rate),
     )
+
+
+def land(flight: Flight, start: np.ndarray) -> Zero:
+    """The first landing; ``start`` is a time before which there is certainly none.
+
+    The ``rate`` of the result is minus the relative impact velocity.
+
+    Raises
+    ------
+    ModelError
+        If no landing was found, because the flight is too long for floating-point numbers.
+
+    Examples
+    --------
+    A ball thrown up with the velocity 3 from a table at rest comes back after s = 6:
+
+    >>> zero, three = np.zeros(1), np.full(1, 3.0)
+    >>> flight = Flight(zero, zero, three, zero)
+    >>> landing = land(flight, flight.earliest_landing())
+    >>> landing.time.tolist(), landing.rate.tolist()
+    ([6.0], [3.0])
+    """
+    landing = first_zero(flight, flight.skip(start))
+    if landing.undecided.any():
+        raise ModelError("a landing was not found: the flight is out of floating-point range")
+    return landing
 
 
 def _leaves_fast(flight: Flight, lag: np.ndarray | float) -> np.ndarray:
@@ -232,7 +318,7 @@ def _leaves_fast(flight: Flight, lag: np.ndarray | float) -> np.ndarray:
 
 def _above_the_level(flight: Flight, lag: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The times at which slow balls reach δ = 0 or their contact resumes, and whether it does."""
-    found = first_zero(_Unloaded(flight, lag), np.zeros(flight.velocity.shape))
+    found = first_zero(Unloaded(flight, lag), np.zeros(flight.velocity.shape))
     return found.time, ~found.ended & (flight.gap(found.time)[0] < 0)
 
 
@@ -282,62 +368,3 @@ def matrix_of(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.
     """The matrices with the rows (a, b) and (c, d), shape (..., 2, 2)."""
     entries = np.stack(np.broadcast_arrays(a, b, c, d), axis=-1)
     return entries.reshape(*entries.shape[:-1], 2, 2)
-
-
-def lowest_minimum(
-    phase: np.ndarray,
-    displacement: np.ndarray,
-    velocity: np.ndarray,
-    amplitude: np.ndarray,
-    time: np.ndarray,
-) -> np.ndarray:
-    """The smallest local minimum of δ within each flight of this duration, 1 if there is none.
-
-    Where it falls to 0 the flight grazes the table. A minimum is unique in each interval in which
-    Λ sin τ > 1, because δ″ = Λ sin τ - 1 is positive there and nowhere else. All minima are
-    therefore found.
-
-    Examples
-    --------
-    >>> one = np.ones(1)
-    >>> lowest_minimum(0 * one, 0 * one, 3 * one, 0 * one, 6 * one).tolist()
-    [1.0]
-    """
-    lowest = np.full(time.shape, _NO_MINIMUM)
-    may = np.flatnonzero((amplitude > 1) & np.isfinite(time + velocity))
-    if not may.size:
-        return lowest
-    begins = np.arcsin(1 / amplitude[may])
-    lasts = np.pi - 2 * begins
-    # The first interval that ends after the start of the flight, and all later ones of a flight.
-    first = begins - phase[may]
-    first = first - 2 * np.pi * np.floor((first + lasts) / (2 * np.pi))
-    count = 1 + np.maximum(np.floor((time[may] - first) / (2 * np.pi)), 0).astype(int)
-    which = np.repeat(np.arange(may.size), count)
-    turn = np.arange(which.size) - np.repeat(np.cumsum(count) - count, count)
-    left = np.clip(first[which] + 2 * np.pi * turn, 0.0, time[may][which])
-    right = np.clip(first[which] + lasts[which] + 2 * np.pi * turn, 0.0, time[may][which])
-    flight = Flight(phase[may], displacement[may], velocity[may], amplitude[may]).take(which)
-    turning = np.flatnonzero((flight.gap(left)[1] < 0) & (flight.gap(right)[1] > 0))
-    bottom = _bottom(flight.take(turning), left[turning], right[turning])
-    np.minimum.at(lowest, may[which[turning]], bottom)
-    return lowest
-
-
-def _bottom(flight: Flight, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The minimum of δ between times at which δ falls and rises, with δ″ > 0 between them.
-
-    Newton's method for δ′ = 0 takes the steps, and a bisection where it would leave the bracket.
-    """
-    time = (left + right) / 2
-    for _ in range(_STEPS):
-        _, rate, second, _ = flight.gap(time)
-        left = np.where(rate < 0, time, left)
-        right = np.where(rate < 0, right, time)
-        ahead = time - rate / second
-        inside = (ahead >= left) & (ahead <= right)
-        before = time
-        time = np.where(inside, ahead, (left + right) / 2)
-        if np.all(time == before):
-            break
-    return flight.gap(time)[0]

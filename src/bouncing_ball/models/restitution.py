@@ -71,6 +71,10 @@ def chattering(
     >>> sticks.tolist(), time.round(12).tolist()
     ([True, False, False], [4e-06, 0.0, 0.0])
     """
+    # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
+    strongest = 1 + amplitude
+    if np.all(velocity > _CHATTER * strongest * strongest):
+        return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
     gravity = 1 - y
     pressed = (gravity > 0) | ((gravity == 0) & (x <= 0))
     loss = gravity * (1 - restitution)

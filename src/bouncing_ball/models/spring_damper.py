@@ -541,8 +541,8 @@ def spring_damper(
 
     Examples
     --------
-    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1)
-    SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement')
+    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).label
+    'ϖ = 10, ζ = 0.1'
     """
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     loss = the_loss(restitution, damping_ratio, measured_restitution)

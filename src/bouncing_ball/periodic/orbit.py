@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball import datasets
 from bouncing_ball.errors import ModelError, require, shortened
-from bouncing_ball.models.flight import Flight, flight_derivative, lowest_minimum, table
+from bouncing_ball.models.flight import Flight, flight_derivative, table
 from bouncing_ball.models.history import next_impact
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, in_words
@@ -400,8 +400,8 @@ def flight_margin(orbit: Orbit) -> np.ndarray:
     """
     speed = orbit.relative_bounce_velocity
     columns = orbit.release_phase, -orbit.model.lag * speed, speed, orbit.amplitude
-    rows = np.broadcast_arrays(*columns, orbit.flight_time)
-    return lowest_minimum(*rows)
+    *start, time = np.broadcast_arrays(*columns, orbit.flight_time)
+    return Flight(*start).lowest(time)
 
 
 def release_margin(orbit: Orbit) -> np.ndarray:

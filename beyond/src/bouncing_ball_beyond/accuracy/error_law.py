@@ -53,8 +53,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.periodic.explicit import period_doubling_lift, restitution_saddle_node
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature

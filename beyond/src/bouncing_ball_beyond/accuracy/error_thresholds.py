@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.thresholds import RATIOS, quantity_names
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -23,9 +23,7 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ParameterError, suggesting
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
-from bouncing_ball_beyond.accuracy.thresholds import RATIOS
 from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
@@ -94,7 +92,7 @@ def error_thresholds(
     lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     level = checked("tolerance", tolerance, TOLERANCE)
     rule = Release.of(chosen("release", release, [str(each) for each in LINEAR]))
-    asked = _names(quantities)
+    asked = quantity_names(quantities)
     grid = Grid(n=family, amplitude=lam, tolerance=level, **given.parameters)
     found = _on_grid(grid, asked, rule)
     return Result.of(grid.unfold(found), "error_thresholds")
@@ -126,15 +124,3 @@ def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:
         {"error_threshold": (dims, threshold), "threshold_status": (dims, status.astype(str))},
         {"simple": list(SIMPLE), "quantity": quantities},
     )
-
-
-def _names(quantities: Any) -> list[str]:
-    if quantities is None:
-        return [str(each) for each in Quantity]
-    try:
-        names = [quantities] if isinstance(quantities, str) else list(quantities)
-    except TypeError:
-        names = [quantities]
-    if not names:
-        raise ParameterError("{quantities} has no entries")
-    return [chosen("quantities", name, [str(each) for each in Quantity]) for name in names]

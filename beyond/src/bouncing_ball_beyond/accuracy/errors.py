@@ -15,28 +15,15 @@ are deviations.
 """
 
 from collections.abc import Iterable, Sequence
-from enum import StrEnum
 from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.one_impact import n_t
-
-
-class Quantity(StrEnum):
-    """A quantity that is compared between models."""
-
-    MAX_HEIGHT = "max_height"
-    BOUNCE_VELOCITY = "bounce_velocity"
-    PHASE = "phase"
-    APPARENT_RESTITUTION = "apparent_restitution"
-    SADDLE_NODE = "saddle_node"
-    PERIOD_DOUBLING = "period_doubling"
-    PERMANENT_CONTACT = "permanent_contact"
-
 
 OF_ORBITS = tuple(Quantity)[:4]
 """Quantities of an orbit: functions of the contact, n and Λ."""
@@ -68,26 +55,9 @@ _BIFURCATIONS = {
 def values(
     model: Model, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
 ) -> np.ndarray:
-    """Values of quantities in a model; one search for the orbit serves all its quantities.
+    """As :func:`bouncing_ball.accuracy.errors.values`, for any model.
 
-    Parameters
-    ----------
-    model : Model
-    n, amplitude : array_like
-        Index of the family and Λ of the stable orbits; they broadcast with the model.
-    quantities : iterable of str
-
-    Returns
-    -------
-    ndarray, shape (quantity, ...)
-        NaN where the model has no such orbit or bifurcation.
-
-    Examples
-    --------
-    >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
-    >>> names = "bounce_velocity", "permanent_contact"
-    >>> bool(np.all(values(RestitutionModel(0.5), 1, 2.0, names) == [np.pi, 1.0]))
-    True
+    One search for the orbit serves all its quantities.
     """
     orbit = cache(lambda: n_t.orbit(model, n, amplitude))
 
@@ -151,17 +121,6 @@ def _relative(value: ArrayLike, reference: ArrayLike) -> np.ndarray:
         return (np.asarray(value, dtype=float) - base) / base
 
 
-def modulus(error: ArrayLike) -> np.ndarray:
-    """Modulus of errors; infinite for NaN, because a model that lacks a quantity is not accurate.
-
-    Examples
-    --------
-    >>> modulus([-0.5, np.nan]).tolist()
-    [0.5, inf]
-    """
-    return np.where(np.isnan(error), np.inf, np.abs(error))
-
-
 def relative_errors(
     exact: Model,
     simple: Sequence[Model],
@@ -171,27 +130,16 @@ def relative_errors(
 ) -> np.ndarray:
     """The paper's errors of simple models (:func:`paper_error`), shape (model, quantity, ...).
 
-    In the paper, with the spring-damper model (SD) as the exact and the restitution model (CR) as
-    the simple one::
-
-        |max z_SD - max z_CR| / max z_CR = 0.01   at ϖ_h,1%      (37)
-        |Λ_SD - Λ_CR| / Λ_CR = 0.01               at ϖ_PC,1%     (38)
-
-    Here the left sides have a sign, and they are those of ``max_height`` and ``permanent_contact``
-    among the quantities.
+    The errors of ``max_height`` and ``permanent_contact`` are those of Eqs. 37 and 38, with a sign.
+    They are NaN where a model has no such orbit or bifurcation.
 
     Parameters
     ----------
     exact : Model
     simple : sequence of Model
     n, amplitude : array_like
-        Index of the family and Λ of the stable orbits; they broadcast with the models.
+        As in :func:`values`.
     quantities : sequence of str
-
-    Returns
-    -------
-    ndarray
-        NaN where a model has no such orbit or bifurcation.
 
     Examples
     --------

@@ -9,14 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_beyond.accuracy.errors import (
-    OF_IMPACTS,
-    OF_ORBITS,
-    paper_error,
-    relative_errors,
-    values,
-)
-from bouncing_ball_beyond.accuracy.thresholds import Numbered, by_quantity, last_zero, thresholds
+from bouncing_ball.accuracy.thresholds import Numbered, thresholds
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, relative_errors
+from bouncing_ball_beyond.accuracy.thresholds import by_quantity, last_zero
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import Release
@@ -24,7 +19,6 @@ from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 SIMPLE = ("restitution", "corrected")
 """The simple models, which are compared with the exact model."""
@@ -75,32 +69,6 @@ def errors(
     """
     exact, *simple = exact_and_simple_models(contact)
     return relative_errors(exact, simple, n, amplitude, quantities)
-
-
-def orbit_errors(orbit: Orbit) -> np.ndarray:
-    """The paper's errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN
-    where there is no orbit.
-
-    They equal :func:`errors` at the Λ of the orbits.
-
-    Examples
-    --------
-    >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
-    >>> from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
-    >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(8)[:, 0].tolist()
-    [-0.00829759, -1.78e-06]
-    """
-    exact = [getattr(orbit, quantity) for quantity in OF_ORBITS]
-    simple = (
-        values(x, orbit.n, orbit.amplitude, OF_ORBITS)
-        for x in exact_and_simple_models(orbit.law)[1:]
-    )
-    return np.stack(
-        [
-            [paper_error(exact=true, simple=one) for true, one in zip(exact, each, strict=True)]
-            for each in simple
-        ]
-    )
 
 
 def simple_models(contact: SpringDamper) -> tuple[RestitutionModel, CorrectedModel]:

@@ -3,8 +3,8 @@
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.datasets.arguments import FAMILY, FREQUENCY_RATIO, RESTITUTION
 from bouncing_ball.errors import count
+from bouncing_ball.models.spring_damper import spring_damper
 from bouncing_ball_beyond.cli.periodic import Answer
-from bouncing_ball_beyond.models.makers import spring_damper
 from bouncing_ball_beyond.periodic import orbits_of_ball
 from bouncing_ball_beyond.proofs.installed import proofs_extra
 

@@ -2,39 +2,34 @@
 
 from typing import Any
 
+from bouncing_ball.cli import balls
+from bouncing_ball.cli.balls import add_loss
 from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings
-from bouncing_ball.datasets.arguments import (
-    DAMPING_RATIO,
-    FREQUENCY_RATIO,
-    POSITIVE,
-    RESTITUTION,
-    ReleaseName,
-)
+from bouncing_ball.datasets.arguments import FREQUENCY_RATIO, POSITIVE, ReleaseName
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.spring_damper import LOSSES, spring_damper, the_loss
 from bouncing_ball_beyond.cli.options import add_assignments, option
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
+from bouncing_ball_beyond.models.given_ball import a_ball
+from bouncing_ball_beyond.models.makers import corrected
 from bouncing_ball_beyond.models.named_laws import LAWS, law_named
 from bouncing_ball_beyond.periodic.law_balls import contact_law
 
-MODELS = ("restitution", "spring-damper", "corrected")
+MODELS = (*balls.MODELS, "corrected")
 
 
-def add_contact(parser: Parser, *, with_ratio: bool) -> None:
-    """Add the options for the loss of an impact, the release and, if asked for, the ratio ϖ."""
-    texts = meanings(spring_damper)
-    add_number(parser, "restitution", RESTITUTION, texts["restitution"])
-    if with_ratio:
-        add_number(parser, "frequency_ratio", FREQUENCY_RATIO, texts["frequency_ratio"])
-    add_choice(parser, "release", Release, texts["release"])
-    add_number(parser, "damping_ratio", DAMPING_RATIO, texts["damping_ratio"])
-    add_number(parser, "measured_restitution", RESTITUTION, texts["measured_restitution"])
+def add_contact(parser: Parser) -> None:
+    """Add the options for the loss of an impact and the release."""
+    add_loss(parser)
+    add_choice(parser, "release", Release, meanings(spring_damper)["release"])
 
 
 def add_ball(parser: Parser) -> None:
     """Add the options of :func:`ball_of`."""
-    add_contact(parser, with_ratio=True)
+    text = meanings(spring_damper)["frequency_ratio"]
+    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, text)
+    add_contact(parser)
     default = 'By default "spring-damper" if ϖ is given, and otherwise "restitution".'
     add_choice(parser, "model", MODELS, f'"restitution", "spring-damper" or "corrected". {default}')
     names = f"Laws: {', '.join(LAWS)}."
@@ -67,30 +62,21 @@ def ball_of(
     ModelError
         If an option is missing or contradicts another.
     """
-    losses: dict[str, Any] = {
+    linear: dict[str, Any] = {
         "restitution": restitution,
+        "frequency_ratio": frequency_ratio,
         "damping_ratio": damping_ratio,
         "measured_restitution": measured_restitution,
     }
     of_law = {"parameters": parameters, "duration": duration, "speed": speed}
     if law is not None:
-        linear = {"frequency_ratio": frequency_ratio, **losses}
         return _ball_of_law(law, model, linear, release, of_law)
     _refuse(of_law, "needs {law}")
-    loss = the_loss(restitution, damping_ratio, measured_restitution)
-    kind = model or ("restitution" if frequency_ratio is None else "spring-damper")
-    if kind == "restitution":
-        instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
-        _refuse({"damping_ratio": damping_ratio}, instead)
-        contact = {"frequency_ratio": frequency_ratio, "release": release}
-        _refuse(contact, "has no meaning for {model} restitution, which has no contact")
-        return rigid(restitution=losses[loss])
+    if model != "corrected":
+        return a_ball(balls.ball_of(release=release, model=model, **linear))
     if frequency_ratio is None:
-        raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
-    ball = spring_damper(
-        frequency_ratio=frequency_ratio, release=release or "displacement", **losses
-    )
-    return corrected(ball) if kind == "corrected" else ball
+        raise ParameterError("{model} corrected needs {frequency_ratio}")
+    return corrected(balls.ball_of(release=release, model="spring-damper", **linear))
 
 
 def _ball_of_law(

@@ -1,21 +1,13 @@
 """``bouncing-ball law-orbit``, ``law-limits`` and ``error-law``."""
 
 import math
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
-from bouncing_ball.cli.options import (
-    Parser,
-    add_choice,
-    add_number,
-    meanings,
-)
-from bouncing_ball.datasets.arguments import (
-    AMPLITUDE_OF_ORBIT,
-    FAMILY,
-    ReleaseName,
-)
+from bouncing_ball.cli.balls import Answer, SideOrAll, add_orbit
+from bouncing_ball.cli.options import Parser, add_number, meanings
+from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, ReleaseName
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.accuracy import error_law as error_laws
@@ -28,14 +20,6 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic import orbits_of_ball as library
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
-
-Answer = dict[str, Any]
-SideOrAll = Literal["stable", "unstable", "all"]
-_SIDE = (
-    'Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every orbit '
-    "at this amplitude, in order of contact duration."
-)
-_INDEX = 'Number, from 1, of one orbit in the list of side "all".'
 
 
 def law_values(law: Any, speed: float = math.nan) -> Answer:
@@ -63,11 +47,7 @@ def law_values(law: Any, speed: float = math.nan) -> Answer:
 
 def orbit_options(parser: Parser) -> None:
     """Add the options of :func:`orbit`."""
-    texts = meanings(library.orbit)
-    add_number(parser, "n", FAMILY, texts["n"], default=1)
-    add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
-    add_choice(parser, "side", get_args(SideOrAll), _SIDE, default="stable")
-    add_number(parser, "index", FAMILY, _INDEX)
+    add_orbit(parser)
     add_ball(parser)
 
 
@@ -150,7 +130,7 @@ def error_law_options(parser: Parser) -> None:
     texts = meanings(library.orbit)
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
-    add_contact(parser, with_ratio=False)
+    add_contact(parser)
 
 
 def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:

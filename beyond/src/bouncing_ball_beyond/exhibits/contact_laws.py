@@ -28,10 +28,11 @@ import xarray as xr
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball_beyond.accuracy.errors import Quantity, paper_error, values
+from bouncing_ball_beyond.accuracy.errors import paper_error, values
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
 from bouncing_ball_beyond.accuracy.thresholds import last_zero
 from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio

@@ -14,10 +14,11 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball_beyond.accuracy import error_law
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitErrors, OrbitOnContact
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits

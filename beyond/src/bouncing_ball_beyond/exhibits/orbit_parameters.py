@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Strict, ValidationInfo
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     Family,
@@ -19,7 +20,6 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.periodic.explicit import restitution_saddle_node
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from flint import arb
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     Family,
@@ -24,7 +25,6 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.periodic.orbit import Bifurcation
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.accuracy.simple_models import errors, search
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

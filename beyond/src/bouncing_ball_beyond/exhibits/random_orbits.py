@@ -4,9 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 
@@ -46,5 +45,5 @@ def random_orbits(
     low = n_t.saddle_node(model, n).amplitude
     high = n_t.period_doubling(model, n).amplitude
     lam = low + rng.uniform(*places, size) * (high - low)
-    zeta = SpringDamper.from_restitution(r, 1.0, release, measured=True).damping_ratio
+    zeta = damping_ratio(r, release)
     return n, zeta, lam, rng

@@ -24,6 +24,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
+from bouncing_ball.accuracy.thresholds import ThresholdStatus, thresholds
 from bouncing_ball.datasets.parameters import (
     Family,
     Interval,
@@ -37,7 +38,6 @@ from bouncing_ball.datasets.parameters import (
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball_beyond.accuracy.errors import paper_error
-from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus, thresholds
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at

@@ -7,7 +7,7 @@ The modules in reading order:
 ``contacts_and_flights``      what a model says of them, for simulations and for periodic orbits
 ``sequence``, ``dynamics``    simulated impacts, and the simulation by contacts and flights
 ``restitution``, ``sticking``      impacts with a restitution coefficient, rest on the table
-``damping``, ``oscillator``, ``linear_flow``   the formulas of a linear contact and of its motion
+``damping``, ``oscillator``   the formulas of a linear contact, and of its motion for any damping
 ``resumption``                flight below the table's level, after a contact
 ``laws``                      contact laws, of which the linear one is a case
 ``linear_contact``            linear contacts to their release

@@ -6,10 +6,6 @@ acts on approach only is a linear contact up to the greatest penetration, at the
 then the spring alone, for a quarter of its period. The first part multiplies the speed ω p by
 ``exp(-ζ arccos ζ / √(1 - ζ²))``, which is the root of the r of the force release, because
 π - 2 arcsin ζ = 2 arccos ζ; the second part conserves it.
-
-Chaotic motions make a last digit into another motion, and beyond's have the same bits on every
-processor. The root evaluates Eq. 16 by numpy's functions, whose last bits depend on the processor;
-here it is evaluated by :mod:`bouncing_ball.numerics.elementary`.
 """
 
 from collections.abc import Callable
@@ -23,7 +19,7 @@ from bouncing_ball.errors import one_of, require
 from bouncing_ball.models import damping as linear
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.numerics.arrays import as_numbers
-from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
+from bouncing_ball.numerics.elementary import logarithm
 
 
 class Release(StrEnum):
@@ -88,10 +84,9 @@ class Release(StrEnum):
         >>> [round(angle / np.pi, 12) for angle in angles]
         [1.0, 0.666666666667, 0.333333333333]
         """
-        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
-        sine = self.sine(damping_ratio) if self.is_linear else np.asarray(damping_ratio, float)
-        half = arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
-        return 2 * half if self.is_linear else half
+        if self.is_linear:
+            return linear.Release(self).free_angle(damping_ratio)
+        return linear.Release.FORCE.free_angle(damping_ratio) / 2
 
     def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
         """The angle ϖ_d s at which a free contact with ζ < 1 ends.
@@ -167,13 +162,6 @@ def check_damping(value: ArrayLike, name: str) -> np.ndarray:
     return x
 
 
-# Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
-# step doubles the number of correct digits.
-_NEWTON_STEPS = 6
-# The difference between π/2 and the double nearest to it.
-_REST = 6.123233995736766e-17
-
-
 def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
@@ -197,42 +185,14 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
     >>> round(float(damping_ratio(0.8, "approach") / damping_ratio(0.8**2, "force")), 14)
     1.0
     """
-    r = check_restitution(restitution)
-    decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
     rule = Release.of(release)
-    if rule is Release.DISPLACEMENT:
-        return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
-    # The decrement of the force release, of which half an impact on approach has half.
-    lowest = "e⁻²" if rule is Release.FORCE else "e⁻¹"
-    decrement = decrement if rule is Release.FORCE else 2 * decrement
-    allowed = f"in ({lowest}, 1], the range of the {rule} release with ζ < 1"
-    require(decrement < 2, r, "restitution coefficient r", allowed)
-    # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
-    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)[()]
-
-
-def _cosine(beta: np.ndarray) -> np.ndarray:
-    """cos β, accurate near π/2 because the rounding error of π/2 is added."""
-    return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
-
-
-def _half_angle(decrement: np.ndarray) -> np.ndarray:
-    """β in (0, π/2] with ``2β cot β = decrement`` < 2, by Newton's method.
-
-    2β cot β falls from 2 to 0 and is concave, so that the steps converge from
-    the right without leaving the interval. The starting point replaces the curve by
-    the parabola 2 - 8 (β/π)², which agrees with it at β = 0 and β = π/2.
-    """
-    start = np.pi / 2 * np.sqrt(1 - decrement / 2)
-    beta = np.maximum(start, np.finfo(float).tiny)
-    for _ in range(_NEWTON_STEPS):
-        sine = sine_and_versine(beta)[0]
-        cosine = _cosine(beta)
-        value = 2 * beta * cosine / sine - decrement
-        # The bound of the slope is its limit at β = 0, where rounding leaves no slope.
-        slope = np.minimum(2 * (cosine * sine - beta) / (sine * sine), -4 / 3 * beta)
-        beta = beta - value / slope
-    return beta
+    if rule.is_linear:
+        return linear.damping_ratio(restitution, rule)
+    r = check_restitution(restitution)
+    decrement = np.abs(logarithm(r))
+    allowed = f"in (e⁻¹, 1], the range of the {rule} release with ζ < 1"
+    require(decrement < 1, r, "restitution coefficient r", allowed)
+    return linear.force_damping_ratio(2 * decrement)
 
 
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
@@ -265,8 +225,10 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     zeta = rule.require_rebound(damping)
     over = zeta >= 1
     under = np.where(over, 0.0, zeta)
-    angle = rule.damped_angle(under)
-    found = exponential(-angle * under / np.sqrt((1 - under) * (1 + under)))
+    if rule.is_linear:
+        found = linear.restitution_coefficient(under, rule)
+    else:
+        found = np.sqrt(linear.restitution_coefficient(under, linear.Release.FORCE))
     if not over.any():
         return found
     large = np.where(over, zeta, 1.0)

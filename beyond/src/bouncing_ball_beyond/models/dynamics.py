@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.arrays import BLOCK, as_numbers, blocks, pick
 from bouncing_ball_beyond.models.contacts_and_flights import ContactsAndFlights, Departure, Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
-from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.models.sequence import RECORDED, Cycle, ImpactSequence
 
 # Rounding may give a ball at rest on the table a small upward velocity.

@@ -25,7 +25,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Status
+from bouncing_ball.models.spring_damper import flow as linear_flow
 from bouncing_ball.numerics.elementary import (
     arctangent,
     exponential,
@@ -35,9 +37,8 @@ from bouncing_ball.numerics.elementary import (
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian, Released
-from bouncing_ball_beyond.models.flight import Flight, table
+from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
-from bouncing_ball_beyond.models.linear_flow import flow as linear_flow
 from bouncing_ball_beyond.models.oscillator import steady_response, table_response
 from bouncing_ball_beyond.models.resumption import ResumingDynamics
 

@@ -11,15 +11,8 @@ after the next impact is (Eq. 5) ::
 Here the map is composed of the impact (:meth:`RestitutionDynamics.depart`) and of the flight up to
 the landing (:meth:`.Dynamics.fly`), and a state is (τ, δ′) just before an impact.
 
-While the relative gravity g = 1 - Λ sin τ is positive, infinitely many ever smaller bounces take a
-finite time T: the ball *chatters*. Let v be δ′ after an impact, and ``g′ = -Λ cos τ`` the rate of
-change of g. Then ::
-
-    T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
-
-This sum replaces the bounces once Λ T₀ and T₀ are
-below 10⁻⁵ g, where the next term is below 10⁻¹⁵. The ball then rests on the table until it lifts
-off (:mod:`bouncing_ball_beyond.models.sticking`).
+Balls chatter as in the root (:mod:`bouncing_ball.models.restitution`), and then rest on the table
+until they lift off (:mod:`bouncing_ball_beyond.models.sticking`).
 """
 
 from dataclasses import dataclass
@@ -27,63 +20,18 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.restitution import chattering
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.flight import Flight
-from bouncing_ball_beyond.models.sticking import lift_off, lifted, pressed, stay
+from bouncing_ball_beyond.models.sticking import lift_off, lifted, stay
 
-# Bound of Λ T₀/g and T₀/g below which chattering is summed up.
-_CHATTER = 1e-5
-# Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
-_INSTANT = np.finfo(float).eps
 # The window in which a ball is proved to come to rest, in units of T₀; the longer it is, the more
 # the relative gravity may change within it.
 _WINDOW = 1.25
-# The smallest speed of an impact for which r is asked, and 1, as arrays without an axis.
+# The smallest speed of an impact for which r is asked.
 _SLOW = np.array(np.finfo(float).tiny)
-_ONE = np.array(1.0)
-
-
-def chattering(
-    velocity: np.ndarray,
-    restitution: np.ndarray,
-    x: np.ndarray,
-    y: np.ndarray,
-    amplitude: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Which balls come to rest on the table after an impact, and the time T of their chattering.
-
-    ``velocity`` is δ′ just after the impact, ``x`` and ``y`` are Λ cos τ and Λ sin τ, which are -g′
-    and 1 - g, and ``amplitude`` is Λ. T is 0 for balls that do not come to rest, because their
-    bounces are not summed up.
-
-    Examples
-    --------
-    On a table at rest T is the geometric series 2v (1 + r + r² + ...):
-
-    >>> speed, zero = np.array([1e-6, 1e-6, 1.0]), np.zeros(3)
-    >>> sticks, time = chattering(speed, np.array([0.5, 0.9, 0.5]), zero, zero, zero)
-    >>> sticks.tolist(), time.round(12).tolist()
-    ([True, False, False], [4e-06, 0.0, 0.0])
-    """
-    # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
-    load = _ONE + amplitude
-    if (velocity > _CHATTER * load * load).all():
-        return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
-    gravity = 1 - y
-    down = pressed(x, y)
-    # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
-    loss = gravity * (1 - restitution)
-    usable = down & (loss > 0)
-    first = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
-    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
-    short = usable & (first <= limit)
-    sticks = short | (down & (velocity == 0))
-    if not sticks.any():
-        return sticks, np.zeros_like(x)
-    correction = np.where(short, x * first, 0.0) / np.where(short, 3 * gravity, 1.0)
-    return sticks, np.where(sticks, first * (1 + correction), 0.0)
 
 
 @dataclass(frozen=True, repr=False)

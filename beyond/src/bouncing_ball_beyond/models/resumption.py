@@ -17,13 +17,14 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.models.flight import Unloaded, land
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball_beyond.models.contact import FiniteContact
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball_beyond.models.flight import Flight, Unloaded, land
+from bouncing_ball_beyond.models.flight import Flight
 
 
 def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -16,17 +16,7 @@ from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 
 @dataclass(frozen=True, repr=False)
 class RestitutionModel(Model):
-    """A ball whose impacts are instants at which δ′ becomes -r δ′ (Eqs. 1-9).
-
-    Parameters
-    ----------
-    restitution : float or array
-        r in (0, 1].
-
-    Raises
-    ------
-    ModelError
-        If a value of r lies outside (0, 1].
+    """The root's ball of the same name, with simulations and orbits of this house.
 
     Examples
     --------
@@ -37,6 +27,7 @@ class RestitutionModel(Model):
     """
 
     restitution: float | np.ndarray
+    """r in (0, 1]."""
 
     name: ClassVar[str] = "restitution"
 

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.damping import check_positive
-from bouncing_ball_beyond.models import linear_flow
+from bouncing_ball.models.spring_damper import ContactState
 from bouncing_ball_beyond.models.approach_threshold import approach_threshold
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
@@ -34,36 +34,18 @@ from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
-from bouncing_ball_beyond.models.linear_flow import ContactFlow
+from bouncing_ball_beyond.models.oscillator import responses
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 
 
 @dataclass(frozen=True, repr=False)
 class SpringDamper(OscillatorLaw):
-    """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
-
-    Its motion has a closed form, see :meth:`flow`.
-
-    Parameters
-    ----------
-    frequency_ratio, damping_ratio : float or array
-        ϖ > 0 and ζ ≥ 0, dimensionless.
-    release : Release or str
-        The condition that ends the contact; the paper's is the default.
-
-    Raises
-    ------
-    ModelError
-        If ϖ or ζ is no number in its range, their shapes do not broadcast, or the release is
-        unknown.
+    """The root's contact of the same name as a law, for every ζ ≥ 0 and every :class:`.Release`.
 
     Examples
     --------
-    >>> contact = SpringDamper.from_restitution(1.0, [5.0, 10.0], "force")
-    >>> contact[1].release, float(contact[1].frequency_ratio)
-    (<Release.FORCE: 'force'>, 10.0)
-    >>> contact[1].label
-    'ϖ = 10, ζ = 0'
+    >>> SpringDamper(10.0, 2.0, "force").label
+    'ϖ = 10, ζ = 2'
     """
 
     release: Release = Release.DISPLACEMENT
@@ -144,34 +126,16 @@ class SpringDamper(OscillatorLaw):
         restitution: ArrayLike,
         frequency_ratio: ArrayLike,
         release: str = Release.DISPLACEMENT,
-        *,
-        measured: bool = False,
     ) -> SpringDamper:
-        """The contact whose damping follows from a restitution coefficient r.
-
-        Parameters
-        ----------
-        restitution, frequency_ratio : array_like
-            r in (0, 1] and ϖ.
-        release : Release or str
-            The condition that ends the contact.
-        measured : bool
-            Whether r is the restitution coefficient of a free impact with this release.
-            Otherwise r is that of the displacement release (Eq. 16).
+        """The contact whose damping follows from the r of the displacement release (Eq. 16).
 
         Raises
         ------
         ModelError
             If r or ϖ is outside its range, or the release is unknown.
-
-        Examples
-        --------
-        >>> float(SpringDamper.from_restitution(1.0, 10.0).damping_ratio)
-        0.0
         """
-        rule = Release.of(release)
-        zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
-        return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
+        omega = check_positive(frequency_ratio, "frequency ratio ϖ")
+        return cls(omega, damping_ratio(restitution), Release.of(release))
 
     @classmethod
     def of_impact(
@@ -303,7 +267,7 @@ class SpringDamper(OscillatorLaw):
         velocity: ArrayLike,
         phase: ArrayLike,
         amplitude: ArrayLike,
-    ) -> ContactFlow:
+    ) -> ContactState:
         """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
 
         If the damper acts on approach only, this is the motion up to the greatest penetration. The
@@ -316,7 +280,8 @@ class SpringDamper(OscillatorLaw):
             χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ,          β = -2ζϖ/γ
 
         Here τ = s and δ = z - Λ sin(s + φ); δ₀ and δ′₀ at s = 0 determine A and B, which do not
-        appear (:mod:`bouncing_ball_beyond.models.linear_flow`). The class ``ClosedFormMotion`` in
+        appear: as in :mod:`bouncing_ball.models.spring_damper` the flow is a sum of responses, here
+        those of every damping (:mod:`.oscillator`). The class ``ClosedFormMotion`` in
         :mod:`bouncing_ball_beyond.models.linear_contact` has them.
 
         Parameters
@@ -326,7 +291,7 @@ class SpringDamper(OscillatorLaw):
 
         Returns
         -------
-        ContactFlow
+        ContactState
             Its fields have the shape to which the arguments and the contact broadcast.
 
         Examples
@@ -337,8 +302,18 @@ class SpringDamper(OscillatorLaw):
         >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
         (-0.25, 0.0)
         """
-        numbers = self.frequency_ratio, self.damping_ratio
-        return linear_flow.flow(*numbers, time, displacement, velocity, phase, amplitude)
+        state = time, displacement, velocity, phase, amplitude
+        columns = (*state, self.frequency_ratio, self.damping_ratio)
+        rows = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in columns))
+        s, d0, v0, phi, lam, omega, zeta = rows
+        loss = 2 * zeta * omega
+        stiffness = omega * omega
+        g, G, h = responses(s, omega, zeta)
+        drive = lam * np.exp(1j * phi)
+        d = d0 * (g.rate + loss * g.value) + v0 * g.value - G.value + np.imag(drive * h.value)
+        v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
+        acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
+        return ContactState(d, v, acc)
 
     def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""

@@ -9,11 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Status
+from bouncing_ball.models.restitution import lift_off_phase
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import arctangent, reduce_angle
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contacts_and_flights import Departure
-from bouncing_ball_beyond.models.flight import Flight, table
+from bouncing_ball_beyond.models.flight import Flight
 
 _TURN = 2 * np.pi
 
@@ -33,18 +35,6 @@ class LiftOff(NamedTuple):
 def lift_off_velocity(amplitude: np.ndarray) -> np.ndarray:
     """The velocity √(Λ² - 1) of the table at lift-off, for Λ ≥ 1."""
     return np.sqrt((amplitude - 1) * (amplitude + 1))
-
-
-def lift_off_phase(amplitude: np.ndarray) -> np.ndarray:
-    """The phase arcsin(1/Λ) at which Λ sin τ rises through 1 and balls at rest leave the table
-    (Eq. 9), for Λ ≥ 1.
-
-    Examples
-    --------
-    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
-    True
-    """
-    return arctangent(1.0, lift_off_velocity(amplitude))
 
 
 def lift_off(phase: np.ndarray, amplitude: np.ndarray) -> LiftOff:

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.flight import table
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
-from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.motions.lyapunov import Stretching
 from bouncing_ball_beyond.motions.motions import Kind, Motions, Reason
 from bouncing_ball_beyond.motions.recurrence import Mark

@@ -14,8 +14,8 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
+from bouncing_ball.models.flight import table
 from bouncing_ball_beyond.models.ball import Ball
-from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
 from bouncing_ball_beyond.motions.over_time import first_impacts

@@ -31,9 +31,10 @@ from bouncing_ball.datasets.arguments import (
     require_memory,
 )
 from bouncing_ball.errors import ModelError, require, suggesting
+from bouncing_ball.models.flight import land, table
 from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.ball import Ball
-from bouncing_ball_beyond.models.flight import Flight, land, table
+from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.sequence import ImpactSequence

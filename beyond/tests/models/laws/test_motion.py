@@ -6,10 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from loaded_laws import Sharing
 
+from bouncing_ball.models.flight import land, table
 from bouncing_ball.models.model import Status
 from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
-from bouncing_ball_beyond.models.flight import Flight, land, table
+from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.laws.motion import sampled_resumption
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold

@@ -3,8 +3,9 @@
 What all commands have in common is in :mod:`bouncing_ball.cli.advice`, which is asked next.
 """
 
-import re
 from collections.abc import Collection, Iterable, Sequence
+
+from bouncing_ball.cli.advice import DASHES, NUMBER, is_option, preceding
 
 # Other words for options, and the symbols of textbooks.
 _WORDS = {
@@ -24,9 +25,6 @@ _WORDS = {
     "dt": "time-step",
     "all-families": "all",
 }
-# Dashes that an editor puts in place of two hyphens.
-_DASHES = "-—–−"
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _WITHOUT_VALUE = ("--all", "--intervals")
 
 
@@ -51,7 +49,7 @@ def advice_of_design(unknown: str, arguments: Sequence[str], known: Iterable[str
     """
     name = unknown.partition("=")[0]
     found = advice_of_fit(unknown, arguments, known)
-    if found and _is_option(name):
+    if found and is_option(name):
         return found
     parameter = name.removeprefix("--")
     if engine := _engine_with(parameter):
@@ -71,9 +69,9 @@ def advice_of_fit(unknown: str, arguments: Sequence[str], known: Iterable[str]) 
     """
     options = list(known)
     name = unknown.partition("=")[0]
-    if not _is_option(name):
+    if not is_option(name):
         return _of_value(name, arguments, options)
-    word = name.lstrip(_DASHES).replace("_", "-")
+    word = name.lstrip(DASHES).replace("_", "-")
     # The radius is half of it, so that the option is not just another name.
     if word == "diameter" and "--radius" in options:
         return "; did you mean --radius, half of it?"
@@ -81,21 +79,12 @@ def advice_of_fit(unknown: str, arguments: Sequence[str], known: Iterable[str]) 
     return f"; did you mean --{meant}?" if f"--{meant}" in options else ""
 
 
-def _is_option(name: str) -> bool:
-    """Whether an argument is no value; a negative number is a value."""
-    return name[:1] in tuple(_DASHES) and not _NUMBER.match(name)
-
-
 def _of_value(value: str, arguments: Sequence[str], known: Collection[str]) -> str:
     """A clause on an argument that follows a number; empty elsewhere."""
     if f"--{value}" in known:
         return ""
-    place = list(arguments).index(value) if value in arguments else 0
-    options = [each for each in arguments[:place] if each.partition("=")[0] in known]
-    if not options or options[-1] in _WITHOUT_VALUE:
-        return ""
-    before = arguments[place - 1].partition("=")[2 if "=" in options[-1] else 0]
-    if not _NUMBER.fullmatch(before):
+    last, before = preceding(value, arguments, known)
+    if not last or last in _WITHOUT_VALUE or not NUMBER.fullmatch(before):
         return ""
     return ': a value with a space is one argument in quotes, such as "20 g"'
 

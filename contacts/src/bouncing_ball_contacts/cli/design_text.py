@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES, Quantity
-from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
 from bouncing_ball_contacts.cli.engine_text import engine_lines, law_lines, line
 from bouncing_ball_contacts.cli.options import option

@@ -9,6 +9,7 @@ from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
+from bouncing_ball_beyond.models.named_laws import law_named
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.quantities import (
     ContactTime,
@@ -29,7 +30,7 @@ from bouncing_ball_contacts.contact.quantities import (
 )
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.engine import Engine
-from bouncing_ball_contacts.engines.laws import law_named
+from bouncing_ball_contacts.engines.laws import LAWS
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
 """Parameters that determine the stiffness of a contact; a modulus needs the radius, too."""
@@ -206,7 +207,7 @@ class Contact:
                 f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or "
                 "give {radius} and {reduced_modulus} in place of {law}"
             )
-        kind = SpringDamper if self.law is None else law_named(self.law)
+        kind = SpringDamper if self.law is None else law_named(self.law, LAWS)
         return None if kind is SpringDamper else kind
 
     @property

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.accuracy.error_law import law_thresholds
-from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, Quantity, as_deviation
+from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, as_deviation
 from bouncing_ball_beyond.accuracy.simple_models import search
-from bouncing_ball_beyond.accuracy.thresholds import RATIOS
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.errors import (
     FAMILY,
     ModelError,
@@ -11,7 +12,7 @@ from bouncing_ball.errors import (
     shortened,
     suggesting,
 )
-from bouncing_ball_beyond.accuracy.errors import QUANTITIES, Quantity
+from bouncing_ball_beyond.accuracy.errors import QUANTITIES
 from bouncing_ball_contacts.contact.quantities import RestitutionError, TimeStep, Tolerance, convert
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.engine import ERROR

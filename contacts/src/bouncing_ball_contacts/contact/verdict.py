@@ -4,8 +4,9 @@ The error in a sentence is the deviation of a model from the contact, relative t
 contact (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`).
 """
 
-from bouncing_ball_beyond.accuracy.errors import QUANTITIES, Quantity
-from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball_beyond.accuracy.errors import QUANTITIES
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.families import ComparedOrbit

@@ -33,10 +33,10 @@ from typing import Self
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import VALID_BELOW, first_order, small_parameter
-from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -8,6 +8,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.style import COLOURS, LAWS, Look
@@ -23,7 +24,6 @@ from bouncing_ball.drawing.tables import (
     value,
     words,
 )
-from bouncing_ball_beyond.accuracy.errors import Quantity
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {

@@ -29,8 +29,9 @@ from bouncing_ball_beyond.models.laws.hertzian import (
 )
 from bouncing_ball_beyond.models.laws.law_of_impact import reference
 from bouncing_ball_beyond.models.laws.signature import Signature
+from bouncing_ball_beyond.models.named_laws import law_named
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.engines.laws import law_named
+from bouncing_ball_contacts.engines.laws import LAWS
 
 # The logarithms of the groups that are searched for a restitution coefficient, which falls with
 # the group. Few of them are computed, because each costs as much as a fit.
@@ -185,5 +186,5 @@ def curve_named(name: str) -> LawCurve:
 
 
 def _contact_curve(name: str) -> LawCurve:
-    kind = law_named(name)
+    kind = law_named(name, LAWS)
     return one_of("law for a fit", kind.name, CURVES)

@@ -22,13 +22,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.flight import Unloaded, land, table
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero, first_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.corrected import impact as corrected_map
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball_beyond.models.flight import Flight, Unloaded, emerge, land, table
+from bouncing_ball_beyond.models.flight import Flight, emerge
 from bouncing_ball_beyond.models.sticking import lift_off, lifted, stay
 
 # Newton steps from the landing to the instant: the start has an error of third order in t_c, and

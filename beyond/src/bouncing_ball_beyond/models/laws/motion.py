@@ -22,13 +22,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian
-from bouncing_ball_beyond.models.flight import Flight, Rise, table
+from bouncing_ball_beyond.models.flight import Flight, Rise
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import LoadedLaw, under
 from bouncing_ball_beyond.models.laws.march import MOST_PANELS, ContactEnds, march

@@ -18,10 +18,10 @@ from enum import StrEnum
 
 import numpy as np
 
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.numerics.branch import Branch, End, EndKind
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball_beyond.models.flight import table
 from bouncing_ball_beyond.periodic.orbits.lost_release import lost_release
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import (

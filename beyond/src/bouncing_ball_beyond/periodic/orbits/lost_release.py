@@ -20,9 +20,10 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import checked, solve
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball_beyond.models.flight import Flight, table
+from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.periodic.orbits.legs import Legs
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT

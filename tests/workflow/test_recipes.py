@@ -111,7 +111,7 @@ def test_a_figure_needs_the_files_of_its_recipe_only(fresh):
         '        fig10=config["paper"]["fig10"],\n',
     ):
         fresh.rewrite(datasets, old, old + old.replace("fig10", "heights"))
-    fresh.rewrite(datasets, 'about("fig10", "fig13")', 'about("fig10", "fig13", "heights")')
+    fresh.rewrite(datasets, 'about("fig10"', 'about("heights", "fig10"')
     study = f"{SCRIPTS}/frequency_sweeps.py"
     fresh.rewrite(study, "fig10=frequency_sweep", "fig10=frequency_sweep, heights=frequency_sweep")
     with (fresh.path / FIGURES).open("a", encoding="utf-8") as module:

@@ -153,7 +153,7 @@ def test_the_bound_on_the_bounces_of_a_ball_that_comes_to_rest_is_not_too_short(
 
 
 def longest_bounces(v, r, g, most):
-    """The sum of all bounces of a ball that lands each time as fast as gravities in [g, most] let it."""
+    """The sum of all bounces of a ball that lands as fast as gravities in [g, most] let it."""
     whole = 0.0
     while v > 1e-12:
         whole += 2 * v / g

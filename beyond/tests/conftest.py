@@ -7,6 +7,7 @@ from declared_variables import variables_of
 
 import bouncing_ball_beyond
 from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.periodic.branches import VARIABLES
 
 HOUSE = Path(__file__).resolve().parents[1]
 # Of the root: references, the command line, the browser. Here: a reference integration.
@@ -23,5 +24,5 @@ def recorded():
 
 @pytest.fixture(scope="session")
 def declared():
-    """The variables of all datasets: those that stages share, and those of each stage."""
-    return variables_of(bouncing_ball_beyond)
+    """The variables of all datasets: those of stages, and those of the root's branches."""
+    return variables_of(bouncing_ball_beyond) | VARIABLES

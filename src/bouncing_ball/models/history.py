@@ -9,7 +9,7 @@ that no event is passed over. All quantities are dimensionless, and times are in
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -44,6 +44,8 @@ from bouncing_ball.numerics.elementary import reduce_angle
 # A single simulation of the command line needs no labels, and importing xarray takes longer: it is
 # imported where results are labelled.
 if TYPE_CHECKING:
+    import xarray as xr
+
     from bouncing_ball.datasets.labelled import Grid
     from bouncing_ball.drawing.result import Result
 
@@ -403,10 +405,13 @@ def simulate(
     >>> found.time.values.tolist(), found.status.item()
     ([0.0, 4.0, 6.0], 'bouncing')
     """
-    grid, starts = _first_impacts(ball, amplitude, phase, velocity)
+    from bouncing_ball.drawing.result import Result
+
+    grid, starts = first_impacts(a_ball(ball).parameters, amplitude, phase, velocity)
     count = checked_number("impacts", impacts, IMPACTS)
     require_memory(count * grid.size, "states", "impacts or balls")
-    return _labelled_impacts(grid, impacts_of(ball.row(grid), *starts, count))
+    sequence = impacts_of(ball.row(grid), *starts, count)
+    return Result.of(dataset_of_impacts(grid, sequence), "simulate")
 
 
 @suggesting
@@ -456,10 +461,13 @@ def history(
     >>> found.ball.dims, found.ball_velocity.isel(time=1).values + math.pi / 2
     (('velocity', 'time'), array([1., 2.]))
     """
-    grid, starts = _first_impacts(ball, amplitude, phase, velocity)
-    time = _instants(periods, samples, grid.size)
+    from bouncing_ball.drawing.result import Result
+
+    grid, starts = first_impacts(a_ball(ball).parameters, amplitude, phase, velocity)
+    time = instants(periods, samples, grid.size)
     since = np.broadcast_to(time, (grid.size, time.size))
-    return _labelled_history(grid, time, _at_times(ball.row(grid), starts, since))
+    found = _at_times(ball.row(grid), starts, since)
+    return Result.of(dataset_of_history(grid, time, found), "history")
 
 
 @suggesting
@@ -508,54 +516,68 @@ def drop(
     >>> round(float(found.ball.where(found.time > 4.0).max()), 4)
     2.0
     """
-    grid = _grid(
-        ball,
-        height=checked("height", height, POSITIVE),
-        amplitude=checked("amplitude", amplitude, AMPLITUDE),
-        phase=checked("phase", phase, START),
-    )
-    time = _instants(periods, samples, grid.size)
-    start, lam, phi = (grid.row(name) for name in ("height", "amplitude", "phase"))
-    rate, level = table(phi, lam)
-    require(start >= level, start, "height", "at or above the table, Λ sin φ")
-    falling = fly(phi, start - level, -rate, lam).time
+    from bouncing_ball.drawing.result import Result
+
+    grid, falling, starts = first_falls(a_ball(ball).parameters, height, amplitude, phase)
+    time = instants(periods, samples, grid.size)
     since = time - falling[:, np.newaxis]
-    found = _at_times(ball.row(grid), (lam, phi + falling, -falling), since)
-    above = since < 0
-    found["ball"] = np.where(above, start[:, np.newaxis] - time * time / 2, found["ball"])
-    found["ball_velocity"] = np.where(above, -time, found["ball_velocity"])
-    labelled = _labelled_history(grid, time, found)
-    labelled.time.attrs["long_name"] = "time since the ball was let go"
-    return labelled
+    found = _at_times(ball.row(grid), starts, since)
+    return Result.of(dataset_of_drop(grid, time, since, found), "history")
 
 
-def _grid(ball: Model, **arguments: Any) -> Grid:
-    """The grid that the arguments of a call and the parameters of the ball span, in this order."""
-    from bouncing_ball.datasets.labelled import Grid
-
-    return Grid(**arguments, **a_ball(ball).parameters)
+Starts = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""First impacts of a row of balls: Λ, the table's phase φ, and z′_i, each of shape (ball,)."""
 
 
-def _first_impacts(
-    ball: Model, amplitude: AmplitudeAxis, phase: StartAxis, velocity: StartAxis
-) -> tuple[Grid, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """The grid of the arguments and of the ball, and Λ, φ and z′_i at all of its places.
+def first_impacts(
+    parameters: Mapping[str, Any], amplitude: AmplitudeAxis, phase: StartAxis, velocity: StartAxis
+) -> tuple[Grid, Starts]:
+    """The grid of the arguments and of the parameters of a ball, and the first impacts.
 
     Raises
     ------
     ModelError
         If an argument is missing, of a wrong type or shape, or out of range.
     """
-    grid = _grid(
-        ball,
+    from bouncing_ball.datasets.labelled import Grid
+
+    grid = Grid(
         amplitude=checked("amplitude", amplitude, AMPLITUDE),
         phase=checked("phase", phase, START),
         velocity=checked("velocity", velocity, START),
+        **parameters,
     )
     return grid, (grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
 
 
-def _instants(periods: Any, samples: Any, balls: int) -> np.ndarray:
+def first_falls(
+    parameters: Mapping[str, Any], height: PositiveAxis, amplitude: AmplitudeAxis, phase: StartAxis
+) -> tuple[Grid, np.ndarray, Starts]:
+    """The grid of the arguments and of the parameters of a ball that is dropped at rest, the times
+    that it falls, and the first impacts.
+
+    Raises
+    ------
+    ModelError
+        If an argument is missing, of a wrong type or shape, or out of range, or if a ball would be
+        dropped below the table.
+    """
+    from bouncing_ball.datasets.labelled import Grid
+
+    grid = Grid(
+        height=checked("height", height, POSITIVE),
+        amplitude=checked("amplitude", amplitude, AMPLITUDE),
+        phase=checked("phase", phase, START),
+        **parameters,
+    )
+    start, lam, phi = (grid.row(name) for name in ("height", "amplitude", "phase"))
+    rate, level = table(phi, lam)
+    require(start >= level, start, "height", "at or above the table, Λ sin φ")
+    falling = fly(phi, start - level, -rate, lam).time
+    return grid, falling, (lam, phi + falling, -falling)
+
+
+def instants(periods: Any, samples: Any, balls: int) -> np.ndarray:
     """Times over several periods of the table, with ``samples`` times in each period.
 
     Raises
@@ -563,6 +585,11 @@ def _instants(periods: Any, samples: Any, balls: int) -> np.ndarray:
     ModelError
         If an argument is out of range, or if the states of this many balls at all these times would
         fill the memory.
+
+    Examples
+    --------
+    >>> (instants(1.0, 4, 1) / np.pi).tolist()
+    [0.0, 0.5, 1.0, 1.5, 2.0]
     """
     length = checked_number("periods", periods, PERIODS)
     count = math.ceil(length * checked_number("samples", samples, SAMPLES)) + 1
@@ -570,9 +597,7 @@ def _instants(periods: Any, samples: Any, balls: int) -> np.ndarray:
     return np.linspace(0.0, 2 * np.pi * length, count)
 
 
-def _at_times(
-    model: Model, starts: tuple[np.ndarray, np.ndarray, np.ndarray], time: np.ndarray
-) -> dict[str, np.ndarray]:
+def _at_times(model: Model, starts: Starts, time: np.ndarray) -> dict[str, np.ndarray]:
     """The variables of a history for balls at times (ball, sample) since their first impacts."""
     sequence = impacts_until(model, *starts, time[:, -1])
     if np.any(sequence.status == Status.UNDECIDED):
@@ -580,7 +605,11 @@ def _at_times(
             "a ball stays on its contact for longer than its motion is followed: use fewer "
             "periods, or a contact of more damping or less stiffness"
         )
-    balls = [motion_at(sequence, k, each) for k, each in enumerate(time)]
+    return columns_of([motion_at(sequence, k, each) for k, each in enumerate(time)])
+
+
+def columns_of(balls: Sequence[Any]) -> dict[str, np.ndarray]:
+    """The variables of the histories of several balls, as that of a :class:`History` each."""
     return {
         "ball": np.array([one.height for one in balls]),
         "ball_velocity": np.array([one.velocity for one in balls]),
@@ -589,12 +618,13 @@ def _at_times(
     }
 
 
-def _labelled_impacts(grid: Grid, sequence: ImpactSequence) -> Result:
-    """Sequences of impacts with the axes of the grid, and a last axis "impact"."""
+def dataset_of_impacts(grid: Grid, sequence: Any) -> xr.Dataset:
+    """The impacts of an :class:`ImpactSequence` with the axes of the grid, and a last axis
+    "impact".
+    """
     import xarray as xr
 
     from bouncing_ball.datasets.variables import Variable, describe
-    from bouncing_ball.drawing.result import Result
 
     status = [Status(number).words for number in sequence.status.tolist()]
     of_impacts = {
@@ -610,16 +640,29 @@ def _labelled_impacts(grid: Grid, sequence: ImpactSequence) -> Result:
         "status": Variable("what the ball does after the last of these impacts"),
     }
     rows = xr.Dataset({name: ((CASE, "impact"), value.T) for name, value in of_impacts.items()})
-    described = describe(rows.assign(status=(CASE, status)), meanings)
-    return Result.of(grid.unfold(described), "simulate")
+    return grid.unfold(describe(rows.assign(status=(CASE, status)), meanings))
 
 
-def _labelled_history(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]) -> Result:
+def dataset_of_history(grid: Grid, time: np.ndarray, found: Mapping[str, np.ndarray]) -> xr.Dataset:
     """Balls and table with the axes of the grid, and a last axis "time"."""
     import xarray as xr
 
     from bouncing_ball.datasets.variables import describe
-    from bouncing_ball.drawing.result import Result
 
     rows = {name: ((CASE, "time"), values) for name, values in found.items()}
-    return Result.of(grid.unfold(describe(xr.Dataset(rows, {"time": time}))), "history")
+    return grid.unfold(describe(xr.Dataset(rows, {"time": time})))
+
+
+def dataset_of_drop(
+    grid: Grid, time: np.ndarray, since: np.ndarray, found: dict[str, np.ndarray]
+) -> xr.Dataset:
+    """The history of balls that fall from the heights of a grid until ``since``, the time since
+    their first impacts, is 0.
+    """
+    above = since < 0
+    fallen = grid.row("height")[:, np.newaxis] - time * time / 2
+    found["ball"] = np.where(above, fallen, found["ball"])
+    found["ball_velocity"] = np.where(above, -time, found["ball_velocity"])
+    whole = dataset_of_history(grid, time, found)
+    whole.time.attrs["long_name"] = "time since the ball was let go"
+    return whole

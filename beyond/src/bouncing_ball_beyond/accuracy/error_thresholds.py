@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy import thresholds
 from bouncing_ball.accuracy.thresholds import RATIOS, quantity_names
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import (
@@ -27,11 +28,13 @@ from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
 from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
+from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_known_ball
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 
 
 @suggesting
+@as_in(thresholds.error_thresholds)
 def error_thresholds(
     ball: Ball,
     n: FamilyAxis = 1,
@@ -41,40 +44,22 @@ def error_thresholds(
     quantities: Sequence[str] | None = None,
     release: ReleaseName = "displacement",
 ) -> Result:
-    """The ϖ above which the restitution model is accurate for a contact with a spring and a damper.
+    """The ϖ above which the restitution model and the corrected model are accurate for a contact.
 
-    The contact has the r of the ball as the restitution coefficient of a free impact. The error of
-    a quantity is its value on the contact minus its value in the simple model, over the latter
-    (Eqs. 37-38). An engineer's contact is assessed by deviations, over the value on the contact
-    instead, so that its thresholds are others: an error e here is -e/(1 + e) there.
+    As :func:`bouncing_ball.error_thresholds`, for both simple models. An engineer's contact is
+    assessed by deviations, over the value on the contact instead, so that its thresholds are
+    others: an error e here is -e/(1 + e) there.
 
     Parameters
     ----------
     ball : Ball
         A ball made by :func:`bouncing_ball_beyond.rigid`.
-    n : int or array of int
-        Index n of the family.
-    amplitude : float or array
-        Excitation amplitude Λ > 0 of the stable orbit.
-    tolerance : float or array
-        Largest modulus of this error.
-    quantities : sequence of str, optional
-        The quantities compared; by default all: "max_height", "bounce_velocity", "phase",
-        "apparent_restitution", "saddle_node", "period_doubling" and "permanent_contact".
-    release : str
-        Where a contact ends, "displacement" or "force".
 
     Returns
     -------
     Result
-        ``error_threshold``, ϖ between 1 and 10⁶, and ``threshold_status``: "found", "within" the
-        tolerance at every ϖ, or "outside" at the largest ϖ; the threshold is then NaN. The last
-        axes are ``simple``, the restitution model and the corrected one, and ``quantity``.
-
-    Raises
-    ------
-    ModelError
-        If a parameter is of a wrong type or shape, or out of range, or the ball is not rigid.
+        The variables of :func:`bouncing_ball.error_thresholds`. The last axes are ``simple``, the
+        restitution model and the corrected one, and ``quantity``.
 
     Examples
     --------

@@ -76,7 +76,7 @@ def ball_of(
         return a_ball(balls.ball_of(release=release, model=model, **linear))
     if frequency_ratio is None:
         raise ParameterError("{model} corrected needs {frequency_ratio}")
-    return corrected(balls.ball_of(release=release, model="spring-damper", **linear))
+    return corrected(a_ball(balls.ball_of(release=release, model="spring-damper", **linear)))
 
 
 def _ball_of_law(

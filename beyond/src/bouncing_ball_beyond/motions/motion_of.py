@@ -22,8 +22,10 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.errors import ParameterError, suggesting
+from bouncing_ball.models import history
 from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_single_ball
 from bouncing_ball_beyond.motions import grids
 from bouncing_ball_beyond.motions.destination import IMPACTS
@@ -31,6 +33,7 @@ from bouncing_ball_beyond.motions.over_time import first_impacts
 
 
 @suggesting
+@as_in(history.simulate)
 def motion_of(
     ball: Ball,
     *,
@@ -45,12 +48,6 @@ def motion_of(
     Parameters
     ----------
     ball : Ball
-    amplitude : float or array
-        Excitation amplitude Λ.
-    phase : float or array
-        Phase of the table at the first impact.
-    velocity : float or array
-        Absolute velocity of the ball before the first impact.
     impacts : int
         Number of impacts after which the search for a repetition ends. With more of them, long
         transients before a motion that repeats are not called chaotic.
@@ -90,6 +87,7 @@ def motion_of(
 
 
 @suggesting
+@as_in(motion_of)
 def lyapunov_exponent(
     ball: Ball,
     *,
@@ -99,8 +97,6 @@ def lyapunov_exponent(
     impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The two Lyapunov exponents of the motion on which a ball ends, per period of the table.
-
-    The parameters are those of :func:`motion_of`.
 
     Returns
     -------
@@ -115,11 +111,6 @@ def lyapunov_exponent(
         of the determinant of the return map, over one repetition, or over as many impacts as the
         ball was followed for. ``second_exponent`` is the difference of the two. The figure shows
         the largest exponents with their errors.
-
-    Raises
-    ------
-    ModelError
-        If a parameter is missing, of a wrong type or shape, or out of range.
 
     Examples
     --------

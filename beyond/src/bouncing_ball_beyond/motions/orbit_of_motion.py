@@ -16,8 +16,10 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball.models.flight import table
 from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
+from bouncing_ball_beyond.motions.motion_of import motion_of
 from bouncing_ball_beyond.motions.over_time import first_impacts
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
@@ -26,6 +28,7 @@ from bouncing_ball_beyond.periodic.orbits.simulation import simulated
 
 
 @suggesting
+@as_in(motion_of)
 def orbit_of_motion(
     ball: Ball,
     *,
@@ -36,9 +39,21 @@ def orbit_of_motion(
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
 
-    The parameters are those of :func:`bouncing_ball_beyond.motion_of`, for a single ball. A ball
-    that is given by r and D of a free impact has the law with these at the speed of the first
-    impact.
+    A ball that is given by r and D of a free impact has the law with these at the speed of the
+    first impact.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    amplitude : float
+        Excitation amplitude Λ > 0.
+    phase, velocity : float
+        Those of the first impact, as in :func:`bouncing_ball_beyond.motion_of`.
+
+    Returns
+    -------
+    Orbit
 
     Raises
     ------

@@ -19,13 +19,15 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.numerics.branch import ContinuationError
+from bouncing_ball.periodic import branches
 from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
 from bouncing_ball_beyond.periodic.branches.observables import (
-    VARIABLES,
+    OF_BRANCHES,
     joined,
     n_t_columns,
     no_branch,
@@ -40,46 +42,26 @@ _STRIDE = 2e-3
 
 
 @suggesting
+@as_in(branches.branch)
 def branch(
     ball: Ball, n: FamilyAxis = 1, *, amplitude_max: Positive | None = None, points: Points = 300
 ) -> FollowedBranch:
-    """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
+    """The branch of n-T orbits of a ball of any model over the amplitude Λ.
 
     Parameters
     ----------
     ball : Ball
-    n : int or array of int
-        Index n of the family.
-    amplitude_max : float, optional
-        Largest Λ of the branch; by default 1.4 times that of the period doubling.
-    points : int
-        Number of points along the branch, at equal steps of arclength.
 
     Returns
     -------
     FollowedBranch
-        ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
-        orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
-        saddle-nodes, period doublings and grazing orbits. A single branch has the orbits
-        themselves as well, as that of :func:`bouncing_ball_beyond.follow`. Where one of several
-        branches does not exist it is NaN, and ``end_reason`` says why.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no branch up to this Λ, or if it cannot be followed.
-    ModelError
-        If a parameter is of a wrong type or shape, or out of range.
+        The variables of :func:`bouncing_ball.branch`. A single branch has the orbits themselves as
+        well, as that of :func:`bouncing_ball_beyond.follow`.
 
     Examples
     --------
-    >>> import math
     >>> from bouncing_ball_beyond import rigid
     >>> found = branch(rigid(restitution=0.85), points=50)
-    >>> found.special_kind.values.tolist()
-    ['saddle-node', 'period doubling']
-    >>> round(float(found.special_amplitude[0]) / math.pi * 1.85 / 0.15, 12)
-    1.0
     >>> found.first("saddle-node").amplitude == float(found.special_amplitude[0])
     True
     """
@@ -96,7 +78,9 @@ def branch(
     grid = Grid(n=family, **given.parameters)
     require_memory(count * grid.size, "points", "points or branches")
     whole = by_place(grid, given, ("n",), found, partial(no_branch, count), joined)
-    data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude", impacts=1)
+    data = grid.unfold(describe(whole, OF_BRANCHES | KEPT)).assign_attrs(
+        along="amplitude", impacts=1
+    )
     if "n" in data.attrs:
         data = data.assign_attrs(periods=data.attrs["n"])
     if top is not None:

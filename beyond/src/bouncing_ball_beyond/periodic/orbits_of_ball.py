@@ -20,8 +20,11 @@ from bouncing_ball.datasets.arguments import (
     is_array,
 )
 from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.models import permanent_contact as underdamped
+from bouncing_ball.periodic import calls
 from bouncing_ball.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.ball import Ball
+from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball, a_known_ball, a_single_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
@@ -33,9 +36,7 @@ if TYPE_CHECKING:
 
 
 class TwoLimits(NamedTuple):
-    """The two orbits that bound the stable range of a family; their numbers are NaN where the
-    bifurcation does not exist.
-    """
+    """The root's :class:`~bouncing_ball.periodic.calls.TwoLimits`, with orbits of this house."""
 
     saddle_node: Orbit
     period_doubling: Orbit
@@ -45,33 +46,15 @@ class TwoLimits(NamedTuple):
 
 
 @suggesting
+@as_in(calls.orbit)
 def orbit(
     ball: Ball, n: FamilyAxis = 1, *, amplitude: AmplitudeOfOrbitAxis, side: SideName = "stable"
 ) -> Orbit | Result:
-    """The n-T orbit at the excitation amplitude Λ.
+    """The n-T orbit of a ball of any model at the excitation amplitude Λ.
 
     Parameters
     ----------
     ball : Ball
-    n : int or array of int
-        Index n of the family.
-    amplitude : float or array
-        Excitation amplitude Λ > 0.
-    side : str
-        Side of the branch next to the saddle-node: "stable" or "unstable".
-
-    Returns
-    -------
-    Orbit or Result
-        One orbit, with Python floats. If a parameter is an array, a dataset of the observables
-        of all orbits with an axis named after each array; NaN where there is no orbit.
-
-    Raises
-    ------
-    NoOrbitError
-        If the single orbit does not exist; the message gives the reason.
-    ModelError
-        If a parameter is of a wrong type or shape, or out of range.
 
     Examples
     --------
@@ -109,10 +92,11 @@ release='displacement')
 
 
 @suggesting
+@as_in(calls.orbits)
 def orbits(
     ball: Ball, n: Annotated[int, FAMILY] = 1, *, amplitude: AmplitudeOfOrbit
 ) -> list[Orbit]:
-    """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
+    """All n-T orbits of a ball of any model at one Λ, in order of contact duration.
 
     They are all of them if a closed form of the branch is known, as for ``spring_damper``. For a
     contact law they are those on the branch that comes from large Λ.
@@ -121,17 +105,6 @@ def orbits(
     ----------
     ball : Ball
         A single ball.
-    n : int
-        Index n of the family.
-    amplitude : float
-        Excitation amplitude Λ > 0.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is none.
-    ModelError
-        If a parameter is an array, of a wrong type, or out of range.
 
     Examples
     --------
@@ -152,33 +125,19 @@ def orbits(
 
 
 @suggesting
+@as_in(calls.limits)
 def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
-    """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
+    """Saddle-node and period doubling of the n-T orbits of a ball of any model; NaN where there is
+    none.
 
     Parameters
     ----------
     ball : Ball
-    n : int or array of int
-        Index n of the family.
-
-    Returns
-    -------
-    TwoLimits or Result
-        Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
-        axis named after each array.
-
-    Raises
-    ------
-    ModelError
-        If n is no whole number in its range.
 
     Examples
     --------
     >>> from bouncing_ball_beyond import rigid
-    >>> found = limits(rigid(restitution=0.85))
-    >>> round(found.saddle_node.amplitude, 6), round(found.period_doubling.amplitude, 6)
-    (0.254724, 1.038304)
-    >>> found.saddle_node.kind
+    >>> limits(rigid(restitution=0.85)).saddle_node.kind
     'saddle-node'
     """
     family = checked("n", n, FAMILY)
@@ -197,19 +156,14 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
 
 
 @suggesting
+@as_in(underdamped.permanent_contact)
 def permanent_contact(ball: Ball) -> float | Result:
-    """The Λ up to which a ball at rest stays on the table.
+    """The Λ up to which a ball of any model stays on the table if it rests there.
 
     Parameters
     ----------
     ball : Ball
-        The threshold is 1 for a rigid ball (Eq. 9), and Λ_SD for a contact with a spring and a
-        damper (Eq. 33).
-
-    Returns
-    -------
-    float or Result
-        If a parameter of the ball is an array, a dataset with an axis named after each array.
+        A ball whose model is known without a speed.
 
     Raises
     ------
@@ -218,9 +172,9 @@ def permanent_contact(ball: Ball) -> float | Result:
 
     Examples
     --------
-    >>> from bouncing_ball_beyond import spring_damper
-    >>> permanent_contact(spring_damper(frequency_ratio=2.0, damping_ratio=0.0))
-    0.75
+    >>> from bouncing_ball_beyond import contact_law
+    >>> permanent_contact(contact_law("linear", frequency_ratio=1.0, damping_ratio=2.0))
+    4.0
     """
     known = a_known_ball(ball)
     if _is_grid(known):

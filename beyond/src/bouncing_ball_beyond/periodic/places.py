@@ -13,7 +13,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball
-from bouncing_ball_beyond.periodic.branches.observables import VARIABLES
+from bouncing_ball_beyond.periodic.branches.observables import OF_BRANCHES
 
 # Largest number of results that are computed one after another; each is a dataset, which takes 4 to
 # 20 kilobytes.
@@ -57,7 +57,7 @@ def dataset_of_places(
             found=lambda *given: xr.Dataset(found(*given)),
             missing=lambda _: xr.Dataset(missing or {}),
         )
-    return Result.of(grid.unfold(describe(rows, VARIABLES)), made_by)
+    return Result.of(grid.unfold(describe(rows, OF_BRANCHES)), made_by)
 
 
 def by_place(

@@ -163,7 +163,7 @@ def labelled(found: Followed, made_by: str, **attributes: str) -> dict[str, Any]
     changing = {*along, *(name for name in variables if f"special_{name}" in variables)}
     known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in changing}
     names = {f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()}
-    named = SHARED | known | names | observables.VARIABLES | _AXES | KEPT
+    named = SHARED | known | names | observables.OF_BRANCHES | _AXES | KEPT
     data = {name: (*x, named[name].attributes()) for name, x in variables.items()}
     axes = {"point": len(found), "impact": found.problem.equations.impacts, "multiplier": 2}
     coords = {name: (name, np.arange(size)) for name, size in axes.items()}

@@ -12,6 +12,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable
+from bouncing_ball.periodic import branches
+from bouncing_ball.periodic.branches import OBSERVED
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.branches.following import Followed, unrolled
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
@@ -20,49 +22,13 @@ from bouncing_ball_beyond.periodic.orbits.saved import columns_of
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
 VARIABLES = {
-    "special": Variable("special point of the branch, in order of arclength"),
-    "special_kind": Variable("kind of special point"),
-    "special_amplitude": Variable("excitation amplitude at the special point", symbol="Λ"),
-    "special_phase": Variable(
-        "phase at the special point", symbol="φ", units="rad", equation="Eq. 21"
-    ),
-    "special_contact_duration": Variable(
-        "contact duration at the special point", symbol="τ_b", equation="Eq. 23", budget=1e-12
-    ),
-    "special_arclength": Variable(
-        "arclength of the branch up to the special point, over that of the whole branch",
-        budget=1e-4,
-        scale="1",
-    ),
     "special_point": Variable("number of the last point of the branch before the special orbit"),
-    "special_residual": Variable(
-        "residual of the extended system at the special point", budget=1e-12, scale="1"
-    ),
-    "multiplier": Variable("Floquet multiplier, the larger modulus first", symbol="μ"),
-    "multiplier_real": Variable("real part of the Floquet multiplier", symbol="Re μ"),
-    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
-    "residual": Variable(
-        "largest defect of the orbit equations", equation="Eqs. 21-26", budget=1e-12, scale="1"
-    ),
     "digits_left": Variable(
         "certain decimal digits of the states, see Orbit.digits_left", budget=math.inf
     ),
-    "end": Variable("end of the branch"),
-    "end_reason": Variable("why the branch ends there"),
 }
-
-OBSERVED = (
-    "phase",
-    "contact_duration",
-    "release_phase",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
-)
-"""The quantities of orbits along a branch or along ϖ."""
-
-PLACE = ("amplitude", "phase", "contact_duration")
-"""The quantities of special orbits that the datasets contain."""
+OF_BRANCHES = branches.VARIABLES | VARIABLES
+"""The variables of branches: those of the root, and these."""
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:

@@ -1,56 +1,19 @@
-"""The configuration of a run: what each study takes from it, and its check.
+"""The check of a configuration before a run.
 
-The signature of a study declares what it takes, for example ``study(parameters, release,
-continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
-the datasets that the job reads; and each further argument is the setting of the run with that name.
 The types of the parameters are classes beside the studies, so that the allowed values and the
 reasons for them are defined there, and the type of the whole configuration names them in order.
-
 Every mistake gives one line, and all mistakes are in one message.
 """
 
-import inspect
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError, validate_call
+from pydantic import BaseModel, ValidationError
 
 from bouncing_ball.errors import printable
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
-
-
-def typed(study: Callable[..., Any]) -> Callable[..., Any]:
-    """The study as a function of parameters in the form that the configuration has.
-
-    It raises :class:`pydantic.ValidationError` if a parameter is not allowed.
-
-    Examples
-    --------
-    >>> from bouncing_ball.datasets.parameters import Span
-    >>> def study(parameters: Span):
-    ...     return parameters.grid().tolist()
-    >>> typed(study)({"min": 10.0, "max": 1000.0, "samples": 3})
-    [10.0, 100.0, 1000.0]
-    """
-    return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
-
-
-def arguments(study: Callable[..., Any], artifact: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of a study for an artifact, in the form that the configuration has.
-
-    ``given`` has the parameters of each artifact and the settings of the run, by their names.
-
-    Examples
-    --------
-    >>> def study(parameters, release):
-    ...     pass
-    >>> arguments(study, "fig05", {"release": "force", "fig05": {"n": 1}, "fig06": {"n": 2}})
-    {'parameters': {'n': 1}, 'release': 'force'}
-    """
-    names = [name for name in inspect.signature(study).parameters if name != "data"]
-    return {name: given[artifact if name == "parameters" else name] for name in names}
 
 
 def check_configuration(

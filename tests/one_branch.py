@@ -3,7 +3,7 @@
 import numpy as np
 
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.continuation import continue_all_both_ways, continue_branches
+from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 
 

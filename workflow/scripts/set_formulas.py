@@ -1,6 +1,6 @@
 """The check of the printed formulas."""
 
-from bouncing_ball.paper.claims.tables import formulas
+from bouncing_ball.paper.claims.claim_tables import formulas
 from bouncing_ball.pipeline.figures_and_tables import write_table
 from bouncing_ball.pipeline.job import logged
 

@@ -1,6 +1,6 @@
 """The comparison of the three routes."""
 
-from bouncing_ball.paper.claims.tables import witness
+from bouncing_ball.paper.claims.claim_tables import witness
 from bouncing_ball.pipeline.figures_and_tables import write_table
 from bouncing_ball.pipeline.job import logged
 

@@ -2,7 +2,7 @@
 
 Pseudo-arclength continuation follows the solutions of F(x, p) = 0. Its parts are a
 :class:`~bouncing_ball.numerics.corrector.Problem`, a corrector, the control of steps
-(:mod:`~bouncing_ball.numerics.steps`) and events; :mod:`bouncing_ball.numerics.continuation`
+(:mod:`~bouncing_ball.numerics.steps`) and events; :mod:`bouncing_ball.numerics.pseudo_arclength`
 combines them, and its result is a :class:`~bouncing_ball.numerics.branch.Branch`. N is the number
 of equations, and a point y = (x, p) has N + 1 entries, of which the last is the parameter.
 

@@ -28,9 +28,9 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
-from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.corrector import Condition, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, vanishing
+from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import (

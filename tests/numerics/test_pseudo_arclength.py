@@ -7,8 +7,8 @@ from one_branch import continue_both_ways, continue_branch
 
 from bouncing_ball.numerics.branch import STARTED, Branch, ContinuationError, resample
 from bouncing_ball.numerics.branch import _between as hermite
-from bouncing_ball.numerics.continuation import solve_at
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.numerics.pseudo_arclength import solve_at
 from bouncing_ball.numerics.steps import StepControl
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are

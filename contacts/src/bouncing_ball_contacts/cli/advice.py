@@ -1,6 +1,6 @@
 """What was probably meant by an argument that ``design`` or ``fit`` does not know.
 
-What all commands have in common is in :mod:`bouncing_ball.cli.advice`, which is asked next.
+What all commands have in common is in :mod:`bouncing_ball.cli.options`, which is asked next.
 """
 
 import re

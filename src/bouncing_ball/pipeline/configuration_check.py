@@ -7,7 +7,6 @@ Every mistake gives one line, and all mistakes are in one message.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from functools import cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -63,7 +62,7 @@ samples? Allowed here: min, max, samples
         model.model_validate(config, context=config)
     except ValidationError as error:
         found = _each_once(error.errors())
-        raise ConfigurationError(*_sentences(model, found)) from None
+        raise ConfigurationError(*_sentences(model.model_json_schema(), found)) from None
 
 
 def _each_once(errors: Iterable[Any]) -> list[Any]:
@@ -88,17 +87,17 @@ def _each_once(errors: Iterable[Any]) -> list[Any]:
     return [each for loc, each in kept.items() if each["type"] != "too_short" or loc not in inside]
 
 
-def _sentences(model: type[BaseModel], errors: Iterable[Any]) -> Iterator[str]:
+def _sentences(root: Mapping[str, Any], errors: Iterable[Any]) -> Iterator[str]:
     """A sentence for each error; keys that are missing at one place share one."""
     missing: dict[tuple[str | int, ...], list[Any]] = {}
     for each in errors:
         if each["type"] == "missing":
             missing.setdefault(each["loc"][:-1], []).append(each)
         else:
-            yield _sentence(model, each)
+            yield _sentence(root, each)
     for above, all_of_them in missing.items():
         if len(all_of_them) == 1:
-            yield _sentence(model, all_of_them[0])
+            yield _sentence(root, all_of_them[0])
         else:
             names = ", ".join(str(each["loc"][-1]) for each in all_of_them)
             yield f"missing keys in {place(above) or 'the file'}: {names}"
@@ -145,15 +144,8 @@ _WORDS = {
 }
 
 
-# Each mistake asks for it, and it takes longer than the check.
-@cache
-def _whole_schema(model: type[BaseModel]) -> Mapping[str, Any]:
-    return model.model_json_schema()
-
-
-def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str, Any]]:
+def _schemas(root: Mapping[str, Any], path: Sequence[str | int]) -> list[dict[str, Any]]:
     """The schemas from that of the whole configuration to that of a key, which comes last."""
-    root = _whole_schema(model)
     found = [resolved(root, root)]
     for part in path:
         if isinstance(part, int):
@@ -164,24 +156,20 @@ def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str
     return found
 
 
-def _unknown_key(given: str, key: str, known: list[str]) -> str:
-    """The sentence for a key that is not allowed at its place."""
-    close = get_close_matches(key, known, n=1)
-    meant = f", did you mean {close[0]}?" if close else "."
-    return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
-
-
-def _sentence(model: type[BaseModel], error: Any) -> str:
+def _sentence(root: Mapping[str, Any], error: Any) -> str:
     """One sentence for an error: the place, the value, the allowed values, and the reason."""
     path = error["loc"]
-    schemas = _schemas(model, path)
+    schemas = _schemas(root, path)
     schema = schemas[-1]
     kind = error["type"]
     name = place(path)
     description = " ".join(schema.get("description", "").split())
     given = f"{name} = {printable(repr(error['input']), 60)}"
     if kind == "extra_forbidden":
-        return _unknown_key(given, str(path[-1]), list(schemas[-2]["properties"]))
+        known = list(schemas[-2]["properties"])
+        close = get_close_matches(str(path[-1]), known, n=1)
+        meant = f", did you mean {close[0]}?" if close else "."
+        return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
     if kind == "missing":
         what = "section" if len(path) == 1 and "properties" in schema else "key"
         meaning = description or str(schema.get("title"))

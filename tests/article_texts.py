@@ -8,7 +8,7 @@ from jinja2 import BytecodeCache, Environment
 
 from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.artifacts import ARTIFACTS
-from bouncing_ball.paper.claims import tables as rows
+from bouncing_ball.paper.claims import claim_tables as rows
 from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
 from bouncing_ball.pipeline import article

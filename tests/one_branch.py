@@ -1,9 +1,9 @@
-"""A single branch to one side, of problems whose last unknown is the parameter itself."""
+"""A single branch, of problems whose last unknown is the parameter itself."""
 
 import numpy as np
 
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.continuation import continue_branches
+from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 
 
@@ -14,6 +14,15 @@ def continue_branch(
     towards = np.eye(np.size(start))[-1] * (1.0 if increasing else -1.0)
     tested = WithEvents(problem, events)
     (found,) = continue_branches(lambda _: tested, [start], [towards], control, max_points)
+    if isinstance(found, ContinuationError):
+        raise found
+    return found
+
+
+def continue_both_ways(problem, start, *, events=(), control=StepControl(), max_points=2000):
+    """The branch through ``start``, on which the parameter increases there."""
+    tested = WithEvents(problem, events)
+    (found,) = continue_all_both_ways(lambda _: tested, [start], control, max_points)
     if isinstance(found, ContinuationError):
         raise found
     return found

@@ -13,8 +13,7 @@ from page_checks import every_module_exists, lost_references
 from readme import pages
 
 import bouncing_ball
-from bouncing_ball.cli.commands import COMMANDS
-from bouncing_ball.cli.houses import how_to_install
+from bouncing_ball.cli.commands import COMMANDS, how_to_install
 
 ROOT = Path(__file__).parents[1]
 LIST = ROOT / "figures" / "README.md"

@@ -30,7 +30,7 @@ import bouncing_ball as bb
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.models.model import Model
 from bouncing_ball.paper.configuration import Configuration
-from bouncing_ball.pipeline.configuration import check_parameters, place
+from bouncing_ball.pipeline.configuration_check import check_parameters, place
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
 ROOT = Path(__file__).parents[1]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from random_arguments import Calls, Draw
 
 import bouncing_ball_beyond
-from bouncing_ball.datasets.arguments import FINITE
+from bouncing_ball.errors import Range
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS
@@ -35,7 +35,7 @@ class CallsOfBeyond(Calls):
             given = self.some(allowed, "duration", restitution=loss)
             return self.call("contact_law", law, **given)
         names = LAWS[law].parameter_names()
-        fields = {name: self.value(OF_LAWS.get(name, FINITE)) for name in names}
+        fields = {name: self.value(OF_LAWS.get(name, Range())) for name in names}
         return self.call("contact_law", law, **fields)
 
     def corrected(self) -> Any:

@@ -16,8 +16,8 @@ from random_arguments import Calls, RandomCall, check, numbers, sometimes, undec
 from random_laws import CallsOfBeyond, arguments
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.datasets.arguments import FINITE, POSITIVE
-from bouncing_ball.errors import ModelError
+from bouncing_ball.datasets.arguments import POSITIVE
+from bouncing_ball.errors import ModelError, Range
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
@@ -56,7 +56,7 @@ def branch_of_an_orbit(calls: Calls) -> Any:
     if calls.draw(st.booleans()):
         more["along"] = calls.draw(st.sampled_from(names))
     if calls.draw(st.booleans()):
-        more["to"] = calls.value(FINITE)
+        more["to"] = calls.value(Range())
     return calls.random("follow", start, **more)
 
 
@@ -89,7 +89,7 @@ def follow(calls: Calls) -> Any:
         return branch_of_an_orbit(calls)
     start = special(calls, calls.draw(st.sampled_from(list(map(str, Special)))))
     if way == 1:
-        return calls.random("follow", start, to=calls.value(FINITE))
+        return calls.random("follow", start, to=calls.value(Range()))
     ranges = {"amplitude": limits_of(calls)} if calls.draw(st.booleans()) else {}
     along = "amplitude", across(calls, start)
     return calls.random("follow", start, along=along, ranges=ranges)

@@ -15,7 +15,7 @@ import pytest
 from declared_artifacts import BUDGETS, STUDIES, by_key, compare_artifact
 
 from bouncing_ball.datasets.variables import IGNORED
-from bouncing_ball.pipeline.configuration import arguments, typed
+from bouncing_ball.pipeline.job import arguments, typed
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]

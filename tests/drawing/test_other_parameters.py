@@ -15,8 +15,7 @@ from matplotlib.text import Text
 
 from bouncing_ball.drawing.canvas import lay_out
 from bouncing_ball.drawing.style import LINES, MARKS, style
-from bouncing_ball.pipeline.configuration import arguments, typed
-from bouncing_ball.pipeline.datasets import recorded
+from bouncing_ball.pipeline.job import arguments, recorded, typed
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -1,10 +1,9 @@
-"""Location of events and of the limits of a domain on branches that are known exactly."""
+"""Location of events on branches that are known exactly."""
 
 import numpy as np
 import pytest
-from one_branch import continue_branch
 
-from bouncing_ball.numerics.events import Event, domain_limits, locate
+from bouncing_ball.numerics.events import Event
 
 
 class Line:
@@ -20,14 +19,14 @@ class Line:
 def test_location_is_not_limited_by_the_gradients_differences():
     # sin(20 x) = 0.5 at x = π/120; third derivatives of 8000 spoil ∇g.
     event = Event("level", lambda y: np.sin(20 * y[..., 0]) - 0.5)
-    found = locate(Line(), event, np.array([0.0, 0.0]), np.array([0.05, 0.05]))
+    found = event.locate(Line(), np.array([0.0, 0.0]), np.array([0.05, 0.05]))
     assert found.point == pytest.approx(np.full(2, np.pi / 120), abs=1e-15)
 
 
 def test_the_zero_inside_the_bracket_is_found():
     # Seven more zeros lie outside, and the secant is flat.
     event = Event("wave", lambda y: np.sin(np.pi * y[..., 1]) * (y[..., 1] + 0.05))
-    found = locate(Line(), event, np.full(2, 0.6), np.full(2, 1.9))
+    found = event.locate(Line(), np.full(2, 0.6), np.full(2, 1.9))
     assert found.point == pytest.approx(np.ones(2), abs=1e-14)
 
 
@@ -37,7 +36,7 @@ def test_a_zero_beyond_the_bracket_is_not_the_one_that_was_announced(end, sign):
     # Of p³ - p the zero inside is 0; from the secant's estimate, above 0.9, Newton goes to 1.
     event = Event("cubic", lambda y: y[..., 1] ** 3 - y[..., 1])
     for ends in ((-0.6, end), (end, -0.6)):
-        assert locate(Line(), event, *(np.full(2, sign * p) for p in ends)) is None
+        assert event.locate(Line(), *(np.full(2, sign * p) for p in ends)) is None
 
 
 @pytest.mark.parametrize(
@@ -50,7 +49,7 @@ def test_a_zero_beyond_the_bracket_is_not_the_one_that_was_announced(end, sign):
 )
 def test_a_change_of_sign_without_a_zero_is_not_located(function):
     event = Event("no zero", function)
-    assert locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0])) is None
+    assert event.locate(Line(), np.array([0.0, 0.0]), np.array([1.0, 1.0])) is None
 
 
 class Parabola:
@@ -74,7 +73,7 @@ def test_a_short_step_next_to_a_pole_is_no_zero():
         return value, np.stack([0 * slope, slope], axis=-1)
 
     event = Event("pole", lambda y: condition(y)[0], condition=condition)
-    assert locate(Line(), event, np.zeros(2), np.full(2, 0.6), values=(-1.0, 1.0)) is None
+    assert event.locate(Line(), np.zeros(2), np.full(2, 0.6), values=(-1.0, 1.0)) is None
 
 
 class Steep(Parabola):
@@ -87,8 +86,8 @@ class Steep(Parabola):
 def test_an_event_at_a_point_that_is_not_on_the_branch_is_not_located():
     ends = np.array([4.0, -2.0]), np.array([0.0, 0.0])
     event = Event("level", lambda y: y[..., 1] + 1)
-    assert locate(Steep(), event, *ends) is None
-    found = locate(Parabola(), event, *ends)
+    assert event.locate(Steep(), *ends) is None
+    found = event.locate(Parabola(), *ends)
     assert found.point == pytest.approx(np.array([1.0, -1.0]), abs=1e-15)
 
 
@@ -105,44 +104,9 @@ def test_with_tangents_the_first_estimate_is_next_to_the_curve_and_the_zero_is_t
             return y[..., 1] - 0.7, np.array([0.0, 1.0])
 
         event = Event("level", lambda y: y[..., 1] - 0.7, condition=condition)
-        found = locate(Parabola(), event, *ends, tangents=known)
+        found = event.locate(Parabola(), *ends, tangents=known)
         assert found.point == pytest.approx(zero, abs=1e-15)
         missed.append(abs(Parabola().residual(estimates[0]).item()))
     # The chord is 0.1² beside the parabola; the cubic misses it by the next order in the step.
     assert missed[0] == pytest.approx(0.01, abs=1e-12)
     assert missed[1] < missed[0] / 10
-
-
-def test_the_limit_of_a_sign_is_bisected():
-    event = Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0), is_sign=True)
-    for ends in (0.0, 1.0), (1.0, 0.0):
-        found = locate(Line(), event, *(np.full(2, p) for p in ends))
-        assert found.point == pytest.approx(np.full(2, 0.3), abs=1e-15)
-
-
-# The limits of a domain.
-
-
-class Circle:
-    """The branch x² + p² = 1."""
-
-    def residual(self, y):
-        return np.sum(y * y, axis=-1, keepdims=True) - 1
-
-    def jacobian(self, y):
-        return 2 * y[..., np.newaxis, :]
-
-
-def test_the_limits_of_a_domain_are_found_to_the_last_digit():
-    # Round the circle once; admissible where x > 0.3 or p < -0.9.
-    branch = continue_branch(Circle(), np.array([1.0, 0.0]), increasing=True, max_points=60)
-
-    def admissible(y):
-        return (y[..., 0] > 0.3) | (y[..., 1] < -0.9)
-
-    found = np.array(domain_limits(Circle(), admissible, branch.points))
-    low = np.sqrt(1 - 0.81)
-    expected = [[0.3, np.sqrt(0.91)], [-low, -0.9]]
-    assert found[:2] == pytest.approx(np.array(expected), abs=4e-16)
-    # Each is the last admissible point on its side.
-    assert admissible(found).all()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bouncing_ball.paper.configuration import Configuration
-from bouncing_ball.pipeline.configuration import check_configuration, check_parameters
+from bouncing_ball.pipeline.configuration_check import check_configuration, check_parameters
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 

@@ -7,8 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.datasets import make_datasets, publish, read_input, using
-from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.job import logged, make_datasets, publish, read_input, using
 
 
 @pytest.fixture
@@ -55,15 +54,7 @@ def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):
     refused(f"{path} is damaged")
 
 
-def test_a_file_that_is_accepted_by_hand_is_restored_from_git(tmp_path, refusal):
-    path = tmp_path / "config" / "engines.nc"
-    path.parent.mkdir()
-    path.write_bytes(b"no dataset")
-    with refusal(ModelError, f"{path} is damaged: restore it, git checkout -- {path}"):
-        read_input(str(path))
-
-
 def test_a_readable_file_with_other_content_is_named(refusal):
-    with refusal(ModelError, "config/engines.nc has not the content that is needed ("):
-        with using("config/engines.nc"):
+    with refusal(ModelError, "results/figures/fig08.nc has not the content that is needed ("):
+        with using("results/figures/fig08.nc"):
             _ = xr.Dataset().needed

@@ -13,8 +13,8 @@ import pytest
 from declared_artifacts import SCRIPTS, STUDIES, by_key, made_by
 
 from bouncing_ball.pipeline import sources as module
-from bouncing_ball.pipeline.configuration import arguments
-from bouncing_ball.pipeline.sources import examined, lines_of, parts_of_note, sources, write_note
+from bouncing_ball.pipeline.job import arguments
+from bouncing_ball.pipeline.sources import lines_of, parts_of_note, sources, write_note
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -66,37 +66,39 @@ def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
     changed = PACKAGE / file
     assert changed.is_file()
     scripts = {name: SCRIPTS / f"{made_by(name)}.py" for name in STUDIES}
-    users = {name for name, script in scripts.items() if changed in sources([], [script])}
+    users = {name for name, script in scripts.items() if changed in sources([script])}
     assert users == expected
 
 
 def test_the_modules_of_a_stage_are_those_that_python_imports():
-    name = "bouncing_ball.paper.exhibits.continuation_of_orbits"
+    script = SCRIPTS / "orbit_branches.py"
     code = (
-        f"import sys, {name}\n"
+        "import sys, bouncing_ball.paper.exhibits.continuation_of_orbits\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
         " if n.split('.')[0] == 'bouncing_ball'), sep='\\n')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     # Also what functions import when they are called.
-    assert set(done.stdout.splitlines()) <= {str(path) for path in sources([name])}
-    with pytest.raises(ModuleNotFoundError, match=r"no module bouncing_ball\.nowhere"):
-        sources(["bouncing_ball.nowhere"])
+    assert set(done.stdout.splitlines()) <= {str(path) for path in sources([script])}
 
 
-@pytest.mark.parametrize(
-    ("module", "data"),
-    [
-        ("bouncing_ball.drawing.style", "drawing/style.mplstyle"),
-    ],
-)
-def test_the_data_that_a_module_reads_belong_to_its_code(module, data):
-    assert PACKAGE / data in sources([module])
+def test_the_modules_that_a_script_imports_and_their_data_belong_to_its_code():
+    script = SCRIPTS / "draw_fig02.py"
+    used = {script, PACKAGE / "drawing" / "style.py", PACKAGE / "drawing" / "style.mplstyle"}
+    assert used <= {*sources([script])}
 
 
-def test_the_modules_that_a_script_imports_belong_to_its_code():
-    script = ROOT / "workflow" / "scripts" / "set_table1.py"
-    assert {script, PACKAGE / "drawing" / "tables.py"} <= {*sources([], [script])}
+@pytest.fixture
+def digest(tmp_path):
+    """The digest of a text of Python."""
+
+    def of(text):
+        path = tmp_path / "a.py"
+        path.write_bytes(text.encode())
+        module.imported.cache_clear()
+        return module.digest_of(path)
+
+    return of
 
 
 CODE = '"""Twice."""\n\n\ndef twice(x):\n    # By a sum.\n    return x + x\n'
@@ -112,35 +114,29 @@ CODE = '"""Twice."""\n\n\ndef twice(x):\n    # By a sum.\n    return x + x\n'
         ("\n", "\r\n"),
     ],
 )
-def test_a_docstring_a_comment_and_the_end_of_a_line_are_no_code(old, new):
+def test_a_docstring_a_comment_and_the_end_of_a_line_are_no_code(digest, old, new):
     assert old in CODE
-    assert examined(CODE.replace(old, new).encode()).code == examined(CODE.encode()).code
+    assert digest(CODE.replace(old, new)) == digest(CODE)
 
 
 @pytest.mark.parametrize(
     ("old", "new"),
     [("x + x", "x - x"), ("x + x", "x + x + 0"), ("return x", 'return "#", x'), ("x + x", "x +")],
 )
-def test_what_is_computed_is_code(old, new):
-    assert examined(CODE.replace(old, new).encode()).code != examined(CODE.encode()).code
+def test_what_is_computed_is_code(digest, old, new):
+    assert digest(CODE.replace(old, new)) != digest(CODE)
 
 
 @pytest.mark.parametrize(
     ("name", "counts"), [("paper/claims/both_models.py", True), ("models/damping.py", False)]
 )
-def test_the_docstrings_of_the_claims_are_code_and_those_of_models_are_not(
-    monkeypatch, name, counts
-):
-    path = PACKAGE / name
-    before = lines_of([path])
-    text = path.read_text(encoding="utf-8").replace('    """', '    """In other words, ', 1)
-    edited = examined(text.encode())
-    read = module.module
-    monkeypatch.setattr(module, "module", lambda file: edited if file == path else read(file))
-    assert (lines_of([path]) != before) == counts
+def test_the_docstrings_of_the_claims_are_code_and_those_of_models_are_not(digest, name, counts):
+    text = (PACKAGE / name).read_text(encoding="utf-8")
+    edited = text.replace('    """', '    """In other words, ', 1)
+    assert (digest(edited) != digest(text)) == counts
 
 
-def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch):
+def test_a_line_follows_contents_and_names_and_not_times(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "REPOSITORY", tmp_path)
 
     def line_of(name, text):
@@ -148,9 +144,8 @@ def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch
         path.write_text(text, encoding="utf-8")
         os.utime(path, (0, 0))
         # As in another process, which has read nothing yet.
-        module.module.cache_clear()
-        module.imported.cache_clear()
-        return lines_of([path])
+        module.line_of.cache_clear()
+        return module.line_of(path)
 
     first = line_of("a.py", "r = 0.85")
     assert first == line_of("a.py", "r = 0.85") and first.endswith(" a.py")
@@ -167,9 +162,9 @@ def test_a_package_that_shadows_a_module_is_the_one_that_is_read(tmp_path, monke
     (tmp_path / "bouncing_ball_x" / "__init__.py").touch()
     for path in (shadowed, shadowing):
         path.touch()
-        module.file_of_module.cache_clear()
-        assert module.file_of_module("bouncing_ball_x.damping") == path
-    module.file_of_module.cache_clear()
+        module.files_of_module.cache_clear()
+        assert module.files_of_module("bouncing_ball_x.damping")[1:] == [path]
+    module.files_of_module.cache_clear()
 
 
 def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, monkeypatch):
@@ -184,6 +179,8 @@ def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, mon
     before = note.read_text()
     assert parts_of_note(before) == (lines_of([source]), ".") and "numpy" in before.splitlines()[3]
     source.write_text("two", encoding="utf-8")
+    # As in another process, which has read nothing yet.
+    module.line_of.cache_clear()
     write_note(note, [source])
     assert note.stat().st_mtime > 0 and parts_of_note(note.read_text()) != parts_of_note(before)
     os.utime(note, (0, 0))
@@ -194,23 +191,6 @@ def test_a_note_is_written_only_when_the_code_or_a_library_changes(tmp_path, mon
     note.write_bytes(b"\xff\xfe")
     write_note(note, [source])
     assert "1.0 numpy" in note.read_text()
-
-
-def test_what_a_module_holds_is_kept_for_the_next_start(tmp_path, monkeypatch):
-    source = tmp_path / "a.py"
-    source.write_text(CODE, encoding="utf-8")
-    write_note(tmp_path / "code" / "fig02", [source])
-    module.module.cache_clear()
-    monkeypatch.setattr(module, "_KNOWN", {})
-    module.recall(tmp_path / "code")
-    monkeypatch.setattr(module, "examined", None)
-    expected = examined(CODE.encode())
-    assert module.module(source) == expected
-    # What another program has written there is of no use.
-    (tmp_path / "code" / ".modules").write_text("[1", encoding="utf-8")
-    module.recall.cache_clear()
-    module.recall(tmp_path / "code")
-    assert module.module(source) == expected
 
 
 def test_no_module_imports_relatively():

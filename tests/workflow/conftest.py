@@ -26,7 +26,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.pipeline.artifacts import CARRIERS, files_in
+from bouncing_ball.pipeline.artifact_files import CARRIERS, files_in
 from bouncing_ball.pipeline.provenance import read_provenance
 
 ROOT = Path(__file__).resolve().parents[2]

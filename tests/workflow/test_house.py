@@ -56,11 +56,10 @@ rule all:
 include: "../workflow/rules/record.smk"
 """
 SCRIPT = """\
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.paper.exhibits.restitution_model import restitution_history
-from bouncing_ball.pipeline.datasets import make_datasets
+from bouncing_ball.pipeline.job import logged, make_datasets
 
-with job.logged(snakemake):
+with logged(snakemake):
     make_datasets(snakemake, fig02=restitution_history)
 """
 

@@ -4,7 +4,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from bouncing_ball.pipeline.artifacts import CARRIERS
+from bouncing_ball.pipeline.artifact_files import CARRIERS
 from bouncing_ball.pipeline.provenance import explain, read_provenance
 from bouncing_ball.pipeline.sources import LIBRARIES
 

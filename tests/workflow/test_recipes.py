@@ -58,11 +58,10 @@ RULE = """rule lowest_study:
 """
 SCRIPT = '''"""A number from the curve of another stage."""
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.paper.exhibits.lowest import lowest
-from bouncing_ball.pipeline.datasets import make_datasets
+from bouncing_ball.pipeline.job import logged, make_datasets
 
-with job.logged(snakemake):
+with logged(snakemake):
     make_datasets(snakemake, threshold=lowest)
 '''
 STUDY = '''"""A number from the curve of another stage."""

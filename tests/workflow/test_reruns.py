@@ -4,7 +4,6 @@ Which stages depend on a parameter or a module is tested in tests/pipeline/test_
 Here it is tested that Snakemake runs these, and all jobs that depend on them, and no others.
 """
 
-import compileall
 import os
 import shutil
 
@@ -83,17 +82,3 @@ def test_another_version_of_a_library_makes_everything_again(complete):
     about.parent.mkdir()
     about.write_text("Metadata-Version: 2.1\nName: numpy\nVersion: 1.0\n", encoding="utf-8")
     assert complete.planned("fig02") == {"restitution_model_study", "draw_fig02", "fig02"}
-
-
-def test_stale_bytecode_is_not_run(fresh):
-    """An edit of the same size with the time of the file before it."""
-    file = "src/bouncing_ball/paper/exhibits/restitution_model.py"
-    path = fresh.path / file
-    compileall.compile_file(path, quiet=2, force=True)
-    before = path.stat()
-    heading = '-> xr.Dataset:\n    """Ball and table'
-    fresh.rewrite(file, heading, heading.replace("Dataset", "Dateset"))
-    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
-    assert path.stat().st_size == before.st_size
-    done = fresh.run("--cores", "1", "fig02", check=False)
-    assert done.returncode != 0 and "Dateset" in done.stdout + done.stderr

@@ -11,7 +11,7 @@ import pytest
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.paper.artifacts import ARTIFACTS
-from bouncing_ball.pipeline.artifacts import files_in
+from bouncing_ball.pipeline.artifact_files import files_in
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]

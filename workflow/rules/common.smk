@@ -2,7 +2,6 @@
 # ARTIFACTS and BUDGETS of its package, and HOUSE, its folder with the configuration and the accepted
 # record; this is the root if no other house is named.
 
-import gc
 import os
 import shlex
 import sys
@@ -10,9 +9,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
-
-# Looking for garbage among all that is imported takes a tenth of the time before the first job.
-gc.set_threshold(100_000)
 
 # Snakemake starts jobs with the path of Python without quotes.
 if shlex.quote(sys.executable) != sys.executable:
@@ -58,7 +54,7 @@ def here(path):
 
 # The configuration is checked before any rule reads it, against its type. Jobs do not check it again.
 def check(model):
-    from bouncing_ball.pipeline.configuration import check_configuration
+    from bouncing_ball.pipeline.configuration_check import check_configuration
 
     try:
         check_configuration(map(os.path.relpath, workflow.configfiles), config, model)
@@ -87,12 +83,11 @@ def code(script, *files):
         path = Path("results", "code", Path(script).stem)
         if path.exists() and (workflow.touch or not workflow.is_main_process):
             return str(path)
-        from bouncing_ball.pipeline.sources import recall, sources, write_note
+        from bouncing_ball.pipeline.sources import sources, write_note
 
-        recall(path.parent)
         read = [Path(file).resolve() for file in (Path(HOUSE, "workflow/scripts", script), *files)]
         try:
-            write_note(path, sources([], read), os.path.relpath(HOUSE))
+            write_note(path, sources(read), os.path.relpath(HOUSE))
         except OSError as error:
             sys.exit(f"{path} cannot be written: {error.strerror}")
         return str(path)

@@ -3,15 +3,15 @@
 import os
 from pathlib import Path
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff.accept import accept
+from bouncing_ball.pipeline.job import conclude, logged
 
-with job.logged(snakemake) as lines:
+with logged(snakemake) as lines:
     only = os.environ.get("ONLY", "").replace(",", " ").split()
     files = [str(file) for file in snakemake.input]
     try:
         lines += accept(Path(snakemake.params.house), Path("results"), files, only)
         print(*lines, sep="\n", flush=True)
     except ModelError as error:
-        job.conclude(f"accept: {error}")
+        conclude(f"accept: {error}")

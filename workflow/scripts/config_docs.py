@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
+from bouncing_ball.pipeline.job import logged
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
-with job.logged(snakemake):
+with logged(snakemake):
     folder = Path(snakemake.scriptdir).resolve().parents[1] / "config"
     page = configuration_page(Configuration, read_yaml(folder / "config.yaml"))
     write_text(folder / "README.md", page)

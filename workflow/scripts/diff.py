@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.pipeline.diff.report import write_reports
+from bouncing_ball.pipeline.job import conclude, logged
 
-with job.logged(snakemake):
+with logged(snakemake):
     given = snakemake.params
     if sentence := write_reports(Path(given.house), given.artifacts):
-        job.conclude(sentence)
+        conclude(sentence)

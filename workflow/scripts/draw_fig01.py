@@ -1,8 +1,8 @@
 """Figure 1."""
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.paper.exhibits.schematics_figures import restitution_model
-from bouncing_ball.pipeline.pictures import draw
+from bouncing_ball.pipeline.figures_and_tables import draw
+from bouncing_ball.pipeline.job import logged
 
-with job.logged(snakemake):
+with logged(snakemake):
     draw(snakemake, restitution_model)

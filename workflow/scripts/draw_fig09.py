@@ -1,8 +1,8 @@
 """Figure 9."""
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
-from bouncing_ball.pipeline.pictures import draw
+from bouncing_ball.pipeline.figures_and_tables import draw
+from bouncing_ball.pipeline.job import logged
 
-with job.logged(snakemake):
+with logged(snakemake):
     draw(snakemake, domains)

@@ -2,12 +2,11 @@
 
 from pathlib import Path
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import to_markdown
-from bouncing_ball.paper.claims import tables as rows
+from bouncing_ball.paper.claims import claim_tables as rows
 from bouncing_ball.pipeline.article import render_article, sections_of
-from bouncing_ball.pipeline.datasets import read_input
+from bouncing_ball.pipeline.job import logged, read_input
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 
@@ -15,7 +14,7 @@ def text_of(path):
     return Path(path).read_text(encoding="utf-8")
 
 
-with job.logged(snakemake) as lines:
+with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
     # Its page begins with words, which the supplement has already.

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.pipeline.article import article_pdf
+from bouncing_ball.pipeline.job import logged
 
-with job.logged(snakemake) as lines:
+with logged(snakemake) as lines:
     for name, output in zip(snakemake.input.texts, snakemake.output, strict=True):
         text = Path(name).read_text(encoding="utf-8")
         pdf = article_pdf(text, snakemake.params.template, Path(name).parent)

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-import bouncing_ball.pipeline.job as job
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.artifacts import ARTIFACTS
+from bouncing_ball.paper.claims.claim_tables import Claims
 from bouncing_ball.paper.claims.claims import tally
-from bouncing_ball.paper.claims.tables import Claims
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.front import folder_page, thumbnails, with_parts
+from bouncing_ball.pipeline.job import logged
 
 ABOUT = """\
 # The figures and tables of the paper
@@ -37,7 +37,7 @@ def pages(top):
 
 
 if "snakemake" in globals():
-    with job.logged(snakemake) as written:
+    with logged(snakemake) as written:
         top = Path(snakemake.scriptdir).resolve().parents[1]
         for path, text in pages(top).items():
             write_text(top / path, text)

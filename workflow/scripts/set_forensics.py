@@ -1,8 +1,8 @@
 """The readings of Table 1."""
 
-import bouncing_ball.pipeline.job as job
-from bouncing_ball.paper.claims.tables import forensics
-from bouncing_ball.pipeline.tables import write_table
+from bouncing_ball.paper.claims.claim_tables import forensics
+from bouncing_ball.pipeline.figures_and_tables import write_table
+from bouncing_ball.pipeline.job import logged
 
-with job.logged(snakemake):
+with logged(snakemake):
     write_table(snakemake, forensics)

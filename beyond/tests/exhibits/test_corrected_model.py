@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.exhibits import corrected_model as study
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits

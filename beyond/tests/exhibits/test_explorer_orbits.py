@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.corrected_model import meeting_flights
 
 PARAMETERS = {

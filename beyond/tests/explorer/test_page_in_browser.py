@@ -16,7 +16,7 @@ from urllib.parse import urlencode
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.accuracy.errors import QUANTITIES
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball_beyond.explorer.document import BOUND, to_html

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.rigid import RestitutionModel
@@ -20,6 +19,7 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     orbits_of_points,
     orbits_on_branch,
 )
+from bouncing_ball_beyond.periodic.orbits.domain_limits import domain_limits
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 

@@ -11,7 +11,6 @@ from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.motions.destination import final_motions
@@ -21,6 +20,7 @@ from bouncing_ball_beyond.periodic.branches.switching import switch
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
+from bouncing_ball_beyond.periodic.orbits.domain_limits import domain_limits
 from bouncing_ball_beyond.periodic.orbits.halves import turns_apart, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible

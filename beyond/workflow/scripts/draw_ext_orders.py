@@ -1,8 +1,8 @@
 """The figure ext_orders."""
 
-import bouncing_ball.pipeline.job as job
-from bouncing_ball.pipeline.pictures import draw
+from bouncing_ball.pipeline.figures_and_tables import draw
+from bouncing_ball.pipeline.job import logged
 from bouncing_ball_beyond.exhibits.corrected_model_figures import orders
 
-with job.logged(snakemake):
+with logged(snakemake):
     draw(snakemake, orders)

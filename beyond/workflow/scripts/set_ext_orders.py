@@ -1,8 +1,8 @@
 """The table ext_orders."""
 
-import bouncing_ball.pipeline.job as job
-from bouncing_ball.pipeline.tables import write_table
+from bouncing_ball.pipeline.figures_and_tables import write_table
+from bouncing_ball.pipeline.job import logged
 from bouncing_ball_beyond.exhibits.corrected_model_figures import ext_orders
 
-with job.logged(snakemake):
+with logged(snakemake):
     write_table(snakemake, ext_orders)

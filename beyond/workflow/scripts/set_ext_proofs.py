@@ -1,8 +1,8 @@
 """The table ext_proofs."""
 
-import bouncing_ball.pipeline.job as job
-from bouncing_ball.pipeline.tables import write_table
+from bouncing_ball.pipeline.figures_and_tables import write_table
+from bouncing_ball.pipeline.job import logged
 from bouncing_ball_beyond.exhibits.proofs_figures import ext_proofs
 
-with job.logged(snakemake):
+with logged(snakemake):
     write_table(snakemake, ext_proofs)

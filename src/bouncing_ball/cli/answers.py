@@ -6,8 +6,7 @@ from functools import cache
 from typing import Any
 
 from bouncing_ball import __version__
-from bouncing_ball.cli.commands import Command, Program
-from bouncing_ball.cli.houses import commands, how_to_install
+from bouncing_ball.cli.commands import Command, Program, commands, how_to_install
 from bouncing_ball.cli.interrupt import importing
 from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say

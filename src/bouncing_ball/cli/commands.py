@@ -1,8 +1,15 @@
-"""The subcommands: purpose, explanation and examples in their ``--help``, and their program."""
+"""The subcommands: purpose, explanation and examples in their ``--help``, and their program.
+
+Other houses add theirs when they are installed: an entry point of the group
+``bouncing_ball.commands`` names a mapping from subcommands to :class:`Command`. All that is known
+of the other houses here is which command is whose, so that a command that is not installed is
+answered with how to install it.
+"""
 
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -18,14 +25,6 @@ _SYMBOLS = {
 }
 
 
-def _as_it_is(answer: Any) -> Any:
-    return answer
-
-
-def _no_advice(unknown: str, arguments: Sequence[str], known: Iterable[str]) -> str:
-    return ""
-
-
 class Program(NamedTuple):
     """What a subcommand does: its options, its answer, and how the answer is printed.
 
@@ -36,7 +35,7 @@ class Program(NamedTuple):
     add_options: Callable[["Parser"], None]
     answer: Callable[..., Any]
     lines: Callable[[Any], list[str]] | None
-    document: Callable[[Any], Any] = _as_it_is
+    document: Callable[[Any], Any] = lambda answer: answer
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ class Command:
     has_symbols: bool = True
     cheaper: str = ""
     names: Mapping[str, str] = field(default_factory=dict)
-    advice: Callable[[str, Sequence[str], Iterable[str]], str] = _no_advice
+    advice: Callable[[str, Sequence[str], Iterable[str]], str] = lambda *_: ""
 
     def explanation(self) -> str:
         """The end of the help of the subcommand: explanation, symbols and examples."""
@@ -197,4 +196,45 @@ COMMANDS = {
         has_symbols=False,
     ),
 }
-"""The subcommands by name."""
+"""The subcommands of this house by name."""
+
+_GROUP = "bouncing_ball.commands"
+# The subcommands of the other houses.
+_HOUSE_OF = {
+    "certify": "beyond",
+    "curve": "beyond",
+    "diagram": "beyond",
+    "error-law": "beyond",
+    "follow": "beyond",
+    "law-limits": "beyond",
+    "law-orbit": "beyond",
+    "law-simulate": "beyond",
+    "motion": "beyond",
+    "design": "contacts",
+    "fit": "contacts",
+}
+_FOLDERS = {"beyond": ". ./beyond", "contacts": ". ./beyond ./contacts"}
+
+
+def commands() -> dict[str, Command]:
+    """All subcommands that are installed, those of the root first."""
+    found = dict(COMMANDS)
+    for point in sorted(entry_points(group=_GROUP), key=lambda each: each.name):
+        found |= point.load()
+    return found
+
+
+def how_to_install(command: str) -> str:
+    """A sentence for a subcommand of a house that is not installed; empty for an unknown one.
+
+    Examples
+    --------
+    >>> how_to_install("design")
+    'design is a command of contacts: pip install . ./beyond ./contacts, or make everything'
+    >>> how_to_install("orbits")
+    ''
+    """
+    if command not in _HOUSE_OF:
+        return ""
+    house = _HOUSE_OF[command]
+    return f"{command} is a command of {house}: pip install {_FOLDERS[house]}, or make everything"

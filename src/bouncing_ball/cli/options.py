@@ -1,4 +1,4 @@
-"""The options of subcommands.
+"""The options of subcommands, and what was probably meant by an argument that is none of them.
 
 Their descriptions are those of the docstrings of the calls. Options that are parameters of one call
 are made from its signature.
@@ -13,12 +13,30 @@ import pathlib
 import re
 import sys
 import typing
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from bouncing_ball.cli.advice import advice, meaning
 from bouncing_ball.cli.output import say
-from bouncing_ball.errors import Range, escaped
+from bouncing_ball.errors import Range, did_you_mean, escaped
+
+# Other words for options, and the symbols of textbooks.
+_WORDS = {
+    "e": "restitution",
+    "r": "restitution",
+    "cor": "restitution",
+    "coefficient-of-restitution": "restitution",
+    "zeta": "damping-ratio",
+    "omega": "frequency-ratio",
+    "v": "velocity",
+    "tol": "tolerance",
+    "lambda": "amplitude",
+}
+# Dashes that an editor puts in place of two hyphens.
+DASHES = "-—–−"
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+# Percent in a whole, and the fewest that a number without a sign may mean: 1.5 is a slip for 0.5.
+_WHOLE = 100
+_FEW = 5
 
 
 class Parser(argparse.ArgumentParser):
@@ -79,6 +97,106 @@ class Parser(argparse.ArgumentParser):
             super()._print_message(message, file)
 
 
+def advice(
+    unknown: str, arguments: Sequence[str], command: str, known: Mapping[str, argparse.Action]
+) -> str:
+    """A clause on the first argument that is not recognized; empty if nothing is known of it.
+
+    Parameters
+    ----------
+    unknown : str
+        The argument.
+    arguments : sequence of str
+        All arguments of the command.
+    command : str
+        Name of the command.
+    known : mapping
+        The options of the command.
+
+    Examples
+    --------
+    >>> parser = argparse.ArgumentParser()
+    >>> _ = parser.add_argument("--restitution")
+    >>> known = parser._option_string_actions
+    >>> advice("--cor", ["--cor", "0.8"], "limits", known)
+    '; did you mean --restitution?'
+    >>> advice("Hz", ["--restitution", "10", "Hz"], "limits", known)
+    ': numbers of limits have no unit'
+    """
+    name = unknown.partition("=")[0]
+    if not is_option(name):
+        return _of_value(name, arguments, command, known)
+    word = name.lstrip(DASHES).replace("_", "-")
+    meant = _WORDS.get(word, word)
+    if f"--{meant}" in known:
+        return f"; did you mean --{meant}?"
+    return meaning(f"--{word}", known)
+
+
+def is_option(argument: str) -> bool:
+    """Whether an argument is no value; a negative number is a value."""
+    return argument[:1] in tuple(DASHES) and not NUMBER.match(argument)
+
+
+def _of_value(
+    value: str, arguments: Sequence[str], command: str, known: Mapping[str, argparse.Action]
+) -> str:
+    """A clause on an argument that is no option."""
+    if f"--{value}" in known:
+        return f"; did you mean --{value}?"
+    name, before = preceding(value, arguments, known)
+    if not name:
+        return ""
+    action = known[name]
+    if action.nargs == 0:
+        return f": {name} takes no value"
+    if NUMBER.fullmatch(before) and not NUMBER.fullmatch(value):
+        return f": numbers of {command} have no unit"
+    return f": {name} takes {'one value' if action.nargs is None else f'{action.nargs} values'}"
+
+
+def preceding(value: str, arguments: Sequence[str], known: Collection[str]) -> tuple[str, str]:
+    """The last option before an argument, empty if there is none, and the value just before it.
+
+    Examples
+    --------
+    >>> preceding("Hz", ["--frequency=10", "Hz"], ["--frequency"])
+    ('--frequency', '10')
+    """
+    place = list(arguments).index(value) if value in arguments else 0
+    options = [each for each in arguments[:place] if each.partition("=")[0] in known]
+    if not options:
+        return "", ""
+    name, has_value, _ = options[-1].partition("=")
+    return name, arguments[place - 1].partition("=")[2 if has_value else 0]
+
+
+def meaning(text: str, known: Iterable[str]) -> str:
+    """A clause that suggests the known name that a wrong one resembles, begins or ends.
+
+    Examples
+    --------
+    >>> meaning("--amplitude", ["--acceleration", "--table-amplitude"])
+    '; did you mean --table-amplitude?'
+    >>> meaning("--frequency", ["--amplitude", "--frequency-ratio"])
+    '; did you mean --frequency-ratio?'
+    """
+    names = list(known)
+    part = text.removeprefix("--").replace("_", "-")
+    plain = {name: name.removeprefix("--").replace("_", "-") for name in names}
+    longer = [
+        name
+        for name, each in plain.items()
+        if each.endswith(f"-{part}") or (part and each.startswith(part))
+    ]
+    # Dashes are no letters that two names have in common.
+    alike = did_you_mean(part, plain.values())
+    for name, each in plain.items():
+        if alike == f"; did you mean {each}?":
+            return f"; did you mean {name}?"
+    return did_you_mean("".join(longer[:1]), longer)
+
+
 def option(name: str) -> str:
     """The option of the command line for a parameter.
 
@@ -111,7 +229,7 @@ def meanings(call: Callable) -> dict[str, str]:
     return found
 
 
-def _number(text: str, kind: Any = float) -> float:
+def to_number(text: str, kind: Any = float) -> float:
     """The number that a text represents; NaN if it is no number."""
     try:
         return int(text) if kind is int else float(text)
@@ -119,7 +237,7 @@ def _number(text: str, kind: Any = float) -> float:
         return math.nan
 
 
-def _path(text: str) -> pathlib.Path:
+def path_of(text: str) -> pathlib.Path:
     """The path of a file or a folder."""
     # An empty text would be the path of the current folder.
     if not text:
@@ -127,40 +245,40 @@ def _path(text: str) -> pathlib.Path:
     return pathlib.Path(text)
 
 
-def _within(allowed: Range) -> Callable[[str], Any]:
+def within(allowed: Range) -> Callable[[str], Any]:
     """A parser of numbers in a range, for the argument ``type`` of an option."""
 
     def parse(text: str) -> Any:
-        value = _number(text, int if allowed.whole else float)
+        value = to_number(text, int if allowed.whole else float)
         if value not in allowed:
-            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}{_plain(text, allowed)}")
+            raise argparse.ArgumentTypeError(
+                f"{text!r} is not {allowed}{meant_number(text, allowed)}"
+            )
         return value
 
     return parse
 
 
-def _plain(text: str, allowed: Range) -> str:
+def meant_number(text: str, allowed: Range) -> str:
     """A clause on how a number is written that was probably meant; empty if none was.
 
     Examples
     --------
-    >>> _plain("85 %", Range(0, 1, "(]")), _plain("0,85", Range(0, 1, "(]"))
+    >>> meant_number("85 %", Range(0, 1, "(]")), meant_number("0,85", Range(0, 1, "(]"))
     (': did you mean 0.85?', ': did you mean 0.85?')
-    >>> _plain("50 Hz", Range(0)), _plain("x", Range(0))
+    >>> meant_number("50 Hz", Range(0)), meant_number("x", Range(0))
     (': give it without a unit', '')
     """
     share = text.strip().removesuffix("%")
-    in_percent = allowed.high == 1 and (share != text or _FEW <= _number(share) < _WHOLE)
-    for meant in (_number(text.replace(",", ".")), _number(share) / _WHOLE if in_percent else None):
+    in_percent = allowed.high == 1 and (share != text or _FEW <= to_number(share) < _WHOLE)
+    for meant in (
+        to_number(text.replace(",", ".")),
+        to_number(share) / _WHOLE if in_percent else None,
+    ):
         if meant in allowed:
             return f": did you mean {meant:g}?"
-    has_unit = re.match(r"\s*[+-]?\.?\d", text) and math.isnan(_number(text)) and "," not in text
+    has_unit = re.match(r"\s*[+-]?\.?\d", text) and math.isnan(to_number(text)) and "," not in text
     return ": give it without a unit" if has_unit else ""
-
-
-# Percent in a whole, and the fewest that a number without a sign may mean: 1.5 is a slip for 0.5.
-_WHOLE = 100
-_FEW = 5
 
 
 def add_number(
@@ -176,11 +294,11 @@ def add_number(
     parser.add_argument(
         option(name),
         dest=name,
-        type=_within(allowed),
+        type=within(allowed),
         metavar="N" if allowed.whole else "X",
         required=required,
         default=default,
-        help=_help(text, default),
+        help=help_text(text, default),
     )
 
 
@@ -199,11 +317,12 @@ def add_choice(
         # The members of an enumeration are shown by their values.
         choices=list(map(str, choices)),
         default=default,
-        help=_help(text, default),
+        help=help_text(text, default),
     )
 
 
-def _help(text: str, default: Any) -> str:
+def help_text(text: str, default: Any = None) -> str:
+    """The text of an option in the help, with its default if it has one."""
     if default not in (None, False):
         shown = f"{default:.4g}" if isinstance(default, float) else default
         text += f" (default: {shown})"
@@ -215,28 +334,18 @@ def add_parameters(parser: argparse.ArgumentParser, call: Callable) -> None:
     """Add one option for each parameter of a call, and an argument for each positional-only one."""
     texts = meanings(call)
     for name, parameter in inspect.signature(call).parameters.items():
+        text = texts.get(name, "")
+        reading = _reading(parameter.annotation)
+        required = parameter.default is parameter.empty
         if parameter.kind is parameter.POSITIONAL_ONLY:
-            _add_argument(parser, parameter, texts.get(name, ""))
+            if not required:
+                # Without a default, argparse would list an optional list of arguments as required.
+                reading |= {"nargs": "*", "default": []}
+            parser.add_argument(name, **(reading | {"metavar": name.upper()}), help=text)
         else:
-            _add_option(parser, parameter, texts.get(name, ""))
-
-
-def _add_argument(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
-    """Add an argument by position."""
-    reading = _reading(parameter.annotation)
-    if parameter.default is not parameter.empty:
-        # Without a default, argparse would list an optional list of arguments as required.
-        reading |= {"nargs": "*", "default": []}
-    reading["metavar"] = parameter.name.upper()
-    parser.add_argument(parameter.name, **reading, help=text)
-
-
-def _add_option(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
-    required = parameter.default is parameter.empty
-    default = None if required else parameter.default
-    reading = _reading(parameter.annotation)
-    reading |= {"default": default, "help": _help(text, default), "required": required}
-    parser.add_argument(option(parameter.name), dest=parameter.name, **reading)
+            default = None if required else parameter.default
+            reading |= {"default": default, "help": help_text(text, default)}
+            parser.add_argument(option(name), dest=name, required=required, **reading)
 
 
 def _reading(annotation: Any) -> dict[str, Any]:
@@ -247,7 +356,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
         return _reading(kinds[0])
     match typing.get_origin(annotation) or annotation:
         case typing.Annotated if isinstance(kinds[1], Range):
-            return {"type": _within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
+            return {"type": within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
         case typing.Annotated if isinstance(kinds[1], enum.EnumType):
             return {"choices": list(map(str, kinds[1].__members__.values()))}
         case typing.Literal:
@@ -255,6 +364,6 @@ def _reading(annotation: Any) -> dict[str, Any]:
         case builtins.bool:
             return {"action": "store_true"}
         case pathlib.Path:
-            return {"type": _path, "metavar": "FILE"}
+            return {"type": path_of, "metavar": "FILE"}
     # A text, or a quantity with a unit, which the call converts.
     return {"metavar": "X"}

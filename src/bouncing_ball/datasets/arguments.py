@@ -36,11 +36,8 @@ TOLERANCE = Range(0, 1)
 # Heights, speeds and durations, and phases and velocities: their squares keep digits beside Λ.
 POSITIVE = Range(1e-12, 1e8, "[]")
 START = Range(-1e8, 1e8, "[]")
-FINITE = Range()
 # An impact takes a third of a millisecond, so that the largest number takes half a minute.
 IMPACTS = count(100_000)
-# Impacts of one ball, where many balls are computed together.
-FOLLOWED = count(10_000_000, low=10)
 PERIODS = Range(0, 10_000, "(]")
 SAMPLES = count(100_000)
 POINTS = count(10_000, low=10)
@@ -57,9 +54,7 @@ FamilyAxis = Annotated[WholeAxis, FAMILY]
 Amplitude = Annotated[float, AMPLITUDE]
 AmplitudeOfOrbit = Annotated[float, AMPLITUDE_OF_ORBIT]
 Positive = Annotated[float, POSITIVE]
-Start = Annotated[float, START]
 Impacts = Annotated[int, IMPACTS]
-FollowedImpacts = Annotated[int, FOLLOWED]
 Periods = Annotated[float, PERIODS]
 SampleCount = Annotated[int, SAMPLES]
 Points = Annotated[int, POINTS]

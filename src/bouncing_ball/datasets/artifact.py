@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Artifact:
-    """An artifact of a house, see :mod:`bouncing_ball.pipeline.artifacts`.
+    """An artifact of a house, see :mod:`bouncing_ball.pipeline.artifact_files`.
 
     Parameters
     ----------

@@ -77,9 +77,6 @@ LossyRestitution = Annotated[
         le=0.999,
     ),
 ]
-LawRestitution = Annotated[
-    float, number("restitution coefficient r that contacts of every law can have", ge=0.3, le=0.99)
-]
 Amplitude = Annotated[
     float,
     number(

@@ -14,9 +14,7 @@ _TINY = np.finfo(float).tiny
 
 
 class ContinuationError(RuntimeError):
-    """The continuation finds no solution to start from, a search finds no point of a curve, or a
-    branch cannot be resampled.
-    """
+    """The continuation finds no solution to start from, or a branch cannot be resampled."""
 
 
 class EndKind(Enum):

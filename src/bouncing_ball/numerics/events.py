@@ -1,9 +1,8 @@
-"""Special points on a branch: zeros of test functions, and limits of a domain.
+"""Special points on a branch: zeros of test functions.
 
 An event is a zero of a test function g(y). It is detected by a sign change between two points of
 the branch, and then located as a solution of the extended system ``F(y) = 0, g(y) = 0``, to the
-tolerance of Newton's method whatever the length of the step. A domain is given by a truth value
-alone, so that its limits on the branch are located by bisection.
+tolerance of Newton's method whatever the length of the step.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.numerics.corrector import Condition, NewtonSettings, Problem, newton, plane
+from bouncing_ball.numerics.corrector import Condition, NewtonSettings, Problem, newton
 
 # Step of the central differences for ∇g, near the optimum ε^(1/3). It affects the speed of
 # convergence but not the limit, which depends on g alone.
@@ -24,13 +23,13 @@ _SLACK = 1e-6
 # A defect of this size is a hundred roundings. A test function that is as small before and after a
 # step may have it at its zero as well.
 _DEFECT = 1e-13
-# A chord is divided at these shares, at points that are computed together, which costs hardly more
-# than one point does; and the largest number of such divisions.
-_SHARES = np.linspace(0.0, 1.0, 17)[1:-1, np.newaxis]
-_ROUNDS = 15
-# A chord is divided until its length relative to the point is at most this rounding error.
-_ROUNDING = 4e-16
-_TINY = np.finfo(float).tiny
+
+
+class SpecialPoint(NamedTuple):
+    """A located event: its name, and its point y of shape (N + 1,)."""
+
+    name: str
+    point: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -49,9 +48,6 @@ class Event:
         The reason why the branch ends at a terminal event, as a sentence.
     condition : callable, optional
         g(y) with its gradient; by default the gradient is a central difference.
-    is_sign : bool
-        Whether g(y) is only a sign, 1 inside a domain and -1 outside, whose limit is located by
-        bisection.
     """
 
     name: str
@@ -59,14 +55,42 @@ class Event:
     terminal: bool = False
     reason: str = ""
     condition: Condition | None = None
-    is_sign: bool = False
 
+    def locate(
+        self,
+        problem: Problem,
+        left: np.ndarray,
+        right: np.ndarray,
+        settings: NewtonSettings = _PATIENT,
+        *,
+        values: tuple[float, float] | None = None,
+        tangents: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> SpecialPoint | None:
+        """The zero between two points of the branch, each of shape (N + 1,).
 
-class SpecialPoint(NamedTuple):
-    """A located event: its name, and its point y of shape (N + 1,)."""
-
-    name: str
-    point: np.ndarray
+        Newton's method on the extended system starts from the secant estimate. The result is None
+        if the method does not converge, or converges outside the bracket or to no zero, because a
+        step of the continuation was too long or because there is none. ``values`` are those of the
+        test function and ``tangents`` those of the branch at the two points, if they are known.
+        With tangents the estimate lies on a cubic through the two points, and not on their chord.
+        """
+        before, after = values or (float(self.function(point)) for point in (left, right))
+        chord = right - left
+        share = before / (before - after)
+        guess = left + share * chord
+        if tangents is not None:
+            length = np.linalg.norm(chord)
+            begins, ends = (length * tangent - chord for tangent in tangents)
+            guess += bend(share, begins, ends)
+        condition = self.condition or vanishing(self.function)
+        found = newton(problem, guess, condition, settings)
+        progress = (found.point - left) @ chord / (chord @ chord)
+        # Where a test function and its differences become large without bounds, a short step is no
+        # sign of a zero.
+        vanishes = found.residual <= max(abs(before), abs(after), _DEFECT)
+        if not (found.converged and vanishes and -_SLACK <= progress <= 1 + _SLACK):
+            return None
+        return SpecialPoint(self.name, found.point)
 
 
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
@@ -88,46 +112,6 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
         return values[0], np.moveaxis(slopes, 0, -1)
 
     return condition
-
-
-def locate(
-    problem: Problem,
-    event: Event,
-    left: np.ndarray,
-    right: np.ndarray,
-    settings: NewtonSettings = _PATIENT,
-    *,
-    values: tuple[float, float] | None = None,
-    tangents: tuple[np.ndarray, np.ndarray] | None = None,
-) -> SpecialPoint | None:
-    """The zero of an event between two points of the branch, each of shape (N + 1,).
-
-    Newton's method on the extended system starts from the secant estimate. The result is None if
-    the method does not converge, or converges outside the bracket or to no zero, because a step of
-    the continuation was too long or because there is none. ``values`` are those of the test
-    function and ``tangents`` those of the branch at the two points, if they are known. With
-    tangents the estimate lies on a cubic through the two points, and not on their chord.
-    """
-    if event.is_sign:
-        last = domain_limits(problem, lambda y: event.function(y) > 0, np.stack([left, right]))
-        return SpecialPoint(event.name, last[0])
-    before, after = values or (float(event.function(point)) for point in (left, right))
-    chord = right - left
-    share = before / (before - after)
-    guess = left + share * chord
-    if tangents is not None:
-        length = np.linalg.norm(chord)
-        begins, ends = (length * tangent - chord for tangent in tangents)
-        guess += bend(share, begins, ends)
-    condition = event.condition or vanishing(event.function)
-    found = newton(problem, guess, condition, settings)
-    progress = (found.point - left) @ chord / (chord @ chord)
-    # Where a test function and its differences become large without bounds, a short step is no sign
-    # of a zero.
-    vanishes = found.residual <= max(abs(before), abs(after), _DEFECT)
-    if not (found.converged and vanishes and -_SLACK <= progress <= 1 + _SLACK):
-        return None
-    return SpecialPoint(event.name, found.point)
 
 
 def bend(share: Any, begins: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -197,7 +181,7 @@ def locate_all(
         if (before >= 0) == (there >= 0):
             continue
         known = tangents if last is right else None
-        special = locate(problem, event, left, last, values=(before, there), tangents=known)
+        special = event.locate(problem, left, last, values=(before, there), tangents=known)
         if special is None:
             missed = event
             continue
@@ -209,52 +193,3 @@ def locate_all(
         if event.terminal:
             return Passage(tuple(special for _, special in located[:count]), event, None)
     return Passage(tuple(special for _, special in located), None, missed)
-
-
-def domain_limits(
-    problem: Problem, inside_at: Callable[[np.ndarray], np.ndarray], points: np.ndarray
-) -> np.ndarray:
-    """The last points of a branch inside a domain, one for each of the limits that it crosses.
-
-    A limit lies between a point inside and a point outside. The chord between the two points is
-    divided into 16 parts, again and again, where each point is corrected onto the branch, until the
-    two points agree to rounding.
-
-    Parameters
-    ----------
-    problem : Problem
-        Its solutions are the branch.
-    inside_at : callable
-        Tells for solutions of shape (..., N + 1) whether they are inside.
-    points : ndarray, shape (m, N + 1)
-        Solutions in order along the branch.
-
-    Returns
-    -------
-    ndarray, shape (k, N + 1)
-        One point for each of the k limits, in order along the branch.
-    """
-    known = inside_at(points)
-    at = np.flatnonzero(known[:-1] != known[1:])
-    inside = points[np.where(known[at], at, at + 1)]
-    outside = points[np.where(known[at], at + 1, at)]
-    if not at.size:
-        return inside
-    row = np.arange(at.size)
-    for _ in range(_ROUNDS):
-        normal = outside - inside
-        length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        if np.all(length[:, 0] <= _ROUNDING * np.linalg.norm(inside, axis=-1)):
-            break
-        between = inside[:, np.newaxis] + _SHARES * normal[:, np.newaxis]
-        across = np.broadcast_to((normal / np.maximum(length, _TINY))[:, np.newaxis], between.shape)
-        found = newton(problem, between, plane(across, between))
-        # The limit lies after the last of the first points that are inside, and before the next.
-        reached = np.where(found.converged[..., np.newaxis], found.point, inside[:, np.newaxis])
-        good = inside_at(reached) & found.converged
-        count = np.cumprod(good, axis=-1).sum(axis=-1)
-        known = np.concatenate([inside[:, np.newaxis], reached, outside[:, np.newaxis]], axis=1)
-        solved = np.pad(found.converged, ((0, 0), (1, 1)), constant_values=True)
-        inside = known[row, count]
-        outside = np.where(solved[row, count + 1, np.newaxis], known[row, count + 1], outside)
-    return inside

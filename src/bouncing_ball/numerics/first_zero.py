@@ -38,9 +38,6 @@ _REACH = np.array(4.0)
 # Number of steps after which the search ends as undecided. Each step is a considerable part of
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
-# Newton's steps to a zero, and the largest last step relative to the time.
-_NEWTON_STEPS = 5
-_SETTLED = 1e-5
 _ZERO = np.array(0.0)
 _HALF = np.array(0.5)
 _QUARTER = np.array(0.25)
@@ -215,37 +212,6 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)
     return Zero(np.maximum(time, start), rate, ended, undecided)
-
-
-def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
-    """The zero of each motion near a time, by Newton's method, whether it is the first or not.
-
-    The last step is small against the time, and the error is of the order of its square: equations
-    that are solved together with the zero lose nothing, and a zero is its own nearest zero.
-    ``undecided`` marks the motions for which the last step was not small.
-
-    Examples
-    --------
-    >>> class Parabola(Motion):
-    ...     def __call__(self, time):
-    ...         one = np.ones_like(time)
-    ...         return Derivatives(time**2 - 4, 2 * time, 2 * one, 0 * one, 2 * one, 0.0, 0.0)
-    >>> found = nearest_zero(Parabola(), np.array([2.0, 2.2]))
-    >>> found.time.round(9).tolist(), found.undecided.tolist()
-    ([2.0, 2.0], [False, False])
-    """
-    time = about
-    rate = np.full(time.shape, np.nan)
-    settled = np.zeros(time.shape, dtype=bool)
-    for _ in range(_NEWTON_STEPS):
-        at = motion(time)
-        later = -at.value / at.rate
-        rate = np.where(settled, rate, at.rate + later * at.second)
-        time = np.where(settled, time, time + later)
-        settled |= np.abs(later) <= _SETTLED * np.abs(time)
-        if np.all(settled | np.isnan(later)):
-            break
-    return Zero(time, rate, np.zeros(time.shape, dtype=bool), ~settled)
 
 
 def _zero_here(at: Derivatives) -> np.ndarray:

@@ -31,8 +31,8 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind, resample
-from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.explicit import SpringDamperBranch, explicit_branch
 from bouncing_ball.periodic.orbit import (

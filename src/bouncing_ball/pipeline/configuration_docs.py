@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from bouncing_ball.pipeline.configuration import resolved
+from bouncing_ball.pipeline.configuration_check import resolved
 
 _HEAD = """# The configuration
 

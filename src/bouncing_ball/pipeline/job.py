@@ -1,38 +1,53 @@
-"""The frame of every job: a log, an error of one line, and a quick start.
+"""A job of the workflow: its log, an error of one line, its datasets and their provenance.
 
-Scripts of the workflow import this module before anything else. It imports nothing that takes time.
+Every script of the workflow runs in :func:`logged`. A script of studies calls
+:func:`make_datasets`, which runs them and writes their datasets; the scripts of pictures and tables
+call a function of :mod:`.figures_and_tables`. ``snakemake`` is the object that Snakemake provides
+for its scripts.
+
+The signature of a study declares what it takes, for example ``study(parameters, release,
+continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
+the datasets that the job reads; and each further argument is the setting of the run with that name.
 """
 
-import gc
+import inspect
 import signal
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
+from pydantic import ConfigDict, validate_call
+
+from bouncing_ball.datasets import DRAWING
+from bouncing_ball.datasets.files import (
+    CONVENTIONS,
+    parameter_attributes,
+    read_dataset,
+    write_dataset,
+    write_text,
+)
+from bouncing_ball.datasets.variables import budgeted
+from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.provenance import PREFIX, gather
 from bouncing_ball.pipeline.run import CONCLUSION
+from bouncing_ball.pipeline.sources import parts_of_note
 
-if hasattr(sys.modules["__main__"], "snakemake"):
-    # A job mostly imports, and ends soon: looking for garbage would take a sixth of its time.
-    gc.disable()
-    # For every dataset xarray checks whether its values are quantities of pint. The values of a job
-    # are plain numbers, and importing pint takes longer than reading them.
-    modules: dict[str, Any] = sys.modules
-    modules.setdefault("pint", None)
-
-
-def write(path: Path, text: str) -> None:
-    """Write a text, completely or not at all."""
-    from bouncing_ball.datasets.files import write_text
-
-    write_text(path, text)
+REFERENCE = (
+    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
+    "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
+)
+HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
+# What to type for a file that is missing or wrong.
+_AGAIN = "make it again, snakemake --cores 2 --force"
 
 
 def conclude(sentence: str) -> None:
     """End the run with this sentence, which replaces an earlier one, see :mod:`.run`."""
-    write(CONCLUSION, sentence)
+    write_text(CONCLUSION, sentence)
 
 
 @contextmanager
@@ -52,7 +67,7 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     log.unlink(missing_ok=True)
     try:
         yield lines
-        write(log, "".join(f"{line}\n" for line in lines))
+        write_text(log, "".join(f"{line}\n" for line in lines))
         if snakemake.output:
             print("made", *snakemake.output, flush=True)
     except Exception as error:
@@ -61,5 +76,139 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
         message = f"{name}: {kind}{' '.join(str(error).split())}"
         # For example, writing the log fails if the disk is full.
         with suppress(OSError):
-            write(log, f"{traceback.format_exc()}{message}\n")
+            write_text(log, f"{traceback.format_exc()}{message}\n")
         sys.exit(f"{message} (details in {log})")
+
+
+def read_input(path: str) -> xr.Dataset:
+    """A dataset that another job has made for this job.
+
+    Raises
+    ------
+    ModelError
+        If the file is damaged; the message has the command that makes it again.
+    """
+    try:
+        return read_dataset(path)
+    except ModelError as error:
+        raise ModelError(f"{error}: {_AGAIN} {path}") from error
+
+
+@contextmanager
+def using(path: str) -> Iterator[None]:
+    """A context for the use of a dataset, in which a file with other content is named.
+
+    Raises
+    ------
+    ModelError
+        If a variable, a coordinate or an attribute is missing.
+    """
+    try:
+        yield
+    except (AttributeError, KeyError) as error:
+        text = " ".join(str(error).split())
+        raise ModelError(
+            f"{path} has not the content that is needed ({text}): {_AGAIN} {path}"
+        ) from error
+
+
+def provenance(snakemake: Any, target: str) -> dict[str, str]:
+    """The provenance of a file that the job writes, with its rule and the digests of its code.
+
+    It is gathered when a file is written and is not a parameter of the job, because Snakemake
+    would then run every job again after each commit.
+    """
+    code = snakemake.input.code
+    inputs = [str(path) for path in snakemake.input if path != code]
+    lines, house = parts_of_note(Path(code).read_text(encoding="utf-8"))
+    gathered = gather(target, inputs, Path(house).resolve(), snakemake.config)
+    return gathered | {f"{PREFIX}code": lines, f"{PREFIX}rule": snakemake.rule}
+
+
+def typed(study: Callable[..., Any]) -> Callable[..., Any]:
+    """The study as a function of parameters in the form that the configuration has.
+
+    It raises :class:`pydantic.ValidationError` if a parameter is not allowed.
+
+    Examples
+    --------
+    >>> from bouncing_ball.datasets.parameters import Span
+    >>> def study(parameters: Span):
+    ...     return parameters.grid().tolist()
+    >>> typed(study)({"min": 10.0, "max": 1000.0, "samples": 3})
+    [10.0, 100.0, 1000.0]
+    """
+    return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
+
+
+def arguments(study: Callable[..., Any], artifact: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of a study for an artifact, in the form that the configuration has.
+
+    ``given`` has the parameters of each artifact and the settings of the run, by their names.
+
+    Examples
+    --------
+    >>> def study(parameters, release):
+    ...     pass
+    >>> arguments(study, "fig05", {"release": "force", "fig05": {"n": 1}, "fig06": {"n": 2}})
+    {'parameters': {'n': 1}, 'release': 'force'}
+    """
+    names = [name for name in inspect.signature(study).parameters if name != "data"]
+    return {name: given[artifact if name == "parameters" else name] for name in names}
+
+
+def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of a study as the attributes of its dataset, the parameters by their names.
+
+    Examples
+    --------
+    >>> recorded({"parameters": {"n": 1, "amplitude": 1.2}, "release": "force"})
+    {'n': 1, 'amplitude': 1.2, 'release': 'force'}
+    """
+    others = {name: value for name, value in arguments.items() if name != "parameters"}
+    return parameter_attributes({**arguments.get("parameters", {}), **others})
+
+
+def make_datasets(snakemake: Any, **studies: Callable[..., xr.Dataset]) -> None:
+    """Run the studies of the job, each named by its artifact, and write their datasets.
+
+    The parameters of the job have the parameters of each artifact, and the settings of the run that
+    its studies take, in the form that the configuration has. The variables get the budgets of the
+    artifact. The provenance becomes global attributes, and so do the parameters and the settings,
+    unless the study itself sets attributes.
+    """
+    data = {Path(path).stem: read_input(path) for path in snakemake.input.get("data", [])}
+    for name, study in studies.items():
+        try:
+            given = arguments(study, name, snakemake.params)
+            dataset = typed(study)(**given, **({"data": data} if data else {}))
+            publish(snakemake, name, dataset, dataset.attrs or recorded(given))
+        except Exception as error:
+            error.add_note(name)
+            raise
+
+
+def publish(snakemake: Any, name: str, dataset: xr.Dataset, parameters: Mapping[str, Any]) -> None:
+    """Write the dataset of an artifact, with its title, parameters and provenance as attributes.
+
+    Raises
+    ------
+    ModelError
+        If a variable has no unit.
+    """
+    for variable in dataset.variables:
+        if "units" not in dataset[variable].attrs:
+            raise ModelError(f"{variable} has no unit: the study ends with described(...)")
+    about = snakemake.params.artifacts[name]
+    dataset = budgeted(dataset, about["budgets"])
+    path = snakemake.output[name]
+    dataset.attrs = {
+        "Conventions": CONVENTIONS,
+        "title": about["title"],
+        **({DRAWING: about["drawing"]} if about["drawing"] else {}),
+        "references": REFERENCE,
+        "history": HISTORY,
+        **parameters,
+        **provenance(snakemake, path),
+    }
+    write_dataset(dataset, path)

@@ -22,7 +22,14 @@ import numpy as np
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import require_readable
 from bouncing_ball.errors import ModelError, printable
-from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, FIGURES, TEXT, carrier_of, is_text
+from bouncing_ball.pipeline.artifact_files import (
+    CARRIERS,
+    DATASET,
+    FIGURES,
+    TEXT,
+    carrier_of,
+    is_text,
+)
 from bouncing_ball.pipeline.sources import REPOSITORY, versions
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
@@ -135,9 +142,9 @@ def gather(
         Attributes of a dataset, or metadata of a picture: ``commit``, the full hash or unknown;
         ``dirty``, whether the tree had uncommitted changes (yes, no or unknown); ``configuration``,
         as JSON the values of the run that differ from config/config.yaml; ``target``, the file to
-        request from Snakemake to make the artifact again, or a command ``make …``; ``inputs`` and
-        ``versions``, as JSON the files that it is made from and the versions of Python and the
-        libraries. Each name begins with :data:`PREFIX`.
+        request from Snakemake to make the artifact again; ``inputs`` and ``versions``, as JSON the
+        files that it is made from and the versions of Python and the libraries. Each name begins
+        with :data:`PREFIX`.
 
     Raises
     ------
@@ -249,8 +256,7 @@ def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) ->
     """The commands that make a file again, ready to paste into a shell."""
     # --force, because Snakemake does not make a file again that is up to date. The target is what a
     # file says, and may be anything.
-    forced = ["snakemake", "--cores", "2", "--force", target]
-    commands = [shlex.join(target.split() if target.startswith("make ") else forced)]
+    commands = [shlex.join(["snakemake", "--cores", "2", "--force", target])]
     if changed := made["configuration"]:
         text = shlex.quote(json.dumps(changed))
         commands = [

@@ -13,18 +13,16 @@ docstrings, such as the claims, whose statements are docstrings, the docstrings 
 
 import ast
 import io
-import json
 import platform
 import re
 import tokenize
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
-from importlib.util import cache_from_source, find_spec
+from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
 
 from bouncing_ball.datasets.files import write_text
 
@@ -39,6 +37,8 @@ _OURS = "bouncing_ball"
 # The package imports its public functions only when a user asks for them, and a result imports what
 # draws it only when it is drawn, which no study does.
 _ON_DEMAND = ("bouncing_ball/__init__.py", "bouncing_ball/drawing/result.py")
+# How a module reads docstrings.
+_READER = r"\bgetdoc\("
 _STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
 
 
@@ -46,11 +46,6 @@ _STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, toke
 def versions() -> dict[str, str]:
     """Versions of Python and of the libraries that affect the artifacts."""
     return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
-
-
-def digest(content: bytes) -> str:
-    """The first digits of SHA-256 of a content, whatever the ends of its lines are."""
-    return sha256(content.replace(b"\r\n", b"\n")).hexdigest()[:12]
 
 
 def without_remarks(code: str) -> str:
@@ -78,31 +73,35 @@ def without_remarks(code: str) -> str:
     return "\n".join(line.rstrip() for line in "".join(lines).splitlines() if line.strip())
 
 
-class Module(NamedTuple):
-    """A file of Python: digests of all of it and of its code alone, the names that it imports, and
-    whether it reads docstrings.
+@cache
+def files_of_module(name: str) -> list[Path]:
+    """The files that Python reads for a name in an import: a module and the packages above it.
+
+    If a package and a module have the same name, Python imports the package.
     """
+    first, *rest = name.split(".")
+    spec = find_spec(first)
+    if spec is None or spec.origin is None:
+        return []
+    base = Path(spec.origin).parent
+    files = [base / "__init__.py"]
+    for part in rest:
+        base /= part
+        candidates = (base / "__init__.py", base.with_suffix(".py"))
+        files += [path for path in candidates if path.is_file()][:1]
+    return files
 
-    content: str
-    code: str
-    imports: list[str]
-    reads_docstrings: bool
 
-
-def examined(content: bytes) -> Module:
-    """The :class:`Module` with a content; what is no Python imports nothing.
-
-    Examples
-    --------
-    >>> examined(b"from bouncing_ball.errors import ModelError").imports
-    ['bouncing_ball.errors', 'bouncing_ball.errors.ModelError']
-    """
-    whole = digest(content)
+@cache
+def imported(path: Path) -> frozenset[Path]:
+    """The files that are read when a file is imported, without what these import."""
+    if path.suffix != ".py" or path.as_posix().endswith(_ON_DEMAND):
+        return frozenset()
     try:
-        text = content.decode().replace("\r\n", "\n")
-        tree = ast.parse(text)
+        tree = ast.parse(path.read_bytes())
+    # The job fails with this error, in one line.
     except (SyntaxError, ValueError):
-        return Module(whole, whole, [], False)
+        return frozenset()
     names = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -110,133 +109,58 @@ def examined(content: bytes) -> Module:
         elif isinstance(node, ast.ImportFrom) and node.module:
             # `from package import name` may name a module or an object.
             names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    code = without_remarks(text)
-    ours = sorted(name for name in names if name.startswith(_OURS))
-    return Module(whole, digest(code.encode()), ours, bool(re.search("getdoc|__doc__", code)))
+    ours = (name for name in names if name.startswith(_OURS))
+    return frozenset(file for name in ours for file in files_of_module(name))
 
 
-@cache
-def file_of_module(name: str) -> Path | None:
-    """The file of a module or a package of a house; None if there is none.
+def sources(files: Iterable[Path]) -> list[Path]:
+    """The files that are read when scripts run, sorted: the given ones, all modules that they
+    import, and the data beside these modules, such as a template or a style.
 
-    If a package and a module have the same name, Python imports the package.
-    """
-    first, *rest = name.split(".")
-    spec = find_spec(first)
-    if spec is None or spec.origin is None:
-        return None
-    base = Path(spec.origin).parent.joinpath(*rest)
-    candidates = (base / "__init__.py", base.with_suffix(".py"))
-    return next((path for path in candidates if path.is_file()), None)
-
-
-@cache
-def files_of_module(name: str) -> list[Path]:
-    """The files that Python reads for a name in an import: a module and the packages above it."""
-    parts = name.split(".")
-    files = (file_of_module(".".join(parts[: count + 1])) for count in range(len(parts)))
-    return [file for file in files if file]
-
-
-@cache
-def _data_of_folder(folder: Path) -> list[Path]:
-    """The files of a package that are not Python, also in its folders that are no packages."""
-    inner = [each for each in folder.iterdir() if each.is_dir() and each.name != "__pycache__"]
-    folders = [folder, *(each for each in inner if not (each / "__init__.py").exists())]
-    files = [path for each in folders for path in each.iterdir() if path.is_file()]
-    # An empty file, such as the mark of a typed package, holds no data.
-    return [x for x in files if x.suffix != ".py" and x.name[0] != "." and x.stat().st_size]
-
-
-def data_beside(module: Path) -> list[Path]:
-    """The data files that a module may read.
-
-    Data with the name of a module belong to this module; other data belong to all modules of their
-    package.
-    """
-    return [
-        path
-        for path in _data_of_folder(module.parent)
-        if path.stem == module.stem or not path.with_suffix(".py").exists()
-    ]
-
-
-# What contents hold, by their digests; to examine all modules takes a second.
-_KNOWN: dict[str, list] = {}
-_KEPT = ".modules"
-
-
-@cache
-def recall(folder: Path) -> None:
-    """Read what an earlier start has found out about modules, from the folder of its notes."""
-    with suppress(OSError, TypeError, ValueError):
-        _KNOWN.update(json.loads((folder / _KEPT).read_bytes()))
-
-
-@cache
-def module(path: Path) -> Module:
-    """What a file of Python holds."""
-    content = path.read_bytes()
-    known = _KNOWN.setdefault(digest(content), [])
-    if not known:
-        known.extend(examined(content))
-    return Module(*known)
-
-
-@cache
-def imported(path: Path) -> frozenset[Path]:
-    """The files that are read when a file is imported, without what these import."""
-    names = [] if path.as_posix().endswith(_ON_DEMAND) else module(path).imports
-    return frozenset(file for name in names for file in files_of_module(name))
-
-
-def sources(modules: Iterable[str], others: Iterable[Path] = ()) -> list[Path]:
-    """The files that are read when modules are imported and scripts run, sorted.
-
-    Parameters
-    ----------
-    modules : iterable of str
-        Modules with their full names.
-    others : iterable of Path
-        Scripts, whose imports are followed, and other files that the job reads.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If a named module does not exist.
+    Data with the name of a module belong to this module, and others to all modules of the folder.
 
     Examples
     --------
-    >>> [name_of(path) for path in sources(["bouncing_ball.errors"])]
-    ['src/bouncing_ball/__init__.py', 'src/bouncing_ball/errors.py']
+    >>> [name_of(path) for path in sources([REPOSITORY / "src/bouncing_ball/errors.py"])]
+    ['src/bouncing_ball/errors.py']
     """
-    given = set(others)
     found: set[Path] = set()
-    new = {file for path in given if path.suffix == ".py" for file in imported(path)}
-    for name in modules:
-        if file_of_module(name) is None:
-            raise ModuleNotFoundError(f"no module {name}")
-        new.update(files_of_module(name))
+    new = given = set(files)
     while new:
         found |= new
         new = set().union(*map(imported, new)) - found
-    return sorted(given.union(found, *map(data_beside, found)), key=str)
+    folders = {path.parent for path in found - given}
+    beside = {path for folder in folders for path in folder.iterdir() if path.is_file()}
+    # An empty file, such as the mark of a typed package, holds no data.
+    data = {x for x in beside if x.suffix != ".py" and x.name[0] != "." and x.stat().st_size}
+    named = {path: path.with_suffix(".py") for path in data}
+    used = {path for path, module in named.items() if module in found or not module.exists()}
+    return sorted(found | used, key=str)
 
 
 def digest_of(path: Path) -> str:
-    """A digest of what counts in a file."""
-    if path.suffix != ".py":
-        return digest(path.read_bytes())
-    about = [module(each) for each in (path, *imported(path))]
-    return about[0].content if any(x.reads_docstrings for x in about) else about[0].code
+    """The first digits of SHA-256 of what counts in a file."""
+    content = path.read_bytes().replace(b"\r\n", b"\n")
+    if path.suffix == ".py":
+        read = (each.read_text(encoding="utf-8") for each in (path, *imported(path)))
+        if not any(re.search(_READER, text) for text in read):
+            with suppress(SyntaxError, ValueError):
+                content = without_remarks(content.decode()).encode()
+    return sha256(content).hexdigest()[:12]
+
+
+@cache
+def line_of(path: Path) -> str:
+    """The digest and the name of a file of code."""
+    return f"{digest_of(path)} {name_of(path)}"
 
 
 def lines_of(paths: Iterable[Path]) -> str:
     """A line for each file with its digest and its name, which tell code apart."""
-    return "\n".join(f"{digest_of(path)} {name_of(path)}" for path in paths)
+    return "\n".join(map(line_of, paths))
 
 
-def write_note(path: Path, paths: Sequence[Path], house: str = ".") -> None:
+def write_note(path: Path, paths: Iterable[Path], house: str = ".") -> None:
     """Write the note of a job that uses these files, if it has another content.
 
     It ends with the folder of the house whose workflow runs, relative to the current one.
@@ -245,15 +169,7 @@ def write_note(path: Path, paths: Sequence[Path], house: str = ".") -> None:
     text = "\n\n".join([lines_of(paths), libraries, house])
     if path.is_file() and path.read_bytes() == text.encode():
         return
-    for source in paths:
-        # Python runs bytecode if the size and the time of the source are as they were when it was
-        # compiled, which an edit may restore; but not the time of the last change of the file.
-        bytecode = Path(cache_from_source(str(source)))
-        with suppress(OSError):
-            if source.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
-                bytecode.unlink()
     write_text(path, text)
-    write_text(path.with_name(_KEPT), json.dumps(_KNOWN))
 
 
 def parts_of_note(note: str) -> tuple[str, str]:
@@ -269,7 +185,7 @@ def parts_of_note(note: str) -> tuple[str, str]:
 
 def name_of(path: Path) -> str:
     """The name of a file of code: its path in the repository."""
-    # A run in another folder has a file of its own in `config`.
+    # A house may stand outside of the repository.
     folder = REPOSITORY if path.is_relative_to(REPOSITORY) else path.parent.parent
     return path.relative_to(folder).as_posix()
 
@@ -277,16 +193,13 @@ def name_of(path: Path) -> str:
 def changed_files(record: str, new: str) -> list[str]:
     """The names of the files that differ between two texts of :func:`lines_of`.
 
-    Earlier records have a single digest, which names no file.
-
     Examples
     --------
     >>> changed_files("1f0e a.py\\n2a2a b.py", "1f0e a.py\\n3b3b b.py\\n4c4c c.py")
     ['b.py', 'c.py']
-    >>> changed_files("5d5d", "1f0e a.py")
+    >>> changed_files("", "1f0e a.py")
     []
     """
-    old, now = ([line.partition(" ") for line in text.splitlines()] for text in (record, new))
-    if not old or not now or not all(name for _, _, name in (*old, *now)):
+    if not record or not new:
         return []
-    return sorted({name for _, _, name in {*old} ^ {*now}})
+    return sorted({line.partition(" ")[2] for line in {*record.splitlines()} ^ {*new.splitlines()}})

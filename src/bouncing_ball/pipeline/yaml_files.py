@@ -3,8 +3,6 @@
 A duplicate key is a mistake, because otherwise the last value would be used without a warning.
 """
 
-from copy import deepcopy
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -61,12 +59,6 @@ def parse_yaml(text: str | bytes) -> Any:
     ...
     bouncing_ball.pipeline.yaml_files.ConfigurationError: duplicate key 'n' in line 1
     """
-    return deepcopy(_content(text))
-
-
-# A run reads its configuration several times, and each time takes as long as a small figure.
-@cache
-def _content(text: str | bytes) -> Any:
     try:
         return yaml.load(text, Loader=_Loader)
     except ConfigurationError:

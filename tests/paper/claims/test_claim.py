@@ -9,7 +9,7 @@ import xarray as xr
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claim import Claim, claim, formula
 from bouncing_ball.paper.claims.claims import judged_claims, tally
-from bouncing_ball.paper.claims.parameters import NotAsked, PaperData, digest, of_dataset
+from bouncing_ball.paper.claims.paper_parameters import NotAsked, PaperData, digest, of_dataset
 from bouncing_ball.paper.claims.verdict import above, at_most
 
 BOUNDS = {"first": 83, "second": 82}

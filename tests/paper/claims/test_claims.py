@@ -9,7 +9,7 @@ from declared_artifacts import read_by
 
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
-from bouncing_ball.paper.claims.parameters import PAPER, digest, of_dataset
+from bouncing_ball.paper.claims.paper_parameters import PAPER, digest, of_dataset
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.yaml_files import read_yaml
 

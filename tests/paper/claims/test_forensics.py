@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.paper.claims.claim_tables import forensics as rows
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
     altered_ends,
@@ -15,7 +16,6 @@ from bouncing_ball.paper.claims.forensics import (
     forensics,
     weightless_orbits,
 )
-from bouncing_ball.paper.claims.tables import forensics as rows
 from bouncing_ball.periodic import explicit
 from bouncing_ball.periodic.explicit import ImpactMap, branch_point, explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, monodromy

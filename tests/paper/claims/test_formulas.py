@@ -16,7 +16,7 @@ from bouncing_ball.paper.claims.formulas import (
     formulas,
     measured_restitution,
 )
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {"samples": 16, "seed": 2011}
 # What is wrong in the paper, and must be seen.

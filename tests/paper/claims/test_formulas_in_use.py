@@ -13,7 +13,7 @@ import pytest
 
 from bouncing_ball import paper
 from bouncing_ball.paper.claims.formulas import formulas
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 
 PACKAGE = Path(paper.__file__).parents[1]
 PARAMETERS = {"samples": 16, "seed": 2011}
@@ -36,7 +36,7 @@ import bouncing_ball
 
 assert Path(bouncing_ball.__file__).parent == here / "bouncing_ball"
 from bouncing_ball.paper.claims.formulas import formulas
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 data = typed(formulas)({PARAMETERS})
 right = (data.disagreement <= data.budget) & (data.disagreement_in_use <= data.budget)
 found = json.dumps(data.formula.values[~right.values].tolist())

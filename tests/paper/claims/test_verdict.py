@@ -24,7 +24,7 @@ from bouncing_ball.paper.claims.verdict import (
 def test_a_number_is_judged_by_units_of_its_last_digit(digits, decimals, off):
     text = f"{digits / 10**decimals:.{decimals}f}"
     unit = 10.0**-decimals
-    last_digits = float(LAST_DIGITS) * abs(digits)
+    last_digits = LAST_DIGITS * abs(digits)
     if min(abs(abs(off) - 0.5), abs(abs(off) - last_digits)) < 1e-6:
         return
     found = against_print(float(text) + off * unit, text)

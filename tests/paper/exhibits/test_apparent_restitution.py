@@ -16,7 +16,7 @@ from bouncing_ball.paper.exhibits.apparent_restitution import (
     frequency_sweep,
     poincare_map,
 )
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 apparent_restitution, frequency_sweep = map(typed, (apparent_restitution, frequency_sweep))

@@ -16,7 +16,7 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
 from bouncing_ball.periodic.explicit import branch_point, explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit, monodromy
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 both_domains, orbit_branches, stability_ranges = map(

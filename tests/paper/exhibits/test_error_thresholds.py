@@ -13,7 +13,7 @@ from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, heig
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {
     "n": 1,

@@ -8,7 +8,7 @@ from pydantic import create_model
 import bouncing_ball as bb
 from bouncing_ball.paper.exhibits.continuation_of_orbits import BothDomains, Domains
 from bouncing_ball.paper.exhibits.time_histories import ContactHistory, Histories
-from bouncing_ball.pipeline.configuration import check_parameters
+from bouncing_ball.pipeline.configuration_check import check_parameters
 from bouncing_ball.pipeline.yaml_files import ConfigurationError
 
 ORBIT = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "samples": 11}

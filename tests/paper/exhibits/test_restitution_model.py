@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.paper.exhibits.restitution_model import restitution_history, restitution_orbits
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 restitution_history, restitution_orbits = map(typed, (restitution_history, restitution_orbits))

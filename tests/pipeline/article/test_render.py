@@ -8,7 +8,7 @@ import xarray as xr
 from article_checks import works_of
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.claims.tables import Claims
+from bouncing_ball.paper.claims.claim_tables import Claims
 from bouncing_ball.pipeline.article import (
     numbered,
     render_article,

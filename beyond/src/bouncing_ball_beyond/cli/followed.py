@@ -8,7 +8,6 @@ from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings, 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
-    FINITE,
     POINTS,
     START,
     SideName,
@@ -48,7 +47,7 @@ def _add_orbit(parser: Parser) -> None:
     add_number(parser, "doublings", _DOUBLINGS, _TWICE, default=0)
     parser.add_argument(option("along"), metavar="NAME", default="amplitude", help=_NAME)
     to = "Value at which the branch ends."
-    add_number(parser, "to", FINITE, to, required=True)
+    add_number(parser, "to", Range(), to, required=True)
     add_file(parser, "plot", "A figure: .pdf, .png or .svg.")
 
 
@@ -152,10 +151,10 @@ def curve_options(parser: Parser) -> None:
     _add_orbit(parser)
     add_choice(parser, "kind", _KINDS, "Kind of the special orbits.", default="saddle-node")
     parser.add_argument(option("across"), metavar="NAME", required=True, help=_NAME)
-    add_number(parser, "low", FINITE, "Smallest value of the second parameter.")
-    add_number(parser, "high", FINITE, "Largest value of the second parameter.")
-    add_number(parser, "along_low", FINITE, "Smallest value of the first parameter on the curve.")
-    add_number(parser, "along_high", FINITE, "Largest value of the first parameter on the curve.")
+    add_number(parser, "low", Range(), "Smallest value of the second parameter.")
+    add_number(parser, "high", Range(), "Largest value of the second parameter.")
+    add_number(parser, "along_low", Range(), "Smallest value of the first parameter on the curve.")
+    add_number(parser, "along_high", Range(), "Largest value of the first parameter on the curve.")
     add_number(
         parser, "points", POINTS, meanings(library.follow)["points"], default=library.MOST_POINTS
     )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.cli.options import Parser, add_number, meanings
-from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, START
+from bouncing_ball.datasets.arguments import AMPLITUDE, SAMPLES, START
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
 from bouncing_ball_beyond.cli.impact import add_ball, ball_of
@@ -17,7 +17,7 @@ from bouncing_ball_beyond.cli.periodic import Answer
 from bouncing_ball_beyond.cli.simulate import note_on
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.motions import motion_of as library
-from bouncing_ball_beyond.motions.destination import IMPACTS
+from bouncing_ball_beyond.motions.destination import FOLLOWED, IMPACTS
 
 _MOTION = ("kind", "periods", "impacts", "reason")
 _AMPLITUDES = count(100_000, low=2)

@@ -1,7 +1,6 @@
 """The options of subcommands that the root's commands do not have."""
 
 import argparse
-from pathlib import Path
 from typing import Any
 
 from bouncing_ball.cli import options
@@ -25,15 +24,9 @@ def option(name: str) -> str:
 
 def add_file(parser: Parser, name: str, text: str) -> None:
     """Add an option for a file that is written."""
-    parser.add_argument(option(name), dest=name, type=_path, metavar="FILE", help=_help(text))
-
-
-def _path(text: str) -> Path:
-    """The path of a file."""
-    # An empty text would be the path of the current folder.
-    if not text:
-        raise argparse.ArgumentTypeError("the name is empty")
-    return Path(text)
+    parser.add_argument(
+        option(name), dest=name, type=options.path_of, metavar="FILE", help=options.help_text(text)
+    )
 
 
 def add_interval(parser: Parser, name: str, allowed: Range, text: str) -> None:
@@ -41,11 +34,11 @@ def add_interval(parser: Parser, name: str, allowed: Range, text: str) -> None:
     parser.add_argument(
         option(name),
         dest=name,
-        type=options._within(allowed),
+        type=options.within(allowed),
         nargs=2,
         metavar=("FROM", "TO"),
         required=True,
-        help=_help(text),
+        help=options.help_text(text),
     )
 
 
@@ -57,19 +50,19 @@ def add_assignments(parser: Parser, name: str, text: str) -> None:
         type=_assignment,
         action=_Assignments,
         metavar="NAME=NUMBER",
-        help=_help(text),
+        help=options.help_text(text),
     )
 
 
 def _assignment(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
-    number = options._number(value)
+    number = options.to_number(value)
     if not name.strip() or number not in Range():
         why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
         if "=" in value:
             why += ": repeat the option for each parameter"
         elif "=" in text:
-            why += options._plain(value, Range())
+            why += options.meant_number(value, Range())
         raise argparse.ArgumentTypeError(why)
     return name.strip(), number
 
@@ -82,8 +75,3 @@ class _Assignments(argparse.Action):
         if values[0] in found:
             parser.error(f"argument {option_string}: {values[0]} is given twice")
         setattr(namespace, self.dest, found | {values[0]: values[1]})
-
-
-def _help(text: str) -> str:
-    # argparse fills in what follows a percent sign.
-    return text.replace("%", "%%")

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
 from itertools import product
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -29,7 +29,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
+from bouncing_ball.datasets.parameters import Many, Tolerance, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.accuracy.errors import paper_error, values
@@ -81,6 +81,11 @@ BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
 # Distances in ln ϖ from a first estimate of a threshold to the orbits that locate it.
 _BESIDE = np.linspace(-0.02, 0.02, 5)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
+
+
+LawRestitution = Annotated[
+    float, number("restitution coefficient r that contacts of every law can have", ge=0.3, le=0.99)
+]
 
 
 class LawOrbit(OrbitParameters):

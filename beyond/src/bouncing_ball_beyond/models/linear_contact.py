@@ -34,7 +34,7 @@ from bouncing_ball.numerics.elementary import (
     sine_and_cosine,
     sine_and_versine,
 )
-from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball_beyond.models.flight import Flight
@@ -54,6 +54,40 @@ _PI = np.array(np.pi)
 _TURN = np.array(2 * np.pi)
 _LARGEST_GROWTH = np.array(690.0)
 _TINY = np.array(1e-300)
+# Newton's steps to a zero, and the largest last step relative to the time.
+_NEWTON_STEPS = 5
+_SETTLED = 1e-5
+
+
+def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
+    """The zero of each motion near a time, by Newton's method, whether it is the first or not.
+
+    The last step is small against the time, and the error is of the order of its square: equations
+    that are solved together with the zero lose nothing, and a zero is its own nearest zero.
+    ``undecided`` marks the motions for which the last step was not small.
+
+    Examples
+    --------
+    >>> class Parabola(Motion):
+    ...     def __call__(self, time):
+    ...         one = np.ones_like(time)
+    ...         return Derivatives(time**2 - 4, 2 * time, 2 * one, 0 * one, 2 * one, 0.0, 0.0)
+    >>> found = nearest_zero(Parabola(), np.array([2.0, 2.2]))
+    >>> found.time.round(9).tolist(), found.undecided.tolist()
+    ([2.0, 2.0], [False, False])
+    """
+    time = about
+    rate = np.full(time.shape, np.nan)
+    settled = np.zeros(time.shape, dtype=bool)
+    for _ in range(_NEWTON_STEPS):
+        at = motion(time)
+        later = -at.value / at.rate
+        rate = np.where(settled, rate, at.rate + later * at.second)
+        time = np.where(settled, time, time + later)
+        settled |= np.abs(later) <= _SETTLED * np.abs(time)
+        if np.all(settled | np.isnan(later)):
+            break
+    return Zero(time, rate, np.zeros(time.shape, dtype=bool), ~settled)
 
 
 class ContactMotion(Motion):

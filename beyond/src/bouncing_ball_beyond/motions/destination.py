@@ -34,11 +34,12 @@ digit then decides on which motion the ball ends: see ``digits_lost`` of
 :class:`~bouncing_ball_beyond.motions.motions.Motions`.
 """
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import count
 from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics, HasDynamics, Leg
@@ -54,6 +55,11 @@ from bouncing_ball_beyond.motions.followed import (
 from bouncing_ball_beyond.motions.lyapunov import DIGITS, FORGOTTEN, NEAR
 from bouncing_ball_beyond.motions.motions import Kind, Motions, Reason
 from bouncing_ball_beyond.motions.recurrence import periods_in, returns_to_marks
+
+FOLLOWED = count(10_000_000, low=10)
+"""The number of impacts that a call may follow."""
+
+FollowedImpacts = Annotated[int, FOLLOWED]
 
 IMPACTS = 2000
 """Number of impacts after which the search for a repetition ends, in all calls that judge a motion.

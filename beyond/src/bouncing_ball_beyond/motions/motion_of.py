@@ -8,12 +8,10 @@ import numpy as np
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE,
-    FOLLOWED,
     POSITIVE,
     SAMPLES,
     Amplitude,
     AmplitudeAxis,
-    FollowedImpacts,
     Positive,
     SampleCount,
     StartAxis,
@@ -28,7 +26,7 @@ from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_single_ball
 from bouncing_ball_beyond.motions import grids
-from bouncing_ball_beyond.motions.destination import IMPACTS
+from bouncing_ball_beyond.motions.destination import FOLLOWED, IMPACTS, FollowedImpacts
 from bouncing_ball_beyond.motions.over_time import first_impacts
 
 

@@ -1,16 +1,14 @@
 """The periodic orbit on which a simulated ball ends."""
 
 import math
+from typing import Annotated
 
 import numpy as np
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
-    FOLLOWED,
     START,
     AmplitudeOfOrbit,
-    FollowedImpacts,
-    Start,
     checked_number,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
@@ -18,7 +16,12 @@ from bouncing_ball.models.flight import table
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball_beyond.motions.destination import IMPACTS, final_motions
+from bouncing_ball_beyond.motions.destination import (
+    FOLLOWED,
+    IMPACTS,
+    FollowedImpacts,
+    final_motions,
+)
 from bouncing_ball_beyond.motions.motion_of import motion_of
 from bouncing_ball_beyond.motions.over_time import first_impacts
 from bouncing_ball_beyond.periodic.branches.following import point_near
@@ -33,8 +36,8 @@ def orbit_of_motion(
     ball: Ball,
     *,
     amplitude: AmplitudeOfOrbit,
-    phase: Start = 0.0,
-    velocity: Start = -math.pi,
+    phase: Annotated[float, START] = 0.0,
+    velocity: Annotated[float, START] = -math.pi,
     impacts: FollowedImpacts = IMPACTS,
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import (
-    FINITE,
     FREQUENCY_RATIO,
     POSITIVE,
     RESTITUTION,
@@ -233,7 +232,7 @@ def _law_of_parameters(
     for name in known:
         if name not in parameters:
             raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
-    values = {name: checked(name, x, _RANGES.get(name, FINITE)) for name, x in parameters.items()}
+    values = {name: checked(name, x, _RANGES.get(name, Range())) for name, x in parameters.items()}
     flat = flattened(values)
     labels = {"law": kind.name, **values}
     if release is None:

@@ -1,11 +1,11 @@
 """What was probably meant by an argument that ``design`` or ``fit`` does not know.
 
-What all commands have in common is in :mod:`bouncing_ball.cli.advice`, which is asked next.
+What all commands have in common is in :mod:`bouncing_ball.cli.options`, which is asked next.
 """
 
 from collections.abc import Collection, Iterable, Sequence
 
-from bouncing_ball.cli.advice import DASHES, NUMBER, is_option, preceding
+from bouncing_ball.cli.options import DASHES, NUMBER, is_option, preceding
 
 # Other words for options, and the symbols of textbooks.
 _WORDS = {

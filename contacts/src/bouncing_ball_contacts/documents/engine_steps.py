@@ -9,12 +9,13 @@ are relative to the height of the engine, or of the model, as in Eq. 37.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -25,6 +26,8 @@ from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_contacts.engines.impacts import restitution_in_steps
 from bouncing_ball_contacts.engines.scheme import Scheme
 
+# Relative tolerance, because coordinates are computed from the configuration and are rounded.
+_MATCH = 1e-9
 VARIABLES = {
     "engine": Variable("physics engine"),
     "engine_version": Variable("version of an engine that ran"),
@@ -202,6 +205,27 @@ def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
     """
     log_steps = np.interp(-np.log(error), -np.log(errors), np.log(steps), left=np.nan, right=np.nan)
     return float(np.exp(log_steps))
+
+
+def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
+    """Index of a label along a dimension; numbers match up to rounding.
+
+    Raises
+    ------
+    ModelError
+        If no label, or more than one, matches.
+
+    Examples
+    --------
+    >>> index_of(xr.DataArray([5.0, 6.0], {"r": [0.1 + 0.2, 0.5]}), "r", 0.3)
+    0
+    """
+    labels = values[name].values
+    text = isinstance(wanted, str)
+    same = labels == wanted if text else np.isclose(labels, wanted, rtol=_MATCH, atol=0)
+    if np.count_nonzero(same) != 1:
+        raise ModelError(f"{name} = {wanted} is not among {', '.join(map(str, labels))}")
+    return int(same.argmax())
 
 
 def conformance(runs: xr.Dataset, parameters: EngineOrbit) -> xr.Dataset:

@@ -6,7 +6,7 @@ the claims in three chapters                    :mod:`.impact_models`,
                                                 :mod:`.periodic_orbits`,
                                                 :mod:`.both_models`
 numbers that decide them, from the datasets     :mod:`.evidence`
-whether a dataset has the paper's parameters    :mod:`.parameters`
+whether a dataset has the paper's parameters    :mod:`.paper_parameters`
 verdicts by printed digits and conditions       :mod:`.verdict`
 the printed formulas, computed again            :mod:`.formulas`
 and as the package uses them                    :mod:`.formulas_in_use`
@@ -14,9 +14,9 @@ every orbit shown, by three routes              :mod:`.witness`
 Table 1 under other readings of the paper       :mod:`.forensics`
 =============================================== ==================================
 
-A claim is a function (:mod:`.claim`), :mod:`.claims` decides all of them, and :mod:`.tables` lists
-them. To read the claims, the first three rows are enough; the second computations, in the last four
-rows, stand each for itself.
+A claim is a function (:mod:`.claim`), :mod:`.claims` decides all of them, and
+:mod:`.claim_tables` lists them. To read the claims, the first three rows are enough; the second
+computations, in the last four rows, stand each for itself.
 """
 
 FORMULA = "continuation and formula"

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.claims.parameters import Data, NotAsked, PaperData
+from bouncing_ball.paper.claims.paper_parameters import Data, NotAsked, PaperData
 from bouncing_ball.paper.claims.verdict import Finding, Verdict, against_print, at_most
 
 # An explanation of claims that are not reproduced is a function whose docstring is the text, and
@@ -192,11 +192,9 @@ def formula(name: str, item: str, text: str, *rows: str, **given: Any) -> Claim:
 
     The name of the row is ``item`` unless ``rows`` are given.
     """
-
-    def decide(data: Data) -> Finding:
-        return of_formula(data, *(rows or [item]))
-
-    return Claim(name, "restored formula", item, text, decide, **given)
+    compared = rows or (item,)
+    kind = "restored formula"
+    return Claim(name, kind, item, text, lambda data: of_formula(data, *compared), **given)
 
 
 def of_formula(data: Data, *rows: str) -> Finding:

@@ -15,7 +15,7 @@ from bouncing_ball.paper.claims import (
     periodic_orbits,
 )
 from bouncing_ball.paper.claims.claim import Claim, checks_hold, defined_in, name_of, paragraphs
-from bouncing_ball.paper.claims.parameters import PAPER, Data, Digests, PaperData
+from bouncing_ball.paper.claims.paper_parameters import PAPER, Data, Digests, PaperData
 from bouncing_ball.paper.claims.verdict import LAST_DIGITS, Verdict
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
@@ -169,7 +169,7 @@ def claims(data: Data) -> xr.Dataset:
     verdicts = judged_claims(CLAIMS, data)
     evident = described(numbers, variables=VARIABLES)
     return xr.merge([verdicts, evident]).assign_attrs(
-        last_digits=float(LAST_DIGITS),
+        last_digits=LAST_DIGITS,
         tolerance=evidence.TOLERANCE,
         stiff_frequency_ratio=evidence.STIFF,
         permanent_contact_frequency_ratio=PERMANENT_CONTACT,

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.claims.parameters import Data
+from bouncing_ball.paper.claims.paper_parameters import Data
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.periodic.orbit import Bifurcation
 

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from fractions import Fraction
 
 import numpy as np
 import xarray as xr
@@ -11,7 +10,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.errors import ModelError
 
-LAST_DIGITS = Fraction(1, 100)
+LAST_DIGITS = 0.01
 """The largest relative difference of a number that differs in its last digits and is not
 contradicted: the error that the paper tolerates in a model (Eqs. 37 and 38)."""
 # Relative tolerance, because rounding must not decide about a number that is equal to a bound.
@@ -34,8 +33,6 @@ class Verdict(StrEnum):
     """The verdict depends on how the claim is read."""
     NOT_ASKED = "not asked"
     """The datasets were not computed with the paper's parameters."""
-    NOT_DECIDED = "not decided"
-    """A verdict on a number that holds in a part of the interval of the number."""
 
 
 @dataclass(frozen=True)
@@ -190,9 +187,15 @@ def against_print(number: ArrayLike | xr.DataArray, printed: str) -> Finding:
     wanted = float(printed)
     units = (value - wanted) * 10.0 ** decimals(printed)
     distance = abs(units) - _ROUNDING
+    if distance <= 0.5:
+        verdict = Verdict.REPRODUCED
+    elif distance <= LAST_DIGITS * abs(wanted) * 10.0 ** decimals(printed):
+        verdict = Verdict.DIFFERS
+    else:
+        verdict = Verdict.CONTRADICTED
     return Finding(
         value,
-        agreement(distance, distance, printed),
+        verdict,
         printed,
         deviation_units=units,
         deviation=(value - wanted) / abs(wanted),
@@ -208,23 +211,3 @@ def decimals(printed: str) -> int:
     (3, 0)
     """
     return len(printed.partition(".")[2])
-
-
-def agreement(nearest: float | Fraction, farthest: float | Fraction, printed: str) -> Verdict:
-    """The verdict on numbers at these distances from a printed one, in units of its last digit.
-
-    A single number is both the nearest and the farthest.
-
-    Examples
-    --------
-    >>> [str(agreement(*distances, "82")) for distances in ((0, 0.4), (0.4, 0.6))]
-    ['reproduced', 'not decided']
-    """
-    last_digits = LAST_DIGITS * abs(Fraction(printed)) * 10 ** decimals(printed)
-    if farthest <= 0.5:
-        return Verdict.REPRODUCED
-    if nearest > 0.5 and farthest <= last_digits:
-        return Verdict.DIFFERS
-    if nearest > max(0.5, last_digits):
-        return Verdict.CONTRADICTED
-    return Verdict.NOT_DECIDED

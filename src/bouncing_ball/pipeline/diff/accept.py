@@ -10,7 +10,7 @@ from pathlib import Path
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline import provenance
-from bouncing_ball.pipeline.artifacts import CARRIERS, files_in
+from bouncing_ball.pipeline.artifact_files import CARRIERS, files_in
 from bouncing_ball.pipeline.diff.compare import compare_folders
 from bouncing_ball.pipeline.diff.report import to_terminal
 

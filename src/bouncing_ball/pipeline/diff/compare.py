@@ -17,7 +17,7 @@ import numpy as np
 
 from bouncing_ball.datasets.files import read_dataset, require_readable
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifacts import (
+from bouncing_ball.pipeline.artifact_files import (
     CARRIERS,
     DATASET,
     FIGURES,
@@ -47,9 +47,7 @@ class _Comparison:
         self.folders = (record, new)
         self.not_made = not_made
         self.touched = touched_files()
-        # Datasets that are accepted by hand are compared if a run has made them.
-        files = {f"config/{path.name}" for path in new.glob(f"config/*{DATASET}")}
-        files |= {file for file in not_made if PurePosixPath(file).parts[0] in (FIGURES, file)}
+        files = {file for file in not_made if PurePosixPath(file).parts[0] in (FIGURES, file)}
         for folder in self.folders:
             found = files_in(folder)
             # The record of a new house is empty.

@@ -14,7 +14,7 @@ from urllib.parse import quote
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.errors import escaped, printable
-from bouncing_ball.pipeline.artifacts import DATASET
+from bouncing_ball.pipeline.artifact_files import DATASET
 from bouncing_ball.pipeline.diff.causes import some
 from bouncing_ball.pipeline.diff.compare import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Outcome, Whole

@@ -28,10 +28,10 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
-from bouncing_ball.numerics.continuation import continue_both_ways
 from bouncing_ball.numerics.corrector import Condition, null_vector, solution_at
-from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
-from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball.numerics.events import Event, SpecialPoint, vanishing
+from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
+from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import (
     Followed,
@@ -151,16 +151,10 @@ def curve_through(
         where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
         raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another at {where}")
     with np.errstate(all="ignore"):
-        try:
-            branch = continue_both_ways(
-                problem,
-                first,
-                events=[release_lost(equations), *limits],
-                control=control,
-                max_points=most,
-            )
-        except ContinuationError as error:
-            raise NoOrbitError(str(error)) from None
+        tested = WithEvents(problem, [release_lost(equations), *limits])
+        (branch,) = continue_all_both_ways(lambda _: tested, [first], control, most)
+        if isinstance(branch, ContinuationError):
+            raise NoOrbitError(str(branch))
         special = [
             *_cusps(problem, branch, kind),
             *_resonances(problem, branch, kind),
@@ -244,7 +238,7 @@ def _cusps(problem: CurveProblem, branch: Branch, kind: Special) -> list[Special
         right = branch.points[k + 1]
         reference = _null_vector(equations, left, branch.tangents[k, : equations.size])
         test = _quadratic(problem, reference[: equations.size])
-        cusp = locate(problem, Event(Degenerate.CUSP, test), left, right, BY_DIFFERENCES)
+        cusp = Event(Degenerate.CUSP, test).locate(problem, left, right, BY_DIFFERENCES)
         if cusp is not None:
             found.append(cusp)
     return found
@@ -282,7 +276,7 @@ def _resonances(problem: CurveProblem, branch: Branch, kind: Special) -> list[Sp
     ]
     inner = np.flatnonzero((values[1:] > _RESONANT) != (values[:-1] > _RESONANT))
     for k in inner:
-        place = locate(problem, Event(name, excess), branch.points[k], branch.points[k + 1])
+        place = Event(name, excess).locate(problem, branch.points[k], branch.points[k + 1])
         if place is not None:
             found.append(place)
     return found
@@ -303,7 +297,7 @@ def _generalized(problem: CurveProblem, branch: Branch, kind: Special) -> list[S
         between = branch.points[start : stop + 1]
         # Newton's method from the ends of several steps may leave them, and the ranges.
         for k, _ in _sign_changes(cubic, between, stride=1):
-            place = locate(problem, event, between[k], between[k + 1], BY_DIFFERENCES)
+            place = event.locate(problem, between[k], between[k + 1], BY_DIFFERENCES)
             if place is not None:
                 found.append(place)
     return found

@@ -10,13 +10,12 @@ import numpy as np
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
-    FINITE,
     POINTS,
     Points,
     checked_number,
     chosen,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError, shortened, suggesting
+from bouncing_ball.errors import NoOrbitError, ParameterError, Range, shortened, suggesting
 from bouncing_ball_beyond.periodic.branches import curves, following, grazing, switching
 from bouncing_ball_beyond.periodic.branches.closed import one_turn, without_start
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
@@ -238,7 +237,7 @@ def _window(name: str, given: Any, start: float) -> Window | None:
     if given is None:
         return None
     several = isinstance(given, list | tuple | np.ndarray)
-    numbers = [checked_number("ranges", x, FINITE) for x in given] if several else []
+    numbers = [checked_number("ranges", x, Range()) for x in given] if several else []
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(
             f"the range of {name} = {{}} is not two numbers of which the second is larger",

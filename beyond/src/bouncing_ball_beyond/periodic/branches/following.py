@@ -14,10 +14,10 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
-from bouncing_ball.numerics.continuation import continue_all_both_ways, continue_branches
 from bouncing_ball.numerics.corrector import newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA

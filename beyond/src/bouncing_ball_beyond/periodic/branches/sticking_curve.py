@@ -4,7 +4,7 @@ No function with known derivatives vanishes where sticking ends (:func:`~.specia
 that Newton's method cannot follow such orbits. The equations of the orbit are smooth all the same.
 The curve is therefore a row of limits: at each value of one parameter the orbit is followed along
 the other one from one side of the limit to the other, and the limit between them is found to
-rounding. The row is followed by :mod:`~bouncing_ball.numerics.point_by_point`.
+rounding. The row is followed by :mod:`~bouncing_ball_beyond.periodic.branches.point_by_point`.
 """
 
 from dataclasses import replace
@@ -14,8 +14,7 @@ import numpy as np
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
-from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.numerics.point_by_point import (
+from bouncing_ball_beyond.periodic.branches.point_by_point import (
     OTHER,
     AllPoints,
     AtBound,
@@ -23,6 +22,7 @@ from bouncing_ball.numerics.point_by_point import (
     Stop,
     follow_points,
 )
+from bouncing_ball_beyond.periodic.orbits.domain_limits import domain_limits
 from bouncing_ball_beyond.periodic.orbits.ends import Window, bound_in_words
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import sticking

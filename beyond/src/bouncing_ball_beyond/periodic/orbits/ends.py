@@ -22,6 +22,7 @@ from bouncing_ball.models.flight import table
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.numerics.branch import Branch, End, EndKind
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball_beyond.periodic.orbits.domain_limits import DomainLimit
 from bouncing_ball_beyond.periodic.orbits.lost_release import lost_release
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import (
@@ -122,7 +123,8 @@ def release_lost(equations: OrbitEquations) -> Event:
 
 def end_of_sticking(equations: OrbitEquations) -> Event:
     """The end of a branch where a ball just stays on the table after an impact, or just leaves."""
-    return replace(_end(Special.STICKING, lambda y: sticking(equations, y)), is_sign=True)
+    reason = reason_at(Special.STICKING)
+    return DomainLimit(Special.STICKING, lambda y: sticking(equations, y), True, reason)
 
 
 def _end(kind: Special, left: Callable[[np.ndarray], np.ndarray]) -> Event:

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from bounds_of_branches import parameter_bound
-from one_branch import continue_branch
+from one_branch import continue_both_ways, continue_branch
 
 from bouncing_ball.numerics.branch import STARTED, Branch, ContinuationError, resample
 from bouncing_ball.numerics.branch import _between as hermite
-from bouncing_ball.numerics.continuation import continue_both_ways, solve_at
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.numerics.pseudo_arclength import solve_at
 from bouncing_ball.numerics.steps import StepControl
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are

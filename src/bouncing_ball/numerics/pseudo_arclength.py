@@ -30,7 +30,6 @@ from bouncing_ball.numerics.corrector import (
     solution_at,
     tangent,
 )
-from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import Attempt, State, StepControl, Way, WithEvents, end_at
 
 # The planes of a round are normal to one tangent, so that its steps become longer as the branch
@@ -197,6 +196,27 @@ def continue_all_both_ways(
 
     A branch is oriented such that the parameter increases at its start. Arguments and results are
     those of :func:`continue_branches`.
+
+    Examples
+    --------
+    The circle x² + p² = 1 turns in p at (0, 1), and with x < 0 an event ends the branch:
+
+    >>> class Circle:
+    ...     def residual(self, y):
+    ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
+    ...
+    ...     def jacobian(self, y):
+    ...         return 2 * y[..., np.newaxis, :]
+    >>> from bouncing_ball.numerics.events import Event
+    >>> turn = Event("turn", lambda y: y[..., 0])
+    >>> end = Event("end", lambda y: y[..., 0] + 0.6, terminal=True)
+    >>> tested = WithEvents(Circle(), [turn, end])
+    >>> (found,) = continue_all_both_ways(lambda _: tested, [np.array([1.0, 0.0])])
+    >>> turns = [special.point for special in found.special if special.name == "turn"]
+    >>> np.abs(turns).round(12).tolist()
+    [[0.0, 1.0], [0.0, 1.0]]
+    >>> found.points[[0, -1]].round(12).tolist()
+    [[-0.6, -0.8], [-0.6, 0.8]]
     """
     up = [np.eye(np.size(start))[-1] for start in starts]
     halves = continue_branches(
@@ -221,61 +241,3 @@ def _whole(
     points = np.concatenate([back.points[::-1], ahead.points[1:]])
     tangents = np.concatenate([-back.tangents[::-1], ahead.tangents[1:]])
     return Branch(points, tangents, back.special[::-1] + ahead.special, back.end, ahead.end)
-
-
-def continue_both_ways(
-    problem: Problem,
-    start: np.ndarray,
-    *,
-    events: Sequence[Event] = (),
-    control: StepControl = StepControl(),
-    max_points: int = 2000,
-) -> Branch:
-    """Follow the branch through ``start`` in both directions, as one branch.
-
-    Parameters
-    ----------
-    problem : Problem
-    start : ndarray, shape (N + 1,)
-        A solution or an approximation to it, which is corrected at fixed parameter.
-    events : sequence of Event
-        Events to be located; a terminal event ends the branch exactly at its zero.
-    control : StepControl
-    max_points : int
-        Number of points to one side after which the branch is left unfinished.
-
-    Returns
-    -------
-    Branch
-        With the reasons for its ends, oriented such that the parameter increases at ``start``.
-
-    Raises
-    ------
-    ContinuationError
-        If there is no solution near ``start``, if it lies outside the domain, or if the Jacobian is
-        not defined there.
-
-    Examples
-    --------
-    The circle x² + p² = 1 turns in p at (0, 1), and with x < 0 an event ends the branch:
-
-    >>> class Circle:
-    ...     def residual(self, y):
-    ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
-    ...
-    ...     def jacobian(self, y):
-    ...         return 2 * y[..., np.newaxis, :]
-    >>> turn = Event("turn", lambda y: y[..., 0])
-    >>> end = Event("end", lambda y: y[..., 0] + 0.6, terminal=True)
-    >>> found = continue_both_ways(Circle(), np.array([1.0, 0.0]), events=[turn, end])
-    >>> turns = [special.point for special in found.special if special.name == "turn"]
-    >>> np.abs(turns).round(12).tolist()
-    [[0.0, 1.0], [0.0, 1.0]]
-    >>> found.points[[0, -1]].round(12).tolist()
-    [[-0.6, -0.8], [-0.6, 0.8]]
-    """
-    tested = WithEvents(problem, events)
-    (found,) = continue_all_both_ways(lambda _: tested, [start], control, max_points)
-    if isinstance(found, ContinuationError):
-        raise found
-    return found

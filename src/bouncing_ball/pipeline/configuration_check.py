@@ -1,56 +1,18 @@
-"""The configuration of a run: what each study takes from it, and its check.
+"""The check of a configuration before a run.
 
-The signature of a study declares what it takes, for example ``study(parameters, release,
-continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
-the datasets that the job reads; and each further argument is the setting of the run with that name.
 The types of the parameters are classes beside the studies, so that the allowed values and the
 reasons for them are defined there, and the type of the whole configuration names them in order.
-
 Every mistake gives one line, and all mistakes are in one message.
 """
 
-import inspect
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from functools import cache
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError, validate_call
+from pydantic import BaseModel, ValidationError
 
 from bouncing_ball.errors import printable
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
-
-
-def typed(study: Callable[..., Any]) -> Callable[..., Any]:
-    """The study as a function of parameters in the form that the configuration has.
-
-    It raises :class:`pydantic.ValidationError` if a parameter is not allowed.
-
-    Examples
-    --------
-    >>> from bouncing_ball.datasets.parameters import Span
-    >>> def study(parameters: Span):
-    ...     return parameters.grid().tolist()
-    >>> typed(study)({"min": 10.0, "max": 1000.0, "samples": 3})
-    [10.0, 100.0, 1000.0]
-    """
-    return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
-
-
-def arguments(study: Callable[..., Any], artifact: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of a study for an artifact, in the form that the configuration has.
-
-    ``given`` has the parameters of each artifact and the settings of the run, by their names.
-
-    Examples
-    --------
-    >>> def study(parameters, release):
-    ...     pass
-    >>> arguments(study, "fig05", {"release": "force", "fig05": {"n": 1}, "fig06": {"n": 2}})
-    {'parameters': {'n': 1}, 'release': 'force'}
-    """
-    names = [name for name in inspect.signature(study).parameters if name != "data"]
-    return {name: given[artifact if name == "parameters" else name] for name in names}
 
 
 def check_configuration(
@@ -100,7 +62,7 @@ samples? Allowed here: min, max, samples
         model.model_validate(config, context=config)
     except ValidationError as error:
         found = _each_once(error.errors())
-        raise ConfigurationError(*_sentences(model, found)) from None
+        raise ConfigurationError(*_sentences(model.model_json_schema(), found)) from None
 
 
 def _each_once(errors: Iterable[Any]) -> list[Any]:
@@ -125,17 +87,17 @@ def _each_once(errors: Iterable[Any]) -> list[Any]:
     return [each for loc, each in kept.items() if each["type"] != "too_short" or loc not in inside]
 
 
-def _sentences(model: type[BaseModel], errors: Iterable[Any]) -> Iterator[str]:
+def _sentences(root: Mapping[str, Any], errors: Iterable[Any]) -> Iterator[str]:
     """A sentence for each error; keys that are missing at one place share one."""
     missing: dict[tuple[str | int, ...], list[Any]] = {}
     for each in errors:
         if each["type"] == "missing":
             missing.setdefault(each["loc"][:-1], []).append(each)
         else:
-            yield _sentence(model, each)
+            yield _sentence(root, each)
     for above, all_of_them in missing.items():
         if len(all_of_them) == 1:
-            yield _sentence(model, all_of_them[0])
+            yield _sentence(root, all_of_them[0])
         else:
             names = ", ".join(str(each["loc"][-1]) for each in all_of_them)
             yield f"missing keys in {place(above) or 'the file'}: {names}"
@@ -182,15 +144,8 @@ _WORDS = {
 }
 
 
-# Each mistake asks for it, and it takes longer than the check.
-@cache
-def _whole_schema(model: type[BaseModel]) -> Mapping[str, Any]:
-    return model.model_json_schema()
-
-
-def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str, Any]]:
+def _schemas(root: Mapping[str, Any], path: Sequence[str | int]) -> list[dict[str, Any]]:
     """The schemas from that of the whole configuration to that of a key, which comes last."""
-    root = _whole_schema(model)
     found = [resolved(root, root)]
     for part in path:
         if isinstance(part, int):
@@ -201,24 +156,20 @@ def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str
     return found
 
 
-def _unknown_key(given: str, key: str, known: list[str]) -> str:
-    """The sentence for a key that is not allowed at its place."""
-    close = get_close_matches(key, known, n=1)
-    meant = f", did you mean {close[0]}?" if close else "."
-    return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
-
-
-def _sentence(model: type[BaseModel], error: Any) -> str:
+def _sentence(root: Mapping[str, Any], error: Any) -> str:
     """One sentence for an error: the place, the value, the allowed values, and the reason."""
     path = error["loc"]
-    schemas = _schemas(model, path)
+    schemas = _schemas(root, path)
     schema = schemas[-1]
     kind = error["type"]
     name = place(path)
     description = " ".join(schema.get("description", "").split())
     given = f"{name} = {printable(repr(error['input']), 60)}"
     if kind == "extra_forbidden":
-        return _unknown_key(given, str(path[-1]), list(schemas[-2]["properties"]))
+        known = list(schemas[-2]["properties"])
+        close = get_close_matches(str(path[-1]), known, n=1)
+        meant = f", did you mean {close[0]}?" if close else "."
+        return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
     if kind == "missing":
         what = "section" if len(path) == 1 and "properties" in schema else "key"
         meaning = description or str(schema.get("title"))

@@ -23,7 +23,8 @@ from bouncing_ball.errors import one_of, require
 from bouncing_ball.models import damping as linear
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.numerics.arrays import as_numbers
-from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
+from bouncing_ball.numerics.elementary import arctangent, sine_and_versine
+from bouncing_ball_beyond.models.elementary import exponential, logarithm
 
 
 class Release(StrEnum):

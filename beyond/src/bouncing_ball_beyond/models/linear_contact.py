@@ -26,15 +26,11 @@ from typing import ClassVar
 import numpy as np
 
 from bouncing_ball.models.model import Status
-from bouncing_ball.numerics.elementary import (
-    arctangent,
-    exponential,
-    sine_and_cosine,
-    sine_and_versine,
-)
+from bouncing_ball.numerics.elementary import arctangent, sine_and_versine
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian, Released
+from bouncing_ball_beyond.models.elementary import exponential, sine_and_cosine
 from bouncing_ball_beyond.models.flight import Flight, table
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw
 from bouncing_ball_beyond.models.linear_flow import flow as linear_flow

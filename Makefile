@@ -209,8 +209,7 @@ newest: setup-newest clean
 config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
-# The verdicts and Table 1 in README.md, and the list of files in figures/, from the accepted
-# record.
+# The verdicts and Table 1 in README.md, and figures/README.md, from the accepted record.
 readme: $(SETUP)
 	$(BIN)/snakemake --cores 1 readme $(QUIETLY)
 

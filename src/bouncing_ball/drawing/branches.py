@@ -177,6 +177,8 @@ def name_branches(
     A branch without a name or without an orbit is left out.
     """
     shown = [each for each in named if each[0] and each[1].amplitude.notnull().any()]
+    if not shown:
+        return
     # The places of the names depend on the height of the panels, which is known after the layout.
     figure.draw_without_rendering()
     for axes, phase in zip(panels, ("phase", "release_phase"), strict=False):

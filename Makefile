@@ -116,7 +116,7 @@ accept: $(SETUP)
 # checked out, with its lock files and its record. It must give the results of the record.
 VERSION = $(shell sed -n 's/^version: //p' CITATION.cff)
 release: $(SETUP)
-	@test -z "$$(git status --porcelain)" || { echo "Some changes are not committed: commit them, then release."; exit 1; }
+	@changed="$$(git status --porcelain)" && test -z "$$changed" || { echo "A release is a commit: there are uncommitted changes, or there is no repository."; exit 1; }
 	$(BIN)/snakemake --cores 2 replication diff $(QUIETLY)
 	mkdir -p dist
 	git archive --prefix=bouncing-ball-$(VERSION)/ --output=dist/bouncing-ball-$(VERSION).tar.gz HEAD

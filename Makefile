@@ -29,7 +29,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all replication setup lint test quick diff accept report clean ci test-cluster test-long test-processors everything setup-everything lint-everything test-everything test-beyond test-contacts diff-everything setup-engines test-engines docs test-docs gallery speed setup-newest newest config-docs readme lock
+.PHONY: all replication setup lint test quick diff accept release report clean ci test-cluster test-long test-processors everything setup-everything lint-everything test-everything test-beyond test-contacts diff-everything setup-engines test-engines docs test-docs gallery speed setup-newest newest config-docs readme lock
 
 # The replication.
 
@@ -111,6 +111,16 @@ diff: $(SETUP)
 export ONLY
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept $(QUIETLY)
+
+# One file to cite and to run without git, dist/bouncing-ball-VERSION.tar.gz: the commit that is
+# checked out, with its lock files and its record. It must give the results of the record.
+VERSION = $(shell sed -n 's/^version: //p' CITATION.cff)
+release: $(SETUP)
+	@changed="$$(git status --porcelain)" && test -z "$$changed" || { echo "A release is a commit: there are uncommitted changes, or there is no repository."; exit 1; }
+	$(BIN)/snakemake --cores 2 replication diff $(QUIETLY)
+	mkdir -p dist
+	git archive --prefix=bouncing-ball-$(VERSION)/ --output=dist/bouncing-ball-$(VERSION).tar.gz HEAD
+	@sha256sum dist/bouncing-ball-$(VERSION).tar.gz
 
 report: all
 	$(BIN)/snakemake --report results/report.html
@@ -209,8 +219,7 @@ newest: setup-newest clean
 config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
-# The verdicts and Table 1 in README.md, and the list of files in figures/, from the accepted
-# record.
+# The verdicts and Table 1 in README.md, and figures/README.md, from the accepted record.
 readme: $(SETUP)
 	$(BIN)/snakemake --cores 1 readme $(QUIETLY)
 

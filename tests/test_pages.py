@@ -14,6 +14,8 @@ from readme import pages
 
 import bouncing_ball
 from bouncing_ball.cli.commands import COMMANDS, how_to_install
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.datasets.selection import each
 
 ROOT = Path(__file__).parents[1]
 LIST = ROOT / "figures" / "README.md"
@@ -44,6 +46,17 @@ def test_the_generated_parts_of_readme_and_the_list_of_figures_follow_the_record
 def test_readme_shows_the_sixteen_figures_in_their_order():
     shown = re.findall(r'<img src="figures/fig(\d+)\.png"', (ROOT / "README.md").read_text("utf-8"))
     assert shown == [f"{number:02}" for number in range(1, 17)]
+
+
+def test_the_page_of_the_figures_has_all_of_them_and_what_the_paper_says_of_them():
+    text = LIST.read_text("utf-8")
+    shown = re.findall(r'<img src="fig(\d+)\.png"', text)
+    assert shown == [f"{number:02}" for number in range(1, 17)] and "| Table 1:" in text
+    data = read_dataset(ROOT / "figures/claims.nc")
+    for row in each(data, "claim"):
+        if "Fig" in row["item"].item() or row["item"].item() == "Table 1":
+            printed = row.printed_table.item()
+            assert printed or f"| {row.statement.item()} | *{row.verdict.item()}*: " in text
 
 
 def test_every_accepted_file_is_in_the_list():

@@ -11,8 +11,9 @@ from declared_artifacts import DRAWINGS
 from matplotlib.contour import ContourSet
 
 import bouncing_ball
+from bouncing_ball.drawing.canvas import lay_out
 from bouncing_ball.drawing.files import save
-from bouncing_ball.drawing.style import COLOURS, LINES, style
+from bouncing_ball.drawing.style import COLOURS, DASHES, LINES, style
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.pipeline.provenance import read_attributes
 
@@ -144,19 +145,29 @@ def test_markers_stand_at_the_bifurcations(record, accepted_figure):
         assert at.size and np.all(np.isin(at, shown))
 
 
-@pytest.mark.parametrize(("name", "curves"), [("fig03", 1), ("fig08", 3), ("fig15", 2)])
-def test_every_curve_and_mark_is_named_once(name, curves, accepted_figure):
-    """Besides the kinds: Eq. 8 in Fig. 3, the contacts in Fig. 8, the models in Fig. 15."""
+KINDS = ["stable", "unstable", "saddle-node", "period doubling"]
+NAMED = {
+    "fig03": [f"$n={n}$" for n in range(1, 6)],
+    "fig08": [rf"$\varpi={ratio}$" for ratio in ("10^{4}", "10", "2")],
+    "fig15": ["restitution", "spring-damper"],
+}
+
+
+@pytest.mark.parametrize(("name", "marks"), [("fig03", 1), ("fig08", 0), ("fig15", 0)])
+def test_every_curve_is_named_at_its_end_and_every_kind_once(name, marks, accepted_figure):
+    """The dashes are those of the stability, so that in grey only names tell curves apart."""
     figure = accepted_figure(name)
     (legend,) = figure.legends
     names = [text.get_text() for text in legend.get_texts() if text.get_text()]
-    if name == "fig03":
-        assert "period doubling, Eq. 8" in names
-        assert [text.get_text() for text in figure.axes[0].texts] == [
-            f"$n={n}$" for n in range(1, 6)
-        ]
-    kinds = {"stable", "unstable", "saddle-node", "period doubling"}
-    assert kinds <= set(names) and len(names) == len(set(names)) == curves + len(kinds)
+    assert sorted(names) == sorted(KINDS + ["period doubling, Eq. 8"] * marks)
+    for axes in figure.axes:
+        assert {text.get_text() for text in axes.texts} == {*NAMED[name]}
+        for text in axes.texts:
+            (_, height) = text.xy
+            curve = [x for x in axes.lines if x.get_color() == text.get_color()]
+            ends = [x.get_xydata()[[0, -1]] for x in curve if len(x.get_xdata()) > 1]
+            last = max(map(tuple, np.concatenate(ends)))
+            assert height == pytest.approx(last[1], abs=1e-9)
 
 
 @pytest.mark.parametrize("name", ["fig08", "fig09"])
@@ -225,7 +236,38 @@ def test_time_is_in_periods_of_the_table(name, accepted_figure):
 def test_figure_13_marks_round_frequency_ratios(accepted_figure):
     (axes,) = accepted_figure("fig13").axes
     words = {text.get_text() for text in axes.texts}
-    assert words == {rf"$\varpi={ratio}$" for ratio in (1, 2, 5, 10)}
+    small = {rf"$\varpi={ratio}$" for ratio in (1, 2, 5, 10)}
+    assert words == small | {r"$\varpi\geq100$"} and len(axes.texts) == 2 * len(words)
+
+
+def test_figure_12_names_the_curves_of_its_enlargement(accepted_figure):
+    (_, summit) = accepted_figure("fig12").axes
+    bottom, _ = summit.get_ylim()
+    inside = [x.get_label() for x in summit.lines if x.get_ydata().max() > bottom]
+    assert summit.get_title() == f"the summit: {', '.join(inside)}"
+
+
+@pytest.mark.parametrize("name", ["fig05", "fig06", "fig10", "fig12"])
+def test_of_the_curves_that_are_compared_one_is_not_dashed(name, accepted_figure):
+    axes = accepted_figure(name).axes[0]
+    compared = [x for x in axes.lines if "=" in str(x.get_label())]
+    assert 2 < len(compared) <= len({*map(str, DASHES)})
+    assert [x.is_dashed() for x in compared] == [False] + [True] * (len(compared) - 1)
+
+
+def test_the_cross_of_equation_8_is_inside_its_square(record):
+    figure = drawn("fig03", record["fig03"])
+    with style():
+        figure.draw_without_rendering()
+        lay_out(figure, figure.get_layout_engine())
+    (axes,) = figure.axes
+    pixels = figure.dpi / 72
+    found = {mark: [x for x in axes.lines if x.get_marker() == mark] for mark in "sx"}
+    for square, cross in zip(found["s"], found["x"], strict=True):
+        (middle,), (other,) = (axes.transData.transform(x.get_xydata()) for x in (square, cross))
+        room = square.get_markersize() - square.get_markeredgewidth()
+        needed = cross.get_markersize() + cross.get_markeredgewidth()
+        assert np.abs(other - middle).max() <= (room - needed) / 2 * pixels
 
 
 @pytest.mark.parametrize("name", ["fig14", "fig16"])

@@ -71,10 +71,8 @@ def test_a_legend_has_as_many_columns_as_fit():
     assert figure.get_size_inches().tolist() == [4, 4]
     (legend,) = figure.legends
     assert legend.get_window_extent().width <= figure.bbox.width
-    # Entries without a name fill the row of the curves, after which the kinds begin a row.
     names = {text.get_text() for text in legend.get_texts()} - {""}
-    curves = {"restitution", "spring-damper"}
-    assert names == curves | {"stable", "unstable", "saddle-node", "period doubling"}
+    assert names == {"stable", "unstable", "saddle-node", "period doubling"}
 
 
 def test_a_figure_is_drawn_into_given_axes():

@@ -2,11 +2,14 @@
 
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 
 from bouncing_ball.pipeline import provenance as module
 from bouncing_ball.pipeline.provenance import UNKNOWN, house_of, revision
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -89,6 +92,21 @@ def test_the_commit_is_unknown_without_a_repository_at_this_folder(
     subprocess.run(["git", "init", "--quiet"], cwd=repository, check=True)
     assert revision(repository) == UNKNOWN
     monkeypatch.setenv("PATH", str(tmp_path))
+    assert revision(repository) == UNKNOWN
+
+
+def test_an_archive_of_a_commit_names_it(repository, tmp_path):
+    (repository / ".gitattributes").write_bytes((ROOT / ".gitattributes").read_bytes())
+    shutil.copy(ROOT / ".git_archival.txt", repository)
+    subprocess.run(["git", "add", "."], cwd=repository, check=True)
+    subprocess.run(["git", "commit", "--quiet", "-m", "second"], cwd=repository, check=True)
+    unpacked = tmp_path / "unpacked"
+    archive = subprocess.run(["git", "archive", "HEAD"], cwd=repository, capture_output=True)
+    unpacked.mkdir()
+    subprocess.run(["tar", "-x"], cwd=unpacked, input=archive.stdout, check=True)
+    assert revision(unpacked) == (head(repository), "unknown")
+    # A copy of the files of a clone is no archive.
+    shutil.rmtree(repository / ".git")
     assert revision(repository) == UNKNOWN
 
 

@@ -1,4 +1,4 @@
-"""The generated parts of README, and lists of the accepted files."""
+"""The generated parts of README, and the page of the accepted files."""
 
 from pathlib import Path
 
@@ -7,15 +7,8 @@ from bouncing_ball.paper.artifacts import ARTIFACTS
 from bouncing_ball.paper.claims.claim_tables import Claims
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article
-from bouncing_ball.pipeline.front import folder_page, thumbnails, with_parts
+from bouncing_ball.pipeline.front import links, thumbnails, with_parts
 from bouncing_ball.pipeline.job import logged
-
-ABOUT = """\
-# The figures and tables of the paper
-
-The accepted results of the replication. Each figure, table and check has a dataset (netCDF), its
-picture (PNG and SVG) and its table (Markdown and CSV); two figures are schematics without data.
-"""
 
 
 def pages(top):
@@ -30,9 +23,11 @@ def pages(top):
     }
     parts["figures"] = thumbnails(ARTIFACTS.values())
     readme = with_parts((top / "README.md").read_text(encoding="utf-8"), parts)
+    files = {each.name: links(top / "figures", each) for each in ARTIFACTS.values()}
+    template = top / "workflow/report/figures.md.j2"
     return {
         "README.md": readme,
-        "figures/README.md": folder_page(ABOUT, top / "figures", ARTIFACTS.values()),
+        "figures/README.md": render_article(template, data, files, claims, ARTIFACTS),
     }
 
 

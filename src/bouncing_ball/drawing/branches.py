@@ -22,7 +22,7 @@ from bouncing_ball.datasets import (
     SADDLE_NODE,
 )
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
-from bouncing_ball.drawing.labels import in_a_row, title
+from bouncing_ball.drawing.labels import in_a_row, names_at_the_right, title
 from bouncing_ball.drawing.style import LINES, MARKS
 
 _GRAZING = {GRAZING_FLIGHT, GRAZING_RELEASE}
@@ -33,6 +33,8 @@ _OF_RIGID = {
     GRAZING_FLIGHT: "grazing",
 }
 _ALONG = ("point", "special", "multiplier", "end")
+# Relative distance below which two amplitudes differ only by rounding.
+_ROUNDING = 1e-12
 # Width in characters of a reason below the title.
 _LINE = 110
 SPECIAL = (SADDLE_NODE, PERIOD_DOUBLING, GRAZING_FLIGHT, GRAZING_RELEASE)
@@ -148,13 +150,14 @@ def over_amplitude(data: xr.Dataset) -> Figure:
     rows, names = in_a_row(data, *_ALONG)
     figure, panels = phase_panels(bool((rows.contact_duration > 0).any()))
     panels[0].set_xlim(0.0, data.attrs.get("amplitude_max", data.amplitude.max()))
+    named = []
     # Both phases of a curve have its colour.
     for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
-        if name and curve.amplitude.notnull().any():
-            name_curve(panels[0], name, colour)
         draw_both_phases(panels, placed(curve), colour)
+        named.append((name, curve, colour))
     legend_below(figure)
     head(figure, title(data), rows)
+    name_branches(figure, panels, named)
     return figure
 
 
@@ -165,9 +168,38 @@ def head(figure: Figure, title: str, rows: xr.Dataset) -> None:
     figure.suptitle("\n".join([title, *(fill(reason, _LINE) for reason in reasons)]))
 
 
-def name_curve(axes: Axes, name: str, colour: str) -> None:
-    """The entry of a curve in the legend."""
-    axes.plot([], [], color=colour, label=name)
+def name_branches(
+    figure: Figure, panels: Sequence[Axes], named: Sequence[tuple[str, xr.Dataset, str]]
+) -> None:
+    """The names of branches at the right of each panel: name, orbits and colour of each branch.
+
+    The dashes of a line tell the stability, so that in grey only the names distinguish branches.
+    A branch without a name or without an orbit is left out.
+    """
+    shown = [each for each in named if each[0] and each[1].amplitude.notnull().any()]
+    if not shown:
+        return
+    # The places of the names depend on the height of the panels, which is known after the layout.
+    figure.draw_without_rendering()
+    for axes, phase in zip(panels, ("phase", "release_phase"), strict=False):
+        ends = [(name, _last_phase(curve, phase) / np.pi, colour) for name, curve, colour in shown]
+        names_at_the_right(axes, ends)
+
+
+def _last_phase(curve: xr.Dataset, phase: str) -> float:
+    """The phase at the end of a branch that has the larger Λ; of two equal ends, the larger phase.
+
+    Examples
+    --------
+    >>> ends = {"amplitude": ("point", [1.5, 0.2, 1.5]), "phase": ("point", [-0.4, 0.0, 0.5])}
+    >>> _last_phase(xr.Dataset(ends), "phase")
+    0.5
+    """
+    known = curve[["amplitude", phase]].dropna("point")
+    ends = known.isel(point=[0, -1])
+    # Ends at the edge of the panel differ by rounding.
+    far = ends.amplitude >= ends.amplitude.max() * (1 - _ROUNDING)
+    return float(ends[phase].where(far).max())
 
 
 def placed(curve: xr.Dataset) -> xr.Dataset:

@@ -26,8 +26,9 @@ QUANTITIES = {
 """The titles of the quantities compared between the models."""
 
 _POINTS_PER_INCH = 72.0
-# Height of a line of text in points, and offsets of a text from its point, in points and sides.
-_LINE_HEIGHT = 9.5
+# Height of a line of text with an exponent, in points; and offsets of a text from its point, in
+# points and sides.
+_LINE_HEIGHT = 11.0
 _DISTANCES = (4.0, 8.0, 14.0)
 _SIDES = ((1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1.5), (0, -1.5), (1.5, 0), (-1.5, 0))
 

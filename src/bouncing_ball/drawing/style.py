@@ -10,6 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
+from matplotlib.patheffects import withStroke
 
 # Read once, because a context that is given the file reads it again and imports matplotlib.style.
 _FILE = Path(__file__).with_name("style.mplstyle")
@@ -36,6 +37,8 @@ ARROW: Look = {
     "shrinkB": 0,
 }
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
+# The dashes of curves that are compared, which tell them apart in grey; the guides are dotted.
+DASHES = ("-", (0, (7, 2)), (0, (5, 1.5, 1, 1.5)), (0, (2, 1.2)), (0, (5, 1, 1, 1, 1, 1)))
 # Branches of orbits, by their stability and admissibility.
 LINES: dict[str, Look] = {
     "stable": {"linestyle": "-", "linewidth": 1.3},
@@ -52,10 +55,16 @@ _HOLLOW: Look = {
 # is inside that of the exact map.
 MARKS: dict[str, Look] = {
     "saddle-node": {"marker": "o", **_HOLLOW},
-    "period doubling": {"marker": "s", **_HOLLOW},
+    "period doubling": {"marker": "s", **_HOLLOW, "markersize": 6},
     "grazing of a flight": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
     "grazing of a release": {"marker": "v", "markersize": 4.5, "linestyle": "none"},
-    "period doubling, Eq. 8": {"marker": "x", "markersize": 4, "linestyle": "none"},
+    "period doubling, Eq. 8": {
+        "marker": "x",
+        "markersize": 2.4,
+        "markeredgewidth": 0.8,
+        "path_effects": [withStroke(linewidth=2.4, foreground="white")],
+        "linestyle": "none",
+    },
 }
 # The line of each model where several are compared; that of the contact is below the others.
 MODELS: dict[str, Look] = {

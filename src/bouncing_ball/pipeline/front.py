@@ -1,4 +1,4 @@
-"""The generated parts of README, and the pages that list the accepted files.
+"""The generated parts of README, and the links to accepted files.
 
 README holds its generated parts between comments; the rest of it is written by hand. Everything is
 read from the accepted datasets, so that ``make readme`` follows ``make accept``.
@@ -68,20 +68,3 @@ def thumbnails(artifacts: Iterable[Artifact]) -> str:
         lines += [pictures[row], names[row]]
     lines.insert(1, ["---"] * _IN_A_ROW)
     return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
-
-
-_HOW = """\
-The name of a file is that of its target: `snakemake --cores 2 {name}` makes the files anew in
-`results/`, and `bouncing-ball explain FILE` prints from which commit, parameters and versions a
-file was made.
-
-| name | what it shows | files |
-| --- | --- | --- |
-"""
-
-
-def folder_page(about: str, folder: Path, artifacts: Iterable[Artifact]) -> str:
-    """The page of the accepted files of a house: what they are, and a line for each artifact."""
-    shown = list(artifacts)
-    rows = [f"| `{each.name}` | {each.title} | {links(folder, each)} |\n" for each in shown]
-    return f"{about}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"

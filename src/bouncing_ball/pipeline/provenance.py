@@ -10,6 +10,7 @@ again.
 
 import json
 import os
+import re
 import shlex
 import subprocess
 from collections.abc import Callable, Iterable, Mapping
@@ -50,6 +51,9 @@ _NESTED: dict[str, Callable[[Any], Any]] = {
 _PLAIN = ("commit", "dirty", "target", "rule", "code")
 _NO_PARAMETERS = {*TEXTUAL, *(f"{PREFIX}{name}" for name in (*_NESTED, *_PLAIN))}
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
+# The file in which `git archive` names the commit, in a form that other programs know, too.
+_ARCHIVAL = ".git_archival.txt"
+_NODE = re.compile("^node: ([0-9a-f]{40}|[0-9a-f]{64})$", re.MULTILINE)
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
 
@@ -76,24 +80,37 @@ def git(folder: Path, *arguments: str) -> str | None:
     return None
 
 
-def repository_of(house: Path) -> Path | None:
-    """The repository of a house: the house itself, or the checkout in which it stands; or None.
+def _tops(house: Path) -> list[Path]:
+    """The folders that may be the repository or the release of a house: the house itself, and the
+    checkout in which it stands.
 
     A release that was unpacked inside of another repository is not a commit of that one.
     """
-    tops = (top for top in (house, REPOSITORY) if house.is_relative_to(top))
-    return next((top for top in tops if (top / ".git").exists()), None)
+    return [top for top in (house, REPOSITORY) if house.is_relative_to(top)]
+
+
+def released(house: Path) -> Revision:
+    """The commit of the release in which a house was unpacked, or :data:`UNKNOWN`.
+
+    Nobody knows whether its files have changed since.
+    """
+    for top in _tops(house):
+        with suppress(OSError, UnicodeDecodeError):
+            if found := _NODE.search((top / _ARCHIVAL).read_text(encoding="utf-8")):
+                return Revision(found[1], "unknown")
+    return UNKNOWN
 
 
 def revision(house: Path) -> Revision:
     """The commit of the repository of a house, and whether its tree is dirty.
 
     Untracked files count, unless git ignores them; the accepted record does not count.
-    The result is :data:`UNKNOWN` without git and without a repository.
+    Without a repository it is the commit of the :func:`released` archive, and without git
+    :data:`UNKNOWN`.
     """
-    top = repository_of(house)
+    top = next((top for top in _tops(house) if (top / ".git").exists()), None)
     if top is None:
-        return UNKNOWN
+        return released(house)
     own = house.relative_to(top).as_posix()
     record = (f"**/{FIGURES}/**", f"[a-z]*{TEXT}", f"{own}/[a-z]*{TEXT}")
     excluded = [f":(top,exclude,glob){pattern}" for pattern in record]

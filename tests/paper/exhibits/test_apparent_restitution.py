@@ -40,10 +40,13 @@ def test_every_entry_is_an_orbit_of_its_parameters(described, reference, release
         apparent_restitution(CASES | {"frequency_ratio": SPAN | {"min": 1.5}}, release)
     )
     assert data.phase.dims == ("case", "frequency_ratio") and data.phase.shape == (3, 7)
+    # xarray names the curves by the case, and draws the first variable.
+    names = [f"r = {x['restitution']:g}, Λ = {x['amplitude']:g}" for x in CASES["cases"]]
+    assert data.case.values.tolist() == names and next(iter(data)) == "apparent_restitution"
     for (i, case), ratio in itertools.product(
         enumerate(CASES["cases"]), data.frequency_ratio.values
     ):
-        at = data.sel(case=i, frequency_ratio=ratio)
+        at = data.isel(case=i).sel(frequency_ratio=ratio)
         r = float(at.restitution)
         lam = float(at.amplitude)
         assert (r, lam) == tuple(case.values())

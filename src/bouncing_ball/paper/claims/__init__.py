@@ -15,8 +15,9 @@ Table 1 under other readings of the paper       :mod:`.forensics`
 =============================================== ==================================
 
 A claim is a function (:mod:`.claim`), :mod:`.claims` decides all of them, and
-:mod:`.claim_tables` lists them. To read the claims, the first three rows are enough; the second
-computations, in the last four rows, stand each for itself.
+:mod:`.claim_tables` lists them, also by the figures that they name (:mod:`.places`). To read the
+claims, the first three rows are enough; the second computations, in the last four rows, stand each
+for itself.
 """
 
 FORMULA = "continuation and formula"

@@ -14,7 +14,11 @@ import xarray as xr
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
+from bouncing_ball.paper.claims.places import exhibits_in
 from bouncing_ball.paper.claims.verdict import decimals
+
+# A claim about more figures than these is not repeated at each of them.
+_FEW = 3
 
 
 def formulas(data: xr.Dataset) -> TextTable:
@@ -155,6 +159,17 @@ class Claims:
             and table in ("", claim.printed_table)
         ]
         return sorted(chosen, key=lambda claim: -abs(claim.deviation))
+
+    def about(self, name: str) -> list[Any]:
+        """Claims about a figure or a table, but for the entries of a printed table, and for those
+        about many figures.
+        """
+        few = (claim for claim in self.all if len(exhibits_in(claim.item)) <= _FEW)
+        return [x for x in few if name in exhibits_in(x.item) and not x.printed_table]
+
+    def about_many(self) -> list[Any]:
+        """Claims about so many figures that they are not repeated at each of them."""
+        return [claim for claim in self.all if len(exhibits_in(claim.item)) > _FEW]
 
     def asked(self, name: str) -> bool:
         """Whether a claim has a verdict, for which the run must have the paper's parameters."""

@@ -244,7 +244,7 @@ def swapped_labels(data):
     stand in rising order from the top, but the curves in falling order. Swapped labels are the
     likely cause.
     """
-    compliant_end = data["fig06"].apparent_restitution.sel(case=0, frequency_ratio=1.0)
+    compliant_end = data["fig06"].apparent_restitution.isel(case=0).sel(frequency_ratio=1.0)
     return {
         "smallest 1 - Λ sin φ": above(evidence.short_of_lift(data), 0),
         "dip below r at Λ = 0.7": at_least(evidence.dip(data, 0.7), 0.001),
@@ -271,7 +271,7 @@ def compliant_end_of_12(data):
 
     Remark: the value has the same digits at the other two amplitudes
     """
-    return data["fig06"].apparent_restitution.sel(case=2, frequency_ratio=1.0)
+    return data["fig06"].apparent_restitution.isel(case=2).sel(frequency_ratio=1.0)
 
 
 @claim("Figs. 5 and 6")

@@ -94,9 +94,17 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _sweep(
-    n: int, restitution: ArrayLike, amplitude: ArrayLike, ratios: np.ndarray, release: Release
+    shown: str,
+    n: int,
+    restitution: ArrayLike,
+    amplitude: ArrayLike,
+    ratios: np.ndarray,
+    release: Release,
 ) -> xr.Dataset:
     """Orbits on the stable side, shape (case, ϖ); NaN where there is none.
+
+    The variable that the figure shows comes first, and each case is named by its r and Λ, so that
+    xarray draws the figure without further arguments.
 
     Raises
     ------
@@ -108,10 +116,12 @@ def _sweep(
     orbits = explicit_branch(contacts).orbit(n, lam[:, np.newaxis])
     require_any_orbit(orbits.exists, n, lam, ratios)
     dims = ("case", "frequency_ratio")
-    names = (*OBSERVED, "max_height", "stable", "admissible")
+    others = [*OBSERVED, "max_height", "stable", "admissible"]
+    others.remove(shown)
     return xr.Dataset(
-        {name: (dims, getattr(orbits, name)) for name in names},
+        {name: (dims, getattr(orbits, name)) for name in (shown, *others)},
         coords={
+            "case": [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, lam, strict=True)],
             "frequency_ratio": ratios,
             "restitution": ("case", r),
             "amplitude": ("case", lam),
@@ -124,7 +134,8 @@ def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
 
     The dataset has ``apparent_restitution``, the other observables of the stable orbit,
     ``max_height``, ``stable`` and ``admissible``, shape (case, ϖ), NaN where there is no orbit;
-    and the coordinates ``restitution`` and ``amplitude``, shape (case,). Phases are in rad.
+    and the coordinates ``case``, such as "r = 0.85, Λ = 1", ``restitution`` and ``amplitude``,
+    shape (case,). Phases are in rad.
 
     Raises
     ------
@@ -134,7 +145,8 @@ def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
     restitution = [case.restitution for case in parameters.cases]
     amplitude = [case.amplitude for case in parameters.cases]
     ratios = parameters.frequency_ratio.grid()
-    dataset = _sweep(parameters.n, restitution, amplitude, ratios, release)
+    shown = "apparent_restitution"
+    dataset = _sweep(shown, parameters.n, restitution, amplitude, ratios, release)
     return describe(dataset, variables=VARIABLES)
 
 
@@ -149,16 +161,17 @@ def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
     NoOrbitError
         If there is no orbit in any case and at any ϖ.
     """
-    dataset = _with_limits(parameters, parameters.frequency_ratio.grid(), release)
+    ratios = parameters.frequency_ratio.grid()
+    dataset = _with_limits("bounce_velocity", parameters, ratios, release)
     return describe(dataset, variables=VARIABLES)
 
 
-def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.Dataset:
+def _with_limits(shown: str, parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.Dataset:
     """Orbits along ϖ, and the phase and velocities to which they tend (Eq. 6)."""
     n = parameters.n
     r = parameters.restitution
     lam = np.array(parameters.amplitude)
-    return _sweep(n, r, lam, ratios, release).assign(
+    return _sweep(shown, n, r, lam, ratios, release).assign(
         restitution_phase=("case", explicit_branch(RestitutionModel(r)).orbit(n, lam).phase),
         restitution_bounce_velocity=n * np.pi,
         restitution_impact_velocity=-n * np.pi,
@@ -176,5 +189,5 @@ def poincare_map(parameters: Sweep, release: Release) -> xr.Dataset:
         If there is no orbit in any case and at any ϖ.
     """
     ratios, labelled = with_round_values(parameters.frequency_ratio.grid())
-    dataset = _with_limits(parameters, ratios, release)
+    dataset = _with_limits("phase", parameters, ratios, release)
     return describe(dataset.assign(labelled=("frequency_ratio", labelled)), variables=VARIABLES)

@@ -10,10 +10,10 @@ from matplotlib.lines import Line2D
 
 from bouncing_ball.drawing.canvas import canvas, coloured, draw_curve, legend_below, logarithmic
 from bouncing_ball.drawing.labels import note_beside, number_label, parameters
-from bouncing_ball.drawing.style import GUIDE, RESTITUTION, Look
+from bouncing_ball.drawing.style import DASHES, GUIDE, RESTITUTION, Look
 
-_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
-# Above this frequency ratio the points are close to the point of the restitution model.
+# Above this frequency ratio the points are close to the point of the restitution model, and share
+# a name.
 _NAMED_UP_TO = 10.0
 _LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
 _MARK: Look = {"color": RESTITUTION, "marker": "o", "markersize": 4}
@@ -90,7 +90,7 @@ def _absence(curve: xr.Dataset) -> str:
 
 def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
     """One curve of a variable for each case, named by its r and Λ."""
-    for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
+    for (one, colour), dashes in zip(coloured(data, "case"), cycle(DASHES), strict=False):
         r = number_label(float(one["restitution"]))
         lam = number_label(float(one["amplitude"]))
         label = rf"$r={r}$, $\Lambda={lam}${_absence(one)}"
@@ -110,9 +110,12 @@ def _draw_trace(
 def _name_ratios(
     axes: Axes, curve: xr.Dataset, phase: xr.DataArray, velocity: xr.DataArray
 ) -> None:
-    """The names of the small round values of ϖ, beside their marks."""
-    for at in np.flatnonzero(curve.labelled.values & phase.notnull().values):
-        ratio = float(curve.frequency_ratio[at])
-        if ratio <= _NAMED_UP_TO:
-            place = float(phase[at]) / np.pi, float(velocity[at]) / np.pi
-            note_beside(axes, rf"$\varpi={number_label(ratio)}$", place, fontsize=8)
+    """The names of the round values of ϖ beside their marks; the large values share one."""
+    marked = np.flatnonzero(curve.labelled.values & phase.notnull().values)
+    ratios = curve.frequency_ratio.values
+    small = marked[ratios[marked] <= _NAMED_UP_TO]
+    large = marked[ratios[marked] > _NAMED_UP_TO]
+    relation = "=" if large.size == 1 else r"\geq"
+    for at, sign in [(at, "=") for at in small] + [(at, relation) for at in large[:1]]:
+        place = float(phase[at]) / np.pi, float(velocity[at]) / np.pi
+        note_beside(axes, rf"$\varpi{sign}{number_label(ratios[at])}$", place, fontsize=8)

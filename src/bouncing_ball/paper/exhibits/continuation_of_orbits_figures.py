@@ -8,7 +8,7 @@ from bouncing_ball.drawing.branches import (
     draw_both_phases,
     draw_rigid_branch,
     head,
-    name_curve,
+    name_branches,
     over_amplitude,
     phase_panels,
     placed,
@@ -31,8 +31,7 @@ def both_domains(data: xr.Dataset) -> Figure:
     panels[0].set_xlim(0.0, data.attrs["amplitude_max"])
     of_branch = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in of_branch})
-    for model, colour in zip(("restitution", "spring-damper"), COLOURS, strict=False):
-        name_curve(panels[0], model, colour)
+    rigid = rigid.assign(release_phase=rigid.phase)
     curve = placed(data.squeeze("frequency_ratio"))
     draw_both_phases(panels, curve, COLOURS[1])
     for axes in panels:
@@ -40,6 +39,8 @@ def both_domains(data: xr.Dataset) -> Figure:
     legend_below(figure)
     title = parameters(data, "n", "restitution", "frequency_ratio")
     head(figure, title, data)
+    named = [("restitution", rigid, COLOURS[0]), ("spring-damper", curve, COLOURS[1])]
+    name_branches(figure, panels, named)
     return figure
 
 

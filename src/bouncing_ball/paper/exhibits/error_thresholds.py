@@ -68,7 +68,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     n = parameters.n
     lam = parameters.amplitude
     ratios = parameters.frequency_ratio.grid()
-    dataset = errors_along_ratio(
+    error = errors_along_ratio(
         parameters.restitution,
         release,
         n=n,
@@ -80,8 +80,10 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     orbit = explicit_branch(contact).orbit(n, lam)
     require_any_orbit(orbit.exists, n, lam, ratios)
-    for name in ("max_height", "phase", "contact_duration", "impact_velocity", "admissible"):
-        dataset[name] = ("frequency_ratio", getattr(orbit, name))
     rigid = explicit_branch(RestitutionModel(parameters.restitution)).orbit(n, lam)
-    dataset["restitution_max_height"] = rigid.max_height
-    return describe(dataset, variables=VARIABLES)
+    names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
+    heights = xr.Dataset(
+        {name: ("frequency_ratio", getattr(orbit, name)) for name in names},
+        coords={"frequency_ratio": ratios},
+    ).assign(restitution_max_height=rigid.max_height)
+    return describe(heights.merge(error), variables=VARIABLES)

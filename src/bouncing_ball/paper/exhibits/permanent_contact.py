@@ -83,7 +83,7 @@ def permanent_contact_error(parameters: PermanentContactError, release: Release)
     ModelError
         If the damping is too strong for a minimum of the threshold to exist.
     """
-    dataset = errors_along_ratio(
+    error = errors_along_ratio(
         parameters.restitution,
         release,
         # The threshold of permanent contact depends neither on n nor on Λ.
@@ -93,4 +93,4 @@ def permanent_contact_error(parameters: PermanentContactError, release: Release)
         quantities=[Quantity.PERMANENT_CONTACT],
         tolerances=[parameters.tolerance],
     ).squeeze(["quantity", "tolerance"], drop=True)
-    return describe(dataset.merge(permanent_contact(parameters, release)), variables=VARIABLES)
+    return describe(permanent_contact(parameters, release).merge(error), variables=VARIABLES)

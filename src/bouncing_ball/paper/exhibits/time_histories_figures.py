@@ -9,10 +9,8 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import note, note_beside, number_label, parameters
-from bouncing_ball.drawing.style import ARROW, CONTACT, GUIDE, TABLE, Look
+from bouncing_ball.drawing.style import ARROW, CONTACT, DASHES, GUIDE, TABLE, Look
 
-# From the stiffest contact to the most compliant.
-_DASHES = ("-", (0, (8, 1.5)), (0, (5, 1.5)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 _RIGID = "#b3b3b3"
 # Time is in periods of the table, as in Fig. 2.
 _PERIOD = 2 * np.pi
@@ -107,8 +105,15 @@ def _enlarge_summit(summit: Axes, data: xr.Dataset) -> None:
     below = max(3 * (top - stiffest), 0.02 * top)
     reach = np.sqrt(2 * below) / _PERIOD  # of a free flight
     at /= _PERIOD
-    summit.set(xlabel=_TIME, title="the summit, enlarged")
+    summit.set(xlabel=_TIME, title=_title_of_summit(data, top - below))
     summit.set(xlim=(at - reach, at + reach), ylim=(top - below, top + 0.15 * below))
+
+
+def _title_of_summit(data: xr.Dataset, lowest: float) -> str:
+    """The title of the enlargement: the curves in it, because most contacts stay below it."""
+    inside = data.frequency_ratio.values[data.ball.max("table_phase").values > lowest]
+    names = ", ".join(number_label(ratio) for ratio in inside[::-1])
+    return rf"the summit: restitution, $\varpi={names}$"
 
 
 def _draw_both_models(axes: Axes, data: xr.Dataset) -> None:
@@ -119,7 +124,7 @@ def _draw_both_models(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
     # The stiffest contact is black, solid and above the others for any number of contacts.
     stiffest_first = coloured(data.sortby("frequency_ratio", ascending=False), "frequency_ratio")
-    for k, ((curve, colour), dashes) in enumerate(zip(stiffest_first, cycle(_DASHES))):
+    for k, ((curve, colour), dashes) in enumerate(zip(stiffest_first, cycle(DASHES))):
         flight = _three_cycles(phase, curve.ball.values, n)
         look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 10}
         axes.plot(*flight, label=rf"$\varpi={number_label(curve.frequency_ratio.item())}$", **look)

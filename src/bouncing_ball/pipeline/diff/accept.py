@@ -42,7 +42,7 @@ def accept(
         uncommitted changes or another configuration. The record is then unchanged.
     """
     now = provenance.revision(house.absolute())
-    if now == provenance.UNKNOWN:
+    if now.dirty == "unknown":
         raise ModelError(
             "this folder is no repository of git, in which the record could be committed: accept "
             "results in a clone"

@@ -3,6 +3,7 @@
 ``owner`` and ``name`` say where the function is that does the work of the command.
 """
 
+import re
 import signal
 import subprocess
 import sys
@@ -35,12 +36,13 @@ def says_what_makes_it_cheaper(
     main(command.split())
     out, err = capfd.readouterr()
     assert out.startswith("status")
-    assert 2 <= err.count("\n") <= 5
-    for line in err.splitlines():
-        assert line == (
-            "bouncing-ball: no answer after 0 s yet; fewer impacts make the answer cheaper; "
-            "Ctrl-C ends it"
-        )
+    assert err.count("\n") >= 2
+    # How many seconds have passed depends on what else the machine does.
+    line = (
+        r"bouncing-ball: no answer after \d+ s yet; fewer impacts make the answer cheaper; "
+        "Ctrl-C ends it"
+    )
+    assert all(re.fullmatch(line, each) for each in err.splitlines())
     time.sleep(0.3)
     assert capfd.readouterr().err == ""
 

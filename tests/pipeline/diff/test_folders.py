@@ -391,7 +391,7 @@ def test_the_reports_name_each_change_once_with_its_cause_and_place(pair):
     pair.rewrite("paper.md", "*reproduced*", "*contradicted*")
     first, second, last = lines(pair)
     assert first.startswith("fig05: numbers moved; ") and " in phase of the table when" in first
-    assert " at case = 0, frequency_ratio = " in first and " → " in first
+    assert " at case = r = 1, Λ = 0.8, frequency_ratio = " in first and " → " in first
     assert first.endswith("; 1 of 1204 entries moved, 1 beyond the budget")
     assert second.startswith("paper: made from fig05; line ") and "contradicted" in second
     assert last == "2 drifted, 3 identical. The results differ from the record."

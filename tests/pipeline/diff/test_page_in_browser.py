@@ -109,7 +109,7 @@ def every_picture_is_there_and_the_worst_first(seen, pair):
     assert seen["sections"] == [
         list(each) for each in zip(names, outcomes, [True] * 3, strict=True)
     ]
-    assert any("at case = 0, frequency_ratio = " in cell for cell in seen["cells"])
+    assert any("at case = r = 1, Λ = 0.8, frequency_ratio = " in cell for cell in seen["cells"])
     # Nothing came from anywhere but the page itself.
     assert [name for name in seen["fetched"] if not name.startswith("data:")] == []
 

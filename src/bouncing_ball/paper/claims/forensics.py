@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.flight import flight_derivative, matrix_of
@@ -46,6 +45,9 @@ VARIABLES = {
 }
 PRINTED_DAMPING = 0.052
 """ζ in the paper's rounding, an alternative to ζ by Eq. 16."""
+# Values that differ by less count as equal. They are in units of a last printed digit, computed to
+# 1e-8 and printed to 1e-2.
+_SAME = 1e-6
 # The ends of a range of stable orbits, from below.
 _KINDS = (Bifurcation.SADDLE_NODE, Bifurcation.PERIOD_DOUBLING)
 # Number of samples of a branch along ε.
@@ -237,6 +239,27 @@ def readings() -> dict[str, np.ndarray]:
         "high-bounce stability": altered(exact, partial(altered_monodromy, high_bounce=True)),
         "all rows from Eqs. 7-8": np.stack(printed_ends, axis=-1),
     }
+
+
+def levels(values: ArrayLike) -> np.ndarray:
+    """For each value, the number of distinct smaller values; equal up to rounding is not distinct.
+
+    Values are not rounded to decimals, because rounding errors would decide about a value halfway
+    between two decimals.
+
+    Examples
+    --------
+    >>> levels([2.0, 1.0, 1.0 + 1e-12, np.inf]).tolist()
+    [1, 0, 0, 2]
+    """
+    values = np.asarray(values, dtype=float)
+    order = np.argsort(values)
+    ranked = values[order]
+    # A comparison, because the difference of two infinite values, which are equal, is NaN.
+    apart = ranked[1:] > ranked[:-1] + _SAME
+    found = np.empty(values.shape, dtype=int)
+    found[order] = np.concatenate([[0], np.cumsum(apart)])
+    return found
 
 
 def forensics() -> xr.Dataset:

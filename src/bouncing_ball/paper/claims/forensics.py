@@ -193,11 +193,6 @@ def stable_width(ends: xr.DataArray) -> xr.DataArray:
     return (by_kind[1] ** 2 - by_kind[0] ** 2) ** 0.5
 
 
-def _change_by_rounding(ends: xr.DataArray) -> xr.DataArray:
-    """The largest first-order change of the stable width by rounding of both ends."""
-    return LAST_DIGIT / 2 * ends.sum("bound") / stable_width(ends)
-
-
 def readings() -> dict[str, np.ndarray]:
     """Both ends of each range under the nine readings, shape (ϖ, n, 2).
 
@@ -281,6 +276,9 @@ def forensics() -> xr.Dataset:
     computed = xr.DataArray(np.array(list(found.values())), axes, ("reading", *printed.dims))
     difference = (computed - printed) / LAST_DIGIT
     below = difference.sel(bound=Bifurcation.SADDLE_NODE, drop=True) > 0.5
+    # The largest first-order change by rounding of both ends.
+    width = stable_width(printed)
+    rounding = LAST_DIGIT / 2 * printed.sum("bound") / width
     ratio = printed.frequency_ratio
     groups = {"all rows": ratio > 0, "compliant rows": ratio < ratio.max()}
     groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
@@ -298,8 +296,8 @@ def forensics() -> xr.Dataset:
             "entries": parts.isel(reading=0, drop=True).count(over),
             "unreachable": below.sum(["frequency_ratio", "n"]),
             "stable_width": stable_width(computed),
-            "printed_stable_width": stable_width(printed),
-            "printed_stable_width_rounding": _change_by_rounding(printed),
+            "printed_stable_width": width,
+            "printed_stable_width_rounding": rounding,
         }
     )
     # The compliant rows decide, and all rows where these are equal.

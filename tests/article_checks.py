@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
-from bouncing_ball.datasets.rounding import ROUNDING_SIZE
 from bouncing_ball.datasets.variables import ROUNDING
+from bouncing_ball.paper.claims.verdict import ROUNDING_SIZE
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)

@@ -20,7 +20,7 @@ def data():
             {
                 "phase": (("n", "point"), [[0.1, 0.2, np.nan], [0.3, 0.4, 1e-300]]),
                 "stable": (("n", "point"), [[True, False, True], [False, True, True]]),
-                "kind": ("motion", ["saddle-node", "", "period doubling"]),
+                "reason": ("sample", ["saddle-node", "", "period doubling"]),
                 "saddle_node_amplitude": ((), 1 / 3),
             },
             coords={"n": [1, 2], "bound": ["unstable side", "stable side"]},
@@ -35,7 +35,7 @@ def test_a_dataset_that_is_written_and_read_is_the_same(data, tmp_path):
     xr.testing.assert_identical(again.drop_attrs(), data.drop_attrs())
     for name in data.variables:
         assert again[name].attrs == data[name].attrs, name
-        assert again[name].dtype.kind == data[name].dtype.kind or name in ("kind", "bound")
+        assert again[name].dtype.kind == data[name].dtype.kind or name in ("reason", "bound")
     assert again.stable.dtype == bool
     assert again.attrs["title"] == "ϖ and Λ" and again.attrs["range__min"] == 0.5
     assert again.attrs["tolerances"].tolist() == [0.1, 0.01]

@@ -42,7 +42,7 @@ def test_the_budgets_name_what_there_is(declared):
 
 
 def test_each_variable_and_each_dimension_is_described():
-    data = xr.Dataset({"phase": ("point", [0.5, 1.0]), "kind": ("motion", ["fold"])})
+    data = xr.Dataset({"phase": ("point", [0.5, 1.0]), "release": ("case", ["force"])})
     result = describe(data.assign_coords(frequency_ratio=2.0))
     assert result.phase.attrs == {
         "long_name": SHARED["phase"].long_name,
@@ -51,7 +51,7 @@ def test_each_variable_and_each_dimension_is_described():
         "equation": "Eqs. 6, 21",
     }
     # Coordinates and what is no number are described too.
-    for name in ("kind", "motion", "frequency_ratio"):
+    for name in ("release", "case", "frequency_ratio"):
         assert result[name].attrs["long_name"] == SHARED[name].long_name
         assert result[name].attrs["units"] == "1"
     # The data stay, and so does the argument.

@@ -196,9 +196,6 @@ def copy_tree(tree: Tree, target: Path) -> Tree:
     """A copy of one of these trees with its git and its results."""
     # A few times as quick as Python.
     subprocess.run(["cp", "-pPR", tree.path, target], check=True)
-    # The sources are as old as the copy, and bytecode that is older would not be used.
-    for bytecode in target.rglob("*.pyc"):
-        bytecode.touch()
     return replace(tree, path=target)
 
 

@@ -137,7 +137,6 @@ SHARED = {
     "restitution_phase": Variable(
         "phase of impact, restitution model", symbol="φ_CR", units="rad", equation="Eq. 6"
     ),
-    "contact_force": Variable("force of the table over the weight", symbol="F"),
     # Bifurcations, and the ranges of stability between them.
     "bound": Variable("end of the stability range"),
     "saddle_node_amplitude": Variable(
@@ -184,16 +183,9 @@ SHARED = {
     "budget": Variable("disagreement allowed"),
     "orbits": Variable("number of orbits or bifurcations compared"),
     # Motions on which balls end.
-    "motion": Variable("motion on which a ball ends"),
-    "kind": Variable("kind of motion on which the ball ends"),
     "reason": Variable("why a claim or a motion is undecided"),
     "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
     "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
-    "start_phase": Variable("phase of the table at the first impact", symbol="φ", units="rad"),
-    "start_speed": Variable("relative speed at the first impact", symbol="-δ′"),
-    "end_phase": Variable(
-        "phase of the table at an impact of the motion on which the ball ends", units="rad"
-    ),
     "lyapunov_exponent": Variable(
         "largest Lyapunov exponent, per period of the table",
         symbol="λ",
@@ -203,8 +195,6 @@ SHARED = {
     "lyapunov_error": Variable(
         "error of the largest Lyapunov exponent: twice it on both sides are 95 %", budget=0.5
     ),
-    "destination": Variable("motion on which a start ends, index of the motion", budget=math.inf),
-    "share": Variable("share of nodes"),
 }
 """The variables that several stages or calls write; the others stand beside the one that does."""
 

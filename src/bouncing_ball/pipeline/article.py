@@ -346,12 +346,6 @@ _OUTSIDE = re.compile(r"\]\((?!https?:|figures/|#)")
 _READER = "commonmark_x+implicit_figures-smart"
 
 
-def _captioned(found: re.Match[str]) -> str:
-    """A vector figure with its caption, from a picture and the lines after it."""
-    caption = " ".join(found[2].split())
-    return f"![{caption}]({found[1]}.svg)\n"
-
-
 def for_pdf(markdown: str) -> str:
     r"""The text with vector figures, each with its caption, and with tables beside their captions.
 
@@ -363,7 +357,9 @@ def for_pdf(markdown: str) -> str:
     ![**Figure 1.** A ball. *More.*](figures/fig01.svg)
     <BLANKLINE>
     """
-    with_figures = _FIGURE.sub(_captioned, markdown)
+    with_figures = _FIGURE.sub(
+        lambda found: f"![{' '.join(found[2].split())}]({found[1]}.svg)\n", markdown
+    )
     with_tables = _TABLE.sub(_STICKY, with_figures)
     return _OUTSIDE.sub("](../", with_tables)
 

@@ -29,6 +29,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 VARIABLES = {
+    "contact_force": Variable("force of the table over the weight", symbol="F"),
     "coefficient": Variable("relative error times the frequency ratio, to first order", symbol="K"),
     "second_order": Variable(
         "relative error of the corrected model times the squared frequency ratio",

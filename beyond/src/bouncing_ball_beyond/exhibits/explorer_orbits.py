@@ -11,12 +11,14 @@ import xarray as xr
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
+from bouncing_ball_beyond.exhibits import corrected_model
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.motions import grids
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
@@ -82,7 +84,8 @@ def reference_orbits(parameters: References) -> xr.Dataset:
     omega = parameters.frequency_ratio.grid()
     parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(LINEAR)]
     orbits = xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in LINEAR])
-    return describe(orbits.merge(_motions()), variables=VARIABLES)
+    known = corrected_model.VARIABLES | grids.VARIABLES | VARIABLES
+    return describe(orbits.merge(_motions()), variables=known)
 
 
 def _motions() -> xr.Dataset:

@@ -20,6 +20,15 @@ from bouncing_ball_beyond.motions.motions import Motions
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 VARIABLES = {
+    "motion": Variable("motion on which a ball ends"),
+    "kind": Variable("kind of motion on which the ball ends"),
+    "start_phase": Variable("phase of the table at the first impact", symbol="φ", units="rad"),
+    "start_speed": Variable("relative speed at the first impact", symbol="-δ′"),
+    "end_phase": Variable(
+        "phase of the table at an impact of the motion on which the ball ends", units="rad"
+    ),
+    "destination": Variable("motion on which a start ends, index of the motion", budget=math.inf),
+    "share": Variable("share of nodes"),
     "digits_lost": Variable(
         "decimal digits of the start that the motion has lost on the way", budget=math.inf
     ),

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
 from bouncing_ball.paper.claims.places import exhibits_in
-from bouncing_ball.paper.claims.verdict import decimals
+from bouncing_ball.paper.claims.verdict import compared_text, decimals
 
 # A claim about more figures than these is not repeated at each of them.
 _FEW = 3

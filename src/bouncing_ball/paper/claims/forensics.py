@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.flight import flight_derivative, matrix_of
@@ -46,6 +45,9 @@ VARIABLES = {
 }
 PRINTED_DAMPING = 0.052
 """ζ in the paper's rounding, an alternative to ζ by Eq. 16."""
+# Values that differ by less count as equal. They are in units of a last printed digit, computed to
+# 1e-8 and printed to 1e-2.
+_SAME = 1e-6
 # The ends of a range of stable orbits, from below.
 _KINDS = (Bifurcation.SADDLE_NODE, Bifurcation.PERIOD_DOUBLING)
 # Number of samples of a branch along ε.
@@ -191,11 +193,6 @@ def stable_width(ends: xr.DataArray) -> xr.DataArray:
     return (by_kind[1] ** 2 - by_kind[0] ** 2) ** 0.5
 
 
-def _change_by_rounding(ends: xr.DataArray) -> xr.DataArray:
-    """The largest first-order change of the stable width by rounding of both ends."""
-    return LAST_DIGIT / 2 * ends.sum("bound") / stable_width(ends)
-
-
 def readings() -> dict[str, np.ndarray]:
     """Both ends of each range under the nine readings, shape (ϖ, n, 2).
 
@@ -239,6 +236,27 @@ def readings() -> dict[str, np.ndarray]:
     }
 
 
+def levels(values: ArrayLike) -> np.ndarray:
+    """For each value, the number of distinct smaller values; equal up to rounding is not distinct.
+
+    Values are not rounded to decimals, because rounding errors would decide about a value halfway
+    between two decimals.
+
+    Examples
+    --------
+    >>> levels([2.0, 1.0, 1.0 + 1e-12, np.inf]).tolist()
+    [1, 0, 0, 2]
+    """
+    values = np.asarray(values, dtype=float)
+    order = np.argsort(values)
+    ranked = values[order]
+    # A comparison, because the difference of two infinite values, which are equal, is NaN.
+    apart = ranked[1:] > ranked[:-1] + _SAME
+    found = np.empty(values.shape, dtype=int)
+    found[order] = np.concatenate([[0], np.cumsum(apart)])
+    return found
+
+
 def forensics() -> xr.Dataset:
     """Table 1 under every reading, ranked by the rms difference in the two rows of smaller ϖ.
 
@@ -258,6 +276,9 @@ def forensics() -> xr.Dataset:
     computed = xr.DataArray(np.array(list(found.values())), axes, ("reading", *printed.dims))
     difference = (computed - printed) / LAST_DIGIT
     below = difference.sel(bound=Bifurcation.SADDLE_NODE, drop=True) > 0.5
+    # The largest first-order change by rounding of both ends.
+    width = stable_width(printed)
+    rounding = LAST_DIGIT / 2 * printed.sum("bound") / width
     ratio = printed.frequency_ratio
     groups = {"all rows": ratio > 0, "compliant rows": ratio < ratio.max()}
     groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
@@ -275,8 +296,8 @@ def forensics() -> xr.Dataset:
             "entries": parts.isel(reading=0, drop=True).count(over),
             "unreachable": below.sum(["frequency_ratio", "n"]),
             "stable_width": stable_width(computed),
-            "printed_stable_width": stable_width(printed),
-            "printed_stable_width_rounding": _change_by_rounding(printed),
+            "printed_stable_width": width,
+            "printed_stable_width_rounding": rounding,
         }
     )
     # The compliant rows decide, and all rows where these are equal.

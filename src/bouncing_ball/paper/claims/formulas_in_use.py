@@ -102,14 +102,10 @@ def forms_in_use(rng: np.random.Generator, samples: int) -> Mapping[str, InUse]:
     ``samples`` is the number of random parameter sets.
     """
     r = rng.uniform(0.1, 0.95, samples)
-    return (
-        _impacts(rng, r)
-        | _restitution_orbits(rng, r)
-        | _contact(rng, samples)
-        | _contact_orbits(rng, samples)
-        | _permanent_contact(rng, samples)
-        | _errors(rng, samples)
-    )
+    rows = _impacts(rng, r) | _restitution_orbits(rng, r) | _contact(rng, samples)
+    orbit, lam = random_orbits(rng, samples)
+    rows |= _motions(rng, orbit, lam) | _orbit_equations(orbit, lam)
+    return rows | _permanent_contact(rng, samples) | _errors(rng, samples)
 
 
 def _impacts(rng, r) -> Rows:
@@ -212,12 +208,6 @@ def _contact(rng, samples) -> Rows:
             ),
         ),
     }
-
-
-def _contact_orbits(rng, samples) -> Rows:
-    """Eqs. 12 to 15 and 17 to 27: the n-T orbits of the spring-damper model."""
-    orbit, lam = random_orbits(rng, samples)
-    return _motions(rng, orbit, lam) | _orbit_equations(orbit, lam)
 
 
 def _motions(rng, orbit, lam) -> Rows:

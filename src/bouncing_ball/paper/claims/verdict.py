@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.errors import ModelError
 
 LAST_DIGITS = 0.01
@@ -15,6 +14,28 @@ LAST_DIGITS = 0.01
 contradicted: the error that the paper tolerates in a model (Eqs. 37 and 38)."""
 # Relative tolerance, because rounding must not decide about a number that is equal to a bound.
 _ROUNDING = 1e-9
+
+# The rounding error of a finite difference, √ε. The digits of a number up to this size may come
+# from the processor and not from the model.
+ROUNDING_SIZE = float(np.sqrt(np.finfo(float).eps))
+
+
+def compared_text(value: float, bound: float, form: str = ".4g") -> str:
+    """The text of a number that is compared with a bound.
+
+    If the bound is of the size of rounding and the number is within it, the digits of the number
+    depend on the processor, and the bound is printed instead. Any other number is printed.
+
+    Examples
+    --------
+    >>> compared_text(4.5e-13, 1e-11), compared_text(0.0884, 1e-8)
+    ('≤ 1e-11', '0.0884')
+    >>> compared_text(9.834e-06, 2e-05), compared_text(0.0, 0.0)
+    ('9.834e-06', '0')
+    """
+    if 0 < bound <= ROUNDING_SIZE and abs(value) <= bound:
+        return f"≤ {bound:g}"
+    return f"{value:{form}}"
 
 
 class Verdict(StrEnum):

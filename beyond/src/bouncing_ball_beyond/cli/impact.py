@@ -44,37 +44,28 @@ def add_ball(parser: Parser) -> None:
 
 def ball_of(
     *,
-    restitution: float | None,
-    frequency_ratio: float | None,
     release: ReleaseName | None,
-    damping_ratio: float | None,
-    measured_restitution: float | None,
     model: str | None,
     law: str | None,
     parameters: dict[str, float] | None,
     duration: float | None,
     speed: float | None,
+    **linear: float | None,
 ) -> Ball:
-    """The ball that the options describe.
+    """The ball that the options describe; ``linear`` are ϖ and the loss of an impact.
 
     Raises
     ------
     ModelError
         If an option is missing or contradicts another.
     """
-    linear: dict[str, Any] = {
-        "restitution": restitution,
-        "frequency_ratio": frequency_ratio,
-        "damping_ratio": damping_ratio,
-        "measured_restitution": measured_restitution,
-    }
     of_law = {"parameters": parameters, "duration": duration, "speed": speed}
     if law is not None:
         return _ball_of_law(law, model, linear, release, of_law)
     _refuse(of_law, "needs {law}")
     if model != "corrected":
         return a_ball(balls.ball_of(release=release, model=model, **linear))
-    if frequency_ratio is None:
+    if linear["frequency_ratio"] is None:
         raise ParameterError("{model} corrected needs {frequency_ratio}")
     return corrected(a_ball(balls.ball_of(release=release, model="spring-damper", **linear)))
 

@@ -52,13 +52,7 @@ def orbit_options(parser: Parser) -> None:
 
 
 def orbit(*, n: int, amplitude: float, side: SideOrAll, index: int | None, **impact: Any) -> Answer:
-    """The n-T orbit at Λ on one side of the saddle-node, all orbits there, or one of these.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no such orbit.
-    """
+    """As ``bouncing-ball orbit``, for a ball of any model."""
     ball = ball_of(**impact)
     if index is not None:
         if side != "stable":
@@ -103,13 +97,7 @@ def limits_options(parser: Parser) -> None:
 
 
 def limits(*, n: int, **impact: Any) -> Answer:
-    """Saddle-node and period doubling of a family, and whether their orbits are admissible.
-
-    Raises
-    ------
-    NoOrbitError
-        If the branch has no saddle-node or no period doubling.
-    """
+    """As ``bouncing-ball limits``, for a ball of any model."""
     found: Any = library.limits(ball_of(**impact), n)
     answer: Answer = {}
     for name, end in found._asdict().items():

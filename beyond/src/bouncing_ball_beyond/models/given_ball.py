@@ -16,9 +16,8 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
 def a_ball(ball: Any) -> Ball:
-    """The first argument of a call, after a check of its type.
-
-    A ball of the root becomes one of beyond, with the same parameters.
+    """A ball that is given to a call; a ball of the root becomes one of beyond, with the same
+    parameters.
 
     Raises
     ------

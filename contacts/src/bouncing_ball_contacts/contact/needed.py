@@ -43,7 +43,7 @@ def finite(value: float | np.ndarray) -> float | None:
 
 
 NO_ORBIT = "no orbit"
-"""A status in addition to :class:`~bouncing_ball_beyond.accuracy.thresholds.ThresholdStatus`."""
+"""A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 
 
 def needed(

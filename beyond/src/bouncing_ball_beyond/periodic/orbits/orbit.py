@@ -116,11 +116,10 @@ class Orbit(OrbitImpacts):
 
     @property
     def max_height(self) -> Any:
-        """Greatest absolute height z over the orbit, in flight or in contact: max z of Eq. 37.
+        """Greatest absolute height z over the orbit: max z of Eq. 37.
 
-        The apex of a flight is at z_b + z′_b²/2, by Eq. 14 with z_b = Λ sin(τ_b + φ). If it reaches
-        Λ, it is the greatest height, because a ball in contact is below the table and thus below Λ.
-        Otherwise the table may lift the ball higher during a long contact.
+        As that of the root's orbit it is the apex of a flight, here of the highest, unless the
+        table lifts the ball higher during a long contact.
         """
         rising = np.maximum(self._bounces, 0.0)
         apex = np.max(self._heights + rising * rising / 2, axis=-1)

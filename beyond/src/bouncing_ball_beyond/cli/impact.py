@@ -19,17 +19,12 @@ from bouncing_ball_beyond.periodic.law_balls import contact_law
 MODELS = (*balls.MODELS, "corrected")
 
 
-def add_contact(parser: Parser) -> None:
-    """Add the options for the loss of an impact and the release."""
-    add_loss(parser)
-    add_choice(parser, "release", Release, meanings(spring_damper)["release"])
-
-
 def add_ball(parser: Parser) -> None:
     """Add the options of :func:`ball_of`."""
-    text = meanings(spring_damper)["frequency_ratio"]
-    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, text)
-    add_contact(parser)
+    texts = meanings(spring_damper)
+    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, texts["frequency_ratio"])
+    add_loss(parser)
+    add_choice(parser, "release", Release, texts["release"])
     default = 'By default "spring-damper" if ϖ is given, and otherwise "restitution".'
     add_choice(parser, "model", MODELS, f'"restitution", "spring-damper" or "corrected". {default}')
     names = f"Laws: {', '.join(LAWS)}."

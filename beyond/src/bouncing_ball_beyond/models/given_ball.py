@@ -16,13 +16,9 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
 def a_ball(ball: Any) -> Ball:
-    """A ball that is given to a call; a ball of the root becomes one of beyond, with the same
-    parameters.
+    """A ball that is given to a call, or a :exc:`.ParameterError` if it is none.
 
-    Raises
-    ------
-    ParameterError
-        If it is no ball.
+    A ball of the root becomes one of beyond, with the same parameters.
 
     Examples
     --------

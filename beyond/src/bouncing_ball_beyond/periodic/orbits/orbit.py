@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.periodic.orbits import stability
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
 from bouncing_ball_beyond.periodic.orbits.highest import about_highest
@@ -32,16 +33,6 @@ if TYPE_CHECKING:
 
     from bouncing_ball_beyond.drawing.result import Result
 
-OBSERVABLES = (
-    "amplitude",
-    "phase",
-    "contact_duration",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
-    "max_height",
-)
-"""The seven observables of an orbit, with their names in datasets and on the command line."""
 # The highest point of a contact is searched in so many rounds of so many samples. The last steps
 # are 16⁻⁵ of the first, and the error of the height is of the order of the square of the last step.
 _SAMPLES = 33

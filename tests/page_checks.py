@@ -1,12 +1,15 @@
 """What pages and docstrings of a house refer to, and whether it exists."""
 
 import builtins
+import doctest
 import re
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+
+import matplotlib.pyplot as plt
 
 ROLE = re.compile(r":(?:mod|func|class|meth|data|attr|exc):`(?:[^`<]*<)?[~.]*([\w.\s]+)>?`")
 # It matches nothing.
@@ -99,3 +102,14 @@ def lost_references(package: ModuleType, *below: ModuleType) -> list[tuple[str, 
         for name in ROLE.findall(path.read_text(encoding="utf-8"))
         if not is_found(name)
     ]
+
+
+def its_examples_run(page: Path) -> int:
+    """How many examples a page has; they are right."""
+    plt.switch_backend("agg")
+    try:
+        found = doctest.testfile(str(page), module_relative=False)
+    finally:
+        plt.close("all")
+    assert found.failed == 0
+    return found.attempted

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from declared_arguments import Arguments, Declared
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.cli.answers import parser
@@ -93,6 +94,22 @@ def refuses_an_unknown_option(refused: Callable, example: str, word: str) -> Non
     assert status == 2 and f"unrecognized arguments: --{word}=1" in line
 
 
+class OptionsAreRefused:
+    """Tests of the options of a house, which has ``commands``."""
+
+    commands: Mapping[str, Any]
+
+    @given(st.data())
+    def test_a_wrong_option_is_refused(self, refused, data):
+        case = data.draw(st.sampled_from(typed_options(self.commands)))
+        refuses_a_wrong_option(refused, data.draw, case)
+
+    @given(st.data(), UNKNOWN)
+    def test_an_unknown_option_is_refused(self, refused, data, word):
+        command = data.draw(st.sampled_from(sorted(self.commands)))
+        refuses_an_unknown_option(refused, self.commands[command].examples[0], word)
+
+
 # Arguments of public functions.
 
 DeclaredArgument = tuple[str, str, Declared]
@@ -101,6 +118,18 @@ DeclaredArgument = tuple[str, str, Declared]
 def given_arguments(arguments: Arguments, calls: Iterable[str]) -> list[DeclaredArgument]:
     """The declared arguments of these calls."""
     return [(call, name, allowed) for call in calls for name, allowed in arguments(call).items()]
+
+
+def right_arguments(package: ModuleType) -> dict[str, dict[str, Any]]:
+    """Arguments that are right, by the names of the calls that both houses of balls have."""
+    ball = package.rigid(restitution=0.85)
+    return {
+        "rigid": {}, "spring_damper": {"restitution": 0.85, "frequency_ratio": 10.0},
+        "simulate": {"ball": ball, "amplitude": 1.0}, "history": {"ball": ball, "amplitude": 1.0},
+        "drop": {"ball": ball, "height": 1.0}, "orbit": {"ball": ball, "amplitude": 1.0},
+        "orbits": {"ball": ball, "amplitude": 1.0}, "limits": {"ball": ball},
+        "branch": {"ball": ball}, "error_thresholds": {"ball": ball, "amplitude": 1.0},
+    }  # fmt: skip
 
 
 def refuses_a_wrong_argument(

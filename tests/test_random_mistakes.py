@@ -17,12 +17,11 @@ from declared_arguments import arguments_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_mistakes import (
-    UNKNOWN,
     WORDS,
+    OptionsAreRefused,
     given_arguments,
     refuses_a_wrong_argument,
-    refuses_a_wrong_option,
-    refuses_an_unknown_option,
+    right_arguments,
     typed_options,
 )
 
@@ -37,29 +36,16 @@ ROOT = Path(__file__).parents[1]
 
 # The command line.
 
-TYPED = typed_options(COMMANDS)
 
+class TestOptions(OptionsAreRefused):
+    """The commands of the root."""
 
-@given(st.data(), st.sampled_from(TYPED))
-def test_a_wrong_option_is_refused(refused, data, case):
-    refuses_a_wrong_option(refused, data.draw, case)
-
-
-@given(st.sampled_from(sorted(COMMANDS)), UNKNOWN)
-def test_an_unknown_option_is_refused(refused, command, word):
-    refuses_an_unknown_option(refused, COMMANDS[command].examples[0], word)
+    commands = COMMANDS
 
 
 # Arguments of public functions.
 
-BALL = bb.rigid(restitution=0.85)
-CALLS = {
-    "rigid": {}, "spring_damper": {"restitution": 0.85, "frequency_ratio": 10.0},
-    "simulate": {"ball": BALL, "amplitude": 1.0}, "history": {"ball": BALL, "amplitude": 1.0},
-    "drop": {"ball": BALL, "height": 1.0}, "orbit": {"ball": BALL, "amplitude": 1.0},
-    "orbits": {"ball": BALL, "amplitude": 1.0}, "limits": {"ball": BALL},
-    "branch": {"ball": BALL}, "error_thresholds": {"ball": BALL, "amplitude": 1.0},
-}  # fmt: skip
+CALLS = right_arguments(bb)
 """Arguments of calls that are right."""
 
 
@@ -72,7 +58,7 @@ def test_a_wrong_argument_is_refused(data, case):
 
 
 def test_the_declarations_are_found():
-    assert len(TYPED) > 30 and len(GIVEN) > 25
+    assert len(typed_options(COMMANDS)) > 30 and len(GIVEN) > 25
     assert {call for call, *_ in GIVEN} == CALLS.keys()
 
 

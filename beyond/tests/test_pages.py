@@ -2,13 +2,11 @@
 to what there is.
 """
 
-import doctest
 import re
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import pytest
-from page_checks import every_module_exists, lost_references
+from page_checks import every_module_exists, its_examples_run, lost_references
 
 import bouncing_ball
 import bouncing_ball_beyond
@@ -60,12 +58,7 @@ def test_every_command_that_a_page_shows_is_one(page):
 
 @pytest.mark.parametrize("page", DOCS, ids=lambda page: page.name)
 def test_the_examples_of_a_page_run(page):
-    plt.switch_backend("agg")
-    try:
-        found = doctest.testfile(str(page), module_relative=False)
-    finally:
-        plt.close("all")
-    assert found.failed == 0
+    its_examples_run(page)
 
 
 def test_every_accepted_file_is_in_the_list():

@@ -1,11 +1,10 @@
 """The pages: what they name exists, and their numbers are those of the data."""
 
-import doctest
 import re
 
 import make_data
 import pytest
-from page_checks import every_module_exists, lost_references
+from page_checks import every_module_exists, its_examples_run, lost_references
 from the_docs import DATA, DOCS
 
 import bouncing_ball
@@ -55,8 +54,7 @@ def test_every_dataset_is_on_a_page_or_beside_it():
 
 @pytest.mark.slow
 def test_the_examples_in_python_are_right():
-    result = doctest.testfile(str(DOCS / "python.md"), module_relative=False)
-    assert result.failed == 0 and result.attempted == 16
+    assert its_examples_run(DOCS / "python.md") == 16
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -10,11 +10,9 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 from random_mistakes import (
-    UNKNOWN,
     WORDS,
+    OptionsAreRefused,
     outside,
-    refuses_a_wrong_option,
-    refuses_an_unknown_option,
     typed_options,
 )
 
@@ -27,17 +25,11 @@ from bouncing_ball_contacts.contact.table import Table
 
 # The command line.
 
-TYPED = typed_options(COMMANDS)
 
+class TestOptions(OptionsAreRefused):
+    """The commands of the contacts."""
 
-@given(st.data(), st.sampled_from(TYPED))
-def test_a_wrong_option_is_refused(refused, data, case):
-    refuses_a_wrong_option(refused, data.draw, case)
-
-
-@given(st.sampled_from(sorted(COMMANDS)), UNKNOWN)
-def test_an_unknown_option_is_refused(refused, command, word):
-    refuses_an_unknown_option(refused, COMMANDS[command].examples[0], word)
+    commands = COMMANDS
 
 
 # Quantities with units.
@@ -75,4 +67,4 @@ def test_a_wrong_quantity_is_refused(refusal, data, case):
 
 
 def test_the_declarations_are_found():
-    assert len(TYPED) >= 3 and len(MEASURED) > 20
+    assert len(typed_options(COMMANDS)) >= 3 and len(MEASURED) > 20

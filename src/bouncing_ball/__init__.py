@@ -30,8 +30,9 @@ The docstring of each room says what is in it; ``CONTRIBUTING.md`` describes the
 ``pyproject.toml`` states which imports from which.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from bouncing_ball.first_use import first_use
 
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
@@ -76,17 +77,4 @@ _MODULES = {
 
 __all__ = list(_MODULES)
 
-
-def __getattr__(name: str) -> Any:
-    """A public name, imported on first use.
-
-    ``--help`` of the command line needs no numpy, a single orbit no xarray, and no call the
-    packages of another.
-    """
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"bouncing_ball.{_MODULES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = first_use(__name__, _MODULES, globals())

@@ -6,6 +6,7 @@ In the table each mistake is followed by a part of its answer.
 import shlex
 
 import pytest
+from mistakes_at_commands import rows
 
 MISTAKES = """
 ""
@@ -78,11 +79,10 @@ explain fig99
     fig99 cannot be read: no such file
 diff figures
     nothing to compare in figures/results: neither figures/ nor a text
-""".strip().splitlines()
-ROWS = [(typed, says.strip()) for typed, says in zip(MISTAKES[::2], MISTAKES[1::2], strict=True)]
+"""
 
 
-@pytest.mark.parametrize(("typed", "says"), ROWS)
+@pytest.mark.parametrize(("typed", "says"), rows(MISTAKES))
 def test_a_mistake_is_answered_by_one_line(refused, typed, says):
     typed = typed.strip('"').replace("ORBIT", "orbit --restitution 0.85 --amplitude 1")
     status, line = refused(*shlex.split(typed))

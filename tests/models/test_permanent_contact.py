@@ -1,11 +1,11 @@
 """The threshold of permanent contact, its inverse and its minimum (Eqs. 28-36)."""
 
-import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
+from steady_contacts import a_period_after, exact_threshold, just_reaches_its_release
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
@@ -21,11 +21,7 @@ EPS = np.finfo(float).eps
 
 @given(st.floats(1e-3, 1e4), st.floats(0, 0.999))
 def test_the_threshold_is_the_root_of_gamma_over_the_stiffness(omega, zeta):
-    with mpmath.workdps(50):
-        w = mpmath.mpf(omega)
-        z = mpmath.mpf(zeta)
-        gamma = (w * w - 1) ** 2 + (2 * z * w) ** 2
-        exact = float(mpmath.sqrt(gamma) / w**2)
+    exact = exact_threshold(omega, zeta)
     # 1 - 1/ϖ² loses digits next to ϖ = 1, to the rounding of 1/ϖ² ≈ 1.
     computed = float(permanent_contact_threshold(omega, zeta))
     assert abs(computed - exact) <= 6 * EPS * max(exact, 1.0)
@@ -35,20 +31,14 @@ def test_the_threshold_is_the_root_of_gamma_over_the_stiffness(omega, zeta):
 @pytest.mark.parametrize("zeta", [0.05, 0.4, 0.95])
 @pytest.mark.parametrize("omega", [0.7, 1.0, 3.0, 20.0])
 def test_at_the_threshold_the_steady_oscillation_just_reaches_the_release(omega, zeta, release):
-    # At the threshold the steady displacement touches zero from below, or the
-    # force from above: the flow, once the transient has gone, over a period.
     lam = float(permanent_contact_threshold(omega, zeta, release))
-    settled = 2 * np.pi * np.ceil(40 / (zeta * omega) / (2 * np.pi))
-    t = settled + np.linspace(0, 2 * np.pi, 20001)
+    t = a_period_after(zeta * omega)
     flow = SpringDamper(omega, zeta).flow(t, 0.0, 0.0, lam)
-    # In units of the weight, both oscillate about one with amplitude one; the
-    # sample nearest to the extremum is within (2π/40000)²/2 of it.
     if release is Release.FORCE:
         reserve = SpringDamper(omega, zeta).force(-flow.displacement, -flow.velocity)
     else:
         reserve = -(omega**2) * flow.displacement
-    assert abs(reserve.min()) < 2e-8
-    assert reserve.max() == pytest.approx(2.0, abs=2e-8)
+    just_reaches_its_release(reserve)
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 """Impacts with a restitution coefficient: exact answers, chattering, rest, lift-off."""
 
-import mpmath
 import numpy as np
 import pytest
+from bounces_in_digits import summed
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -34,25 +34,6 @@ def test_chattering_on_a_table_at_rest_is_a_geometric_series(r):
     rest = -2 * r * found.relative_velocity[count - 1, 0] / (1 - r)
     whole = found.time[count - 1, 0] + rest
     assert whole == pytest.approx(2 * speed / (1 - r), rel=1500 * EPS)
-
-
-def summed(r, lam, phase, speed):
-    """How long a ball bounces that leaves with a relative speed, bounce by bounce in 40 digits."""
-    with mpmath.workdps(40):
-        tau = mpmath.mpf(phase)
-        u = mpmath.mpf(speed)
-        time = mpmath.mpf(0)
-        while u > 1e-20:
-
-            def gap(s, tau=tau, u=u):
-                table = mpmath.sin(tau + s) - mpmath.sin(tau) - s * mpmath.cos(tau)
-                return u - s / 2 - lam * table / s
-
-            s = mpmath.findroot(gap, 2 * u / (1 - lam * mpmath.sin(tau)))
-            u = r * (s - u + lam * (mpmath.cos(tau + s) - mpmath.cos(tau)))
-            tau += s
-            time += s
-        return float(time)
 
 
 @pytest.mark.parametrize(

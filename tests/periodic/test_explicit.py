@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
+from random_contacts import drawn_contacts
 from scipy.optimize import minimize_scalar
 from sixty_digits import Exact
 
@@ -292,18 +293,8 @@ def test_the_slope_of_the_branch_is_a_difference_quotient_of_the_amplitude(relea
 
 @pytest.fixture(scope="module", params=Release)
 def drawn(request):
-    """Random contacts, the corners of their range among them; n, r and shares for Λ."""
-    rng = np.random.default_rng(11)
-    size = 300
-    n = rng.integers(1, 6, size)
-    share = rng.uniform(0.01, 0.99, size)
-    omega = np.exp(rng.uniform(*np.log([2.0, 1e4]), size))
-    # Below r = 0.35 the branch of a compliant contact may have no fold.
-    r = rng.uniform(0.35, 0.9999, size)
-    omega[::10] = 2.0
-    omega[1::10] = 1e4
-    r[::7] = 0.35
-    r[1::7] = 1.0
+    """Random contacts; n, r and shares for Λ."""
+    omega, r, n, share = drawn_contacts(300)
     return by_restitution(r, omega, request.param), n, r, share
 
 

@@ -16,8 +16,9 @@ A list or an array in place of a number becomes an axis of the result. All quant
 dimensionless, as in ``bouncing_ball``.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from bouncing_ball.first_use import first_use
 
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
@@ -88,13 +89,4 @@ _MODULES = {
 
 __all__ = list(_MODULES)
 
-
-def __getattr__(name: str) -> Any:
-    """A public name, imported on first use."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = first_use(__name__, _MODULES, globals())

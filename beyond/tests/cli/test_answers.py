@@ -18,6 +18,7 @@ from answer_checks import (
 from hypothesis import given
 
 import bouncing_ball_beyond
+from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond import corrected, rigid, spring_damper
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
@@ -25,7 +26,6 @@ from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
 
 ORBIT = ("law-orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 HERTZ = ("--law", "hunt-crossley", "--set", "stiffness=1000", "--set", "damping=0.08")

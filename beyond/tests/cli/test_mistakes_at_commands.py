@@ -5,9 +5,8 @@ the table each mistake is followed by the beginning of its answer, and behind ``
 ``DOUBLINGS`` stands for the kind of a curve.
 """
 
-import shlex
-
 import pytest
+from mistakes_at_commands import answered, rows
 
 SHORT = {"DOUBLINGS": "--kind period-doubling"}
 MISTAKES = """
@@ -83,16 +82,11 @@ law-orbit --amplitude 1 --law tsuji --set stiffness=9N --set damping=1
     argument --set: 'stiffness=9N' is not NAME=NUMBER, such as stiffness=1000: give it without
 law-orbit --amplitude 1 --law tsuji --set stiffness=9 --set stiffness=8
     argument --set: stiffness is given twice
-""".strip().splitlines()
-ROWS = [(typed, says.strip()) for typed, says in zip(MISTAKES[::2], MISTAKES[1::2], strict=True)]
+"""
 
 
-@pytest.mark.parametrize(("typed", "says"), ROWS)
+@pytest.mark.parametrize(("typed", "says"), rows(MISTAKES))
 def test_a_mistake_is_answered_by_one_line(refused, typed, says):
-    for name, options in SHORT.items():
-        typed = typed.replace(name, options)
-    status, line = refused(*shlex.split(typed))
-    beginning, _, end = says.partition(" … ")
-    assert line.startswith(f"bouncing-ball: {beginning}") and line.endswith(end)
+    status, line = answered(refused, typed, says, SHORT)
     is_without_answer = "no 1-T orbit" in line
     assert status == (1 if is_without_answer else 2)

@@ -17,7 +17,7 @@ from loaded_laws import Sharing
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.periodic.orbit import Bifurcation, Side
+from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -32,7 +32,7 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import SearchedOrbits
 from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
-from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations as events_of
 
 EPS = np.finfo(float).eps

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from random_contacts import drawn_contacts
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -29,19 +30,12 @@ every_release = pytest.mark.parametrize("release", LINEAR)
 
 @pytest.fixture(scope="module", params=LINEAR)
 def drawn(request):
-    """Random contacts, the corners of their range among them; n, r and shares for Λ."""
-    rng = np.random.default_rng(11)
-    size = 400
-    n = rng.integers(1, 6, size)
-    share = rng.uniform(0.01, 0.99, size)
-    omega = np.exp(rng.uniform(*np.log([2.0, 1e4]), size))
-    # Below r = 0.35 the branch of a compliant contact may have no fold, see
-    # test_a_branch_without_a_fold_has_a_single_side. Nearly elastic contacts are tested below.
-    r = rng.uniform(0.35, 0.9999, size)
-    omega[::10] = 2.0
-    omega[1::10] = 1e4
-    r[::7] = 0.35
-    r[1::7] = 1.0
+    """Random contacts; n, r and shares for Λ.
+
+    A contact of less restitution is in test_a_branch_without_a_fold_has_a_single_side. Nearly
+    elastic contacts are tested below.
+    """
+    omega, r, n, share = drawn_contacts(400)
     return SpringDamper(omega, damping_ratio(r), request.param), n, r, share
 
 

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
+from bouncing_ball_contacts.documents.certified_bounces import enclosed_rebounds, hard, rounded_ball
 
 FOLDER = Path(__file__).with_name("reference")
 HEIGHT, GRAVITY, COUNT = "1", "9.81", 3

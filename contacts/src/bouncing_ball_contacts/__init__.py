@@ -18,8 +18,9 @@ Measured restitution coefficients and contact times determine a contact::
     bouncing_ball_contacts.assess_contact(table, fit.best.contact_on(table))
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from bouncing_ball.first_use import first_use
 
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
@@ -50,13 +51,4 @@ _MODULES = {
 
 __all__ = list(_MODULES)
 
-
-def __getattr__(name: str) -> Any:
-    """A public name, imported on first use."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = first_use(__name__, _MODULES, globals())

@@ -9,6 +9,7 @@ for a contact that is given, and for a table.
 import shlex
 
 import pytest
+from mistakes_at_commands import answered, rows
 
 SHORT = {
     "BALL": '--mass "20 g" --stiffness 1e6 --restitution 0.8',
@@ -65,17 +66,12 @@ design --mass "20 g" --from lammps --set kn=100kN --set gamma_n=80
     argument --set: 'kn=100kN' is not NAME=NUMBER, such as stiffness=1000: give it without
 design BALL TABLE --table-amplitude "1 mm"
     --table-amplitude and --acceleration contradict each other, because each gives the
-""".strip().splitlines()
-ROWS = [(typed, says.strip()) for typed, says in zip(MISTAKES[::2], MISTAKES[1::2], strict=True)]
+"""
 
 
-@pytest.mark.parametrize(("typed", "says"), ROWS)
+@pytest.mark.parametrize(("typed", "says"), rows(MISTAKES))
 def test_a_mistake_is_answered_by_one_line(refused, typed, says):
-    for name, options in SHORT.items():
-        typed = typed.replace(name, options)
-    status, line = refused(*shlex.split(typed))
-    beginning, _, end = says.partition(" … ")
-    assert line.startswith(f"bouncing-ball: {beginning}") and line.endswith(end)
+    status, _ = answered(refused, typed, says, SHORT)
     assert status == 2
 
 

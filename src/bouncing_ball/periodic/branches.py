@@ -5,7 +5,7 @@ of each special orbit, over ``special``: its bifurcations, and the grazing orbit
 orbits become inadmissible.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -261,13 +261,7 @@ def branch(
     >>> round(float(found.special_amplitude[0]) / math.pi * 1.85 / 0.15, 12)
     1.0
     """
-    family = checked("n", n, FAMILY)
-    count = checked_number("points", points, POINTS)
-    top = None
-    if amplitude_max is not None:
-        top = checked_number("amplitude_max", amplitude_max, POSITIVE)
-    grid = Grid(n=family, **a_ball(ball).parameters)
-    require_memory(count * grid.size, "points", "points or branches")
+    grid, top, count = checked_branches(a_ball(ball).parameters, n, amplitude_max, points)
     balls = ball.row(grid)
     rows = []
     for k, place in enumerate(grid.cells()):
@@ -280,6 +274,26 @@ def branch(
     data = grid.unfold(describe(joined(rows, CASE), VARIABLES))
     known = {} if top is None else {"amplitude_max": top}
     return Result.of(data.assign_attrs(known), "branch")
+
+
+def checked_branches(
+    parameters: Mapping[str, Any], n: FamilyAxis, amplitude_max: Positive | None, points: Points
+) -> tuple[Grid, float | None, int]:
+    """The grid of n and of the parameters of a ball, the largest Λ, and the number of points.
+
+    Raises
+    ------
+    ModelError
+        If an argument is of a wrong type or shape, or out of range, or if there are more branches
+        than fit into memory.
+    """
+    grid = Grid(n=checked("n", n, FAMILY), **parameters)
+    count = checked_number("points", points, POINTS)
+    top = None
+    if amplitude_max is not None:
+        top = checked_number("amplitude_max", amplitude_max, POSITIVE)
+    require_memory(count * grid.size, "points", "points or branches")
+    return grid, top, count
 
 
 def _branch_of(model: Model, n: int, amplitude_max: float | None, count: int) -> xr.Dataset:

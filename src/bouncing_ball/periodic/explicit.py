@@ -350,8 +350,8 @@ class RestitutionBranch(Branch):
 
 # Points of the scan on each side of ε = 0, spaced geometrically from this small part of 1/ϖ, the
 # scale of the fold, to the ends of the possible range.
-_SCAN = 60
-_SCAN_START = 1e-3
+SCAN = 60
+SCAN_START = 1e-3
 # The scan starts at contacts of a thousandth of the free duration, at which Λ exceeds 10⁶, and ends
 # at contacts that fill the cycle except for a millionth of it.
 _SHORTEST = 1e-3
@@ -500,6 +500,24 @@ def nearest_excess(orbit: Orbit) -> np.ndarray:
     return nearest
 
 
+def range_of_excess(contact: Any, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """ε of the shortest contacts, at which Λ is larger than needed, and ε for D → 2πn."""
+    start = contact.free_angle
+    high = contact.damped_frequency * 2 * np.pi * n * (1 - _FULL) - start
+    return np.minimum(-start * (1 - _SHORTEST), high), high
+
+
+def scan(contact: Any, n: np.ndarray) -> np.ndarray:
+    """Grids of ε between the ends of its range, geometric on both sides of 0, shape (points, k)."""
+    low, high = range_of_excess(contact, n)
+    small = np.minimum(SCAN_START / contact.frequency_ratio, -low / 2)
+    steps = np.linspace(0, 1, SCAN).reshape(-1, 1)
+    down = -small * (-low / small) ** steps[::-1]
+    up = small * np.maximum(high / small, 1.0) ** steps
+    # The range of a contact whose free duration exceeds the cycle ends before ε = 0.
+    return np.minimum(np.concatenate([down, np.zeros((1, *low.shape)), up]), high)
+
+
 class _Curves(NamedTuple):
     """The branches of a row of contacts and families, as functions of ε."""
 
@@ -511,22 +529,6 @@ class _Curves(NamedTuple):
 
     def point(self, excess: np.ndarray) -> BranchPoint:
         return branch_point(excess, self.contact, self.n)
-
-    def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """ε of the shortest contact, at which Λ is larger than needed, and ε for D → 2πn."""
-        start = self.contact.free_angle
-        high = self.contact.damped_frequency * 2 * np.pi * self.n * (1 - _FULL) - start
-        return np.minimum(-start * (1 - _SHORTEST), high), high
-
-    def scan(self) -> np.ndarray:
-        """Grid between the ends, geometric on both sides of ε = 0, shape (points, ...)."""
-        low, high = self.ends()
-        small = np.minimum(_SCAN_START / self.contact.frequency_ratio, -low / 2)
-        steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
-        down = -small * (-low / small) ** steps[::-1]
-        up = small * np.maximum(high / small, 1.0) ** steps
-        # The range of a contact whose free duration exceeds the cycle ends before ε = 0.
-        return np.minimum(np.concatenate([down, np.zeros((1, *low.shape)), up]), high)
 
     def root(
         self,
@@ -545,7 +547,7 @@ class _Curves(NamedTuple):
         # This module of scipy is not loaded on first use, and its import takes a third of a second.
         from scipy.optimize.elementwise import find_root
 
-        interval, found = _first_change(values)
+        interval, found = first_change(values)
         root = np.full(interval.shape, np.nan)
         which = np.flatnonzero(found)
         if not which.size:
@@ -572,7 +574,7 @@ class _Curves(NamedTuple):
         where the ball grazes as well, and changes sign at the poles of the branch, where Λ is
         infinite; neither is a bifurcation.
         """
-        grid = self.scan()
+        grid = scan(self.contact, self.n)
         return self.root(_saddle, grid, _saddle(self.point(grid)))
 
     def stable_side(
@@ -583,7 +585,7 @@ class _Curves(NamedTuple):
         Grid points beyond the end are replaced by the end. Without a saddle-node Λ falls along the
         whole branch, and the whole branch is the stable side.
         """
-        grid = self.scan()
+        grid = scan(self.contact, self.n)
         fold = self.root(_saddle, grid, _saddle(self.point(grid)))
         grid = np.minimum(grid, np.where(np.isnan(fold), grid[-1], fold))
         return grid, function(self.point(grid), *more)
@@ -601,9 +603,9 @@ class _Curves(NamedTuple):
     def unstable(self, amplitude: np.ndarray) -> np.ndarray:
         """ε of the orbit at Λ that is nearest to the saddle-node on its unstable side."""
         fold = self.saddle_node()
-        _, high = self.ends()
-        scale = _SCAN_START / self.contact.frequency_ratio
-        steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
+        _, high = range_of_excess(self.contact, self.n)
+        scale = SCAN_START / self.contact.frequency_ratio
+        steps = np.linspace(0, 1, SCAN).reshape(-1, 1)
         outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
         grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
         # The next turning point of Λ is added to the grid, so that an orbit next to it is not
@@ -626,7 +628,7 @@ def _deficit(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
     return amplitude - point.orbit.amplitude
 
 
-def _first_change(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def first_change(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Index of the first sign change along the first axis, and whether there is one.
 
     A change next to NaN does not count.
@@ -710,13 +712,13 @@ class SpringDamperBranch(Branch):
         contact = self.model
         omega = np.array([contact.frequency_ratio])
         curve = _Curves(SpringDamper(omega, contact.damping_ratio, contact.release), np.array([n]))
-        low, high = (float(end[0]) for end in curve.ends())
+        low, high = (float(end[0]) for end in range_of_excess(curve.contact, curve.n))
         step = _FINE * min(1.0, contact.damped_frequency)
         if low >= high:
             return branch_point(np.empty(0), contact, n).orbit
         fine = np.arange(low, min(high, low + _MOST * step), step)
-        scan = curve.scan()[:, 0]
-        grid = np.unique(np.concatenate([fine, scan[scan <= fine[-1] + step]]))
+        coarse = scan(curve.contact, curve.n)[:, 0]
+        grid = np.unique(np.concatenate([fine, coarse[coarse <= fine[-1] + step]]))
         turns = _all_roots(contact, n, BranchPoint.slope, grid)
         grid = np.sort(np.concatenate([grid, turns[np.isfinite(turns)]]))
         found = _all_roots(contact, n, _deficit, grid, amplitude)

@@ -19,17 +19,12 @@ from bouncing_ball_beyond.periodic.law_balls import contact_law
 MODELS = (*balls.MODELS, "corrected")
 
 
-def add_contact(parser: Parser) -> None:
-    """Add the options for the loss of an impact and the release."""
-    add_loss(parser)
-    add_choice(parser, "release", Release, meanings(spring_damper)["release"])
-
-
 def add_ball(parser: Parser) -> None:
     """Add the options of :func:`ball_of`."""
-    text = meanings(spring_damper)["frequency_ratio"]
-    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, text)
-    add_contact(parser)
+    texts = meanings(spring_damper)
+    add_number(parser, "frequency_ratio", FREQUENCY_RATIO, texts["frequency_ratio"])
+    add_loss(parser)
+    add_choice(parser, "release", Release, texts["release"])
     default = 'By default "spring-damper" if ϖ is given, and otherwise "restitution".'
     add_choice(parser, "model", MODELS, f'"restitution", "spring-damper" or "corrected". {default}')
     names = f"Laws: {', '.join(LAWS)}."
@@ -44,37 +39,28 @@ def add_ball(parser: Parser) -> None:
 
 def ball_of(
     *,
-    restitution: float | None,
-    frequency_ratio: float | None,
     release: ReleaseName | None,
-    damping_ratio: float | None,
-    measured_restitution: float | None,
     model: str | None,
     law: str | None,
     parameters: dict[str, float] | None,
     duration: float | None,
     speed: float | None,
+    **linear: float | None,
 ) -> Ball:
-    """The ball that the options describe.
+    """The ball that the options describe; ``linear`` are ϖ and the loss of an impact.
 
     Raises
     ------
     ModelError
         If an option is missing or contradicts another.
     """
-    linear: dict[str, Any] = {
-        "restitution": restitution,
-        "frequency_ratio": frequency_ratio,
-        "damping_ratio": damping_ratio,
-        "measured_restitution": measured_restitution,
-    }
     of_law = {"parameters": parameters, "duration": duration, "speed": speed}
     if law is not None:
         return _ball_of_law(law, model, linear, release, of_law)
     _refuse(of_law, "needs {law}")
     if model != "corrected":
         return a_ball(balls.ball_of(release=release, model=model, **linear))
-    if frequency_ratio is None:
+    if linear["frequency_ratio"] is None:
         raise ParameterError("{model} corrected needs {frequency_ratio}")
     return corrected(a_ball(balls.ball_of(release=release, model="spring-damper", **linear)))
 

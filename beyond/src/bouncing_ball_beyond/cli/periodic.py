@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.cli.balls import Answer, SideOrAll, add_orbit
+from bouncing_ball.cli.balls import Answer, SideOrAll, add_contact, add_orbit
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, ReleaseName
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation
 from bouncing_ball_beyond.accuracy import error_law as error_laws
-from bouncing_ball_beyond.cli.impact import add_ball, add_contact, ball_of
+from bouncing_ball_beyond.cli.impact import add_ball, ball_of
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.signature import Signature
@@ -19,7 +19,7 @@ from bouncing_ball_beyond.models.makers import spring_damper
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic import orbits_of_ball as library
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
-from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 
 def law_values(law: Any, speed: float = math.nan) -> Answer:
@@ -52,13 +52,7 @@ def orbit_options(parser: Parser) -> None:
 
 
 def orbit(*, n: int, amplitude: float, side: SideOrAll, index: int | None, **impact: Any) -> Answer:
-    """The n-T orbit at Λ on one side of the saddle-node, all orbits there, or one of these.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no such orbit.
-    """
+    """As ``bouncing-ball orbit``, for a ball of any model."""
     ball = ball_of(**impact)
     if index is not None:
         if side != "stable":
@@ -103,13 +97,7 @@ def limits_options(parser: Parser) -> None:
 
 
 def limits(*, n: int, **impact: Any) -> Answer:
-    """Saddle-node and period doubling of a family, and whether their orbits are admissible.
-
-    Raises
-    ------
-    NoOrbitError
-        If the branch has no saddle-node or no period doubling.
-    """
+    """As ``bouncing-ball limits``, for a ball of any model."""
     found: Any = library.limits(ball_of(**impact), n)
     answer: Answer = {}
     for name, end in found._asdict().items():

@@ -10,6 +10,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball_beyond.exhibits import corrected_model
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
@@ -21,7 +22,6 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions import grids
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
 
 VARIABLES = {
     "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),

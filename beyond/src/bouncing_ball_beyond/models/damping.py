@@ -32,13 +32,7 @@ class Release(StrEnum):
 
     @classmethod
     def of(cls, rule: str) -> "Release":
-        """The release with this name.
-
-        Raises
-        ------
-        ModelError
-            If there is no such release.
-        """
+        """The release with this name; a :exc:`.ModelError` if there is none."""
         return one_of("release", rule, {str(each): each for each in cls})
 
     @property

@@ -16,14 +16,9 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
 def a_ball(ball: Any) -> Ball:
-    """The first argument of a call, after a check of its type.
+    """A ball that is given to a call, or a :exc:`.ParameterError` if it is none.
 
     A ball of the root becomes one of beyond, with the same parameters.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball.
 
     Examples
     --------

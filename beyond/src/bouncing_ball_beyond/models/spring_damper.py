@@ -127,13 +127,7 @@ class SpringDamper(OscillatorLaw):
         frequency_ratio: ArrayLike,
         release: str = Release.DISPLACEMENT,
     ) -> SpringDamper:
-        """The contact whose damping follows from the r of the displacement release (Eq. 16).
-
-        Raises
-        ------
-        ModelError
-            If r or ϖ is outside its range, or the release is unknown.
-        """
+        """The contact of the root's method of the same name."""
         omega = check_positive(frequency_ratio, "frequency ratio ϖ")
         return cls(omega, damping_ratio(restitution), Release.of(release))
 

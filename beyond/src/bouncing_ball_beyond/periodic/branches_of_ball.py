@@ -5,17 +5,10 @@ from functools import partial
 import xarray as xr
 
 from bouncing_ball.datasets.arguments import (
-    FAMILY,
-    POINTS,
-    POSITIVE,
     FamilyAxis,
     Points,
     Positive,
-    checked,
-    checked_number,
-    require_memory,
 )
-from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.numerics.branch import ContinuationError
@@ -65,18 +58,12 @@ def branch(
     >>> found.first("saddle-node").amplitude == float(found.special_amplitude[0])
     True
     """
-    family = checked("n", n, FAMILY)
-    count = checked_number("points", points, POINTS)
-    top = None
-    if amplitude_max is not None:
-        top = checked_number("amplitude_max", amplitude_max, POSITIVE)
+    given = a_ball(ball)
+    grid, top, count = branches.checked_branches(given.parameters, n, amplitude_max, points)
 
     def found(one: Ball, n: int) -> xr.Dataset:
         return n_t_columns(_branch_of(one.at_limits(n), n, top, count))
 
-    given = a_ball(ball)
-    grid = Grid(n=family, **given.parameters)
-    require_memory(count * grid.size, "points", "points or branches")
     whole = by_place(grid, given, ("n",), found, partial(no_branch, count), joined)
     data = grid.unfold(describe(whole, OF_BRANCHES | KEPT)).assign_attrs(
         along="amplitude", impacts=1

@@ -22,14 +22,14 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models import permanent_contact as underdamped
 from bouncing_ball.periodic import calls
-from bouncing_ball.periodic.orbit import Bifurcation, Side
+from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Side
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball, a_known_ball, a_single_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 if TYPE_CHECKING:
     from bouncing_ball_beyond.drawing.result import Result

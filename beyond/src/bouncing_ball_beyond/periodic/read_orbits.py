@@ -6,6 +6,7 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.drawing import result
 from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesting
 from bouncing_ball_beyond.drawing.result import MADE_BY, Result
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
@@ -21,19 +22,11 @@ _RESULTS: dict[str, Any] = {
 
 @suggesting
 def open(path: str | Path) -> Result:
-    """The dataset in a netCDF file, such as that of an artifact of a run.
+    """The dataset in a netCDF file, as :func:`bouncing_ball.open`.
 
-    ``bouncing_ball_beyond.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure
-    from it. A branch or a curve has its orbits, as from :func:`bouncing_ball_beyond.read_orbits`.
-
-    Raises
-    ------
-    ModelError
-        If there is no such file, or if it is damaged.
+    A branch or a curve has its orbits, as from :func:`bouncing_ball_beyond.read_orbits`.
     """
-    if not isinstance(path, str | Path):
-        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
-    return _result_of(read_dataset(path))
+    return _result_of(result.open(path))
 
 
 def _result_of(data: xr.Dataset) -> Result:
@@ -84,5 +77,5 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
         raise ModelError(
             f"{where} contains no orbits: it is no result of follow, branch or orbit.to_dataset()"
         )
-    result = _result_of(data)
-    return result if isinstance(result, FollowedBranch | SpecialCurve) else Orbit.of_dataset(data)
+    found = _result_of(data)
+    return found if isinstance(found, FollowedBranch | SpecialCurve) else Orbit.of_dataset(data)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.periodic.orbit import Side
+from bouncing_ball.periodic.orbit import OBSERVABLES, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
@@ -11,7 +11,6 @@ from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.orbits.orbit import OBSERVABLES
 
 RELEASES = LINEAR
 COMPARED = (*OBSERVABLES[1:], "bounce_height")

@@ -43,7 +43,7 @@ def finite(value: float | np.ndarray) -> float | None:
 
 
 NO_ORBIT = "no orbit"
-"""A status in addition to :class:`~bouncing_ball_beyond.accuracy.thresholds.ThresholdStatus`."""
+"""A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 
 
 def needed(
@@ -54,7 +54,7 @@ def needed(
     Parameters
     ----------
     quantity : str
-        One of :class:`~bouncing_ball_beyond.accuracy.errors.Quantity`.
+        One of :class:`~bouncing_ball.accuracy.errors.Quantity`.
     tolerance : float
         Largest modulus of the deviation from the contact that is allowed.
     contact : SpringDamper

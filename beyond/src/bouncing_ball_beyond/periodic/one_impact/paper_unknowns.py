@@ -27,17 +27,7 @@ class PaperUnknowns:
     """The equations as a :class:`~bouncing_ball.numerics.corrector.Problem`, with Λ as the last
     entry of y.
 
-    With the height Z in contact (Eqs. 12-13) and z in flight (Eqs. 14-15), the contact from τ_i to
-    τ_b and the next impact at τ_2, the paper has ::
-
-        Z(τ_i, φ, A, B) = Λ sin(τ_i + φ)            (21)  the contact begins on the table
-        Z′(τ_i, φ, A, B) = z′_i                     (22)  with the velocity of the impact,
-        Z(τ_b, φ, A, B) = Λ sin(τ_b + φ)            (23)  and it ends there
-        Z′(τ_b, φ, A, B) = z′_b                     (24)  with the velocity of the bounce;
-        z(τ_b, z′_b, φ, τ_2) = Λ sin(τ_2 + φ)       (25)  the flight ends on the table
-        z′(τ_b, z′_b, φ, τ_2) = z′_2                (26)  with the velocity of the next impact,
-
-    where τ_i = 0, τ_2 = 2πn and z′_2 = z′_i, because the motion repeats (Eqs. 18-20).
+    They are those of :mod:`bouncing_ball.periodic.continuation`, here of an orbit of any model.
 
     Parameters
     ----------

@@ -18,6 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import blocks
+from bouncing_ball.periodic.explicit import (
+    SCAN,
+    SCAN_START,
+    first_change,
+    range_of_excess,
+    scan,
+)
 from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
@@ -27,14 +34,6 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
 )
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
-# Points of the scan on each side of ε = 0, spaced geometrically from this small
-# part of 1/ϖ, the scale of the fold, to the ends of the possible range.
-_SCAN = 60
-_SCAN_START = 1e-3
-# The scan starts at contacts of a thousandth of the free duration, at which Λ exceeds
-# 10⁶, and ends at contacts that fill the cycle except for a millionth of it.
-_SHORTEST = 1e-3
-_FULL = 1e-6
 # A value of a test function that is a rounding error: those of compliant contacts are 1e-13. At
 # the end of the scan a test function may be the fourth power of the flight time, and a zero may lie
 # at a point of the scan.
@@ -77,22 +76,6 @@ class _Curves(NamedTuple):
     def point(self, excess: np.ndarray) -> BranchPoint:
         return branch_point(excess, self.contact, self.n)
 
-    def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """ε of the shortest contact, at which Λ is larger than needed, and ε for D → 2πn."""
-        start = self.contact.free_angle
-        high = self.contact.damped_frequency * 2 * np.pi * self.n * (1 - _FULL) - start
-        return np.minimum(-start * (1 - _SHORTEST), high), high
-
-    def scan(self) -> np.ndarray:
-        """Grid between the ends, geometric on both sides of ε = 0, shape (points, ...)."""
-        low, high = self.ends()
-        small = np.minimum(_SCAN_START / self.contact.frequency_ratio, -low / 2)
-        steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
-        down = -small * (-low / small) ** steps[::-1]
-        up = small * np.maximum(high / small, 1.0) ** steps
-        # The range of a contact whose free duration exceeds the cycle ends before ε = 0.
-        return np.minimum(np.concatenate([down, np.zeros((1, *low.shape)), up]), high)
-
     def root(
         self,
         function: Callable,
@@ -129,9 +112,9 @@ class _Curves(NamedTuple):
         in it grows beyond the values at both ends, whereas it becomes smaller at a zero, or a
         rounding error. At the end of the range a rounding error is no change of sign.
         """
-        _, end = self.ends()
+        _, end = range_of_excess(self.contact, self.n)
         values = np.where((grid >= end) & (np.abs(values) <= _ROUNDING), np.nan, values)
-        interval, found = _bracket(values)
+        interval, found = first_change(values)
         root = self.root(test, grid, interval, found)
         contacts = np.arange(self.n.size)
         left = np.abs(values[interval, contacts])
@@ -142,7 +125,7 @@ class _Curves(NamedTuple):
 
     def fold(self) -> np.ndarray:
         """ε of the saddle-node."""
-        grid = self.scan()
+        grid = scan(self.contact, self.n)
         return self.zero(_saddle, grid, _saddle(self.point(grid)))
 
     def stable_side(self, function: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -153,11 +136,11 @@ class _Curves(NamedTuple):
         itself is not computed. Grid points beyond the end are replaced by the end. Without a fold
         Λ falls along the whole branch, and the whole branch is the stable side.
         """
-        grid = self.scan()
+        grid = scan(self.contact, self.n)
         points = self.point(grid)
         values = function(points, *more)
         saddle = _saddle(points)
-        before_fold, has_fold = _bracket(saddle)
+        before_fold, has_fold = first_change(saddle)
         contacts = np.arange(self.n.size)
         # Λ has a minimum in the interval, and not a pole.
         falls = points.fold[before_fold, contacts] < 0
@@ -169,17 +152,6 @@ class _Curves(NamedTuple):
         end[near] = np.where(np.isnan(fold), grid[-1, near], fold)
         values = np.where(grid < end, values, function(self.point(end), *more))
         return np.minimum(grid, end), values
-
-
-def _bracket(values):
-    """Index of the first sign change along the first axis, and whether there is one.
-
-    A change next to NaN does not count.
-    """
-    left = values[:-1]
-    right = values[1:]
-    change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
-    return np.argmax(change, axis=0), np.any(change, axis=0)
 
 
 def _searched(
@@ -255,24 +227,24 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ between short contacts and the saddle-node, where Λ falls with ε."""
     grid, deficit = curves.stable_side(_deficit, lam)
-    interval, found = _bracket(deficit)
+    interval, found = first_change(deficit)
     return curves.root(_deficit, grid, interval, found, lam)
 
 
 def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ that is nearest to the saddle-node on its unstable side."""
     fold = curves.fold()
-    _, high = curves.ends()
-    scale = _SCAN_START / curves.contact.frequency_ratio
-    steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
+    _, high = range_of_excess(curves.contact, curves.n)
+    scale = SCAN_START / curves.contact.frequency_ratio
+    steps = np.linspace(0, 1, SCAN).reshape(-1, 1)
     outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
     grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
     # The next turning point of Λ is added to the grid, so that an orbit next to it
     # is not missed between two points.
-    turn, turns = _bracket(curves.point(grid[1:]).fold)
+    turn, turns = first_change(curves.point(grid[1:]).fold)
     summit = curves.root(_fold, grid[1:], turn, turns)
     grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
-    interval, found = _bracket(-_deficit(curves.point(grid), lam))
+    interval, found = first_change(-_deficit(curves.point(grid), lam))
     return curves.root(_deficit, grid, interval, found, lam)
 
 
@@ -337,7 +309,7 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> Orbit:
     check_index(n)
     omega = np.atleast_1d(contact.frequency_ratio)
     curve = _Curves(replace(contact, frequency_ratio=omega), np.array([float(n)]))
-    low, high = curve.ends()
+    low, high = range_of_excess(curve.contact, curve.n)
     # Even a contact that fills the cycle may be shorter than the shortest one of the branch.
     if _is_too_soft(contact, n, amplitude) or low >= high:
         return orbits_on_branch(np.empty(0), contact, n)
@@ -367,11 +339,11 @@ def _is_too_soft(contact: SpringDamper, n: int, amplitude: float) -> bool:
 
 def _fine_grid(curve: _Curves, damped_frequency: float) -> np.ndarray:
     """Values of ε of one contact in small steps, with those of the scan."""
-    low, high = (float(end[0]) for end in curve.ends())
+    low, high = (float(end[0]) for end in range_of_excess(curve.contact, curve.n))
     step = _FINE * min(1.0, damped_frequency)
     fine = np.arange(low, min(high, low + _MOST * step), step)
-    scan = curve.scan()[:, 0]
-    return np.unique(np.concatenate([fine, scan[scan <= fine[-1] + step]]))
+    coarse = scan(curve.contact, curve.n)[:, 0]
+    return np.unique(np.concatenate([fine, coarse[coarse <= fine[-1] + step]]))
 
 
 def _all_roots(curve: _Curves, function: Callable, grid: np.ndarray, *more: float) -> np.ndarray:

@@ -227,19 +227,8 @@ def _cramer(rows):
 
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
-    """The n-T orbit whose contact lasts for the time ``D = (θ₀ + ε)/ϖ_d``.
-
-    It is the solution of Eqs. 23-26, which at this τ_b = D are the three linear equations at the
-    top of this module.
-
-    Parameters
-    ----------
-    excess : array_like
-        ε, an angle of the contact's damped oscillation in radians.
-    contact : SpringDamper
-        ϖ, ζ < 1 and the release rule.
-    n : array_like of int
-        Index of the family.
+    """The points of :func:`bouncing_ball.periodic.explicit.branch_point`, the solutions of Eqs.
+    23-26, with their derivatives along ε.
 
     Returns
     -------

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.periodic.orbits import stability
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
 from bouncing_ball_beyond.periodic.orbits.highest import about_highest
@@ -32,16 +33,6 @@ if TYPE_CHECKING:
 
     from bouncing_ball_beyond.drawing.result import Result
 
-OBSERVABLES = (
-    "amplitude",
-    "phase",
-    "contact_duration",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
-    "max_height",
-)
-"""The seven observables of an orbit, with their names in datasets and on the command line."""
 # The highest point of a contact is searched in so many rounds of so many samples. The last steps
 # are 16⁻⁵ of the first, and the error of the height is of the order of the square of the last step.
 _SAMPLES = 33
@@ -116,11 +107,10 @@ class Orbit(OrbitImpacts):
 
     @property
     def max_height(self) -> Any:
-        """Greatest absolute height z over the orbit, in flight or in contact: max z of Eq. 37.
+        """Greatest absolute height z over the orbit: max z of Eq. 37.
 
-        The apex of a flight is at z_b + z′_b²/2, by Eq. 14 with z_b = Λ sin(τ_b + φ). If it reaches
-        Λ, it is the greatest height, because a ball in contact is below the table and thus below Λ.
-        Otherwise the table may lift the ball higher during a long contact.
+        As that of the root's orbit it is the apex of a flight, here of the highest, unless the
+        table lifts the ball higher during a long contact.
         """
         rising = np.maximum(self._bounces, 0.0)
         apex = np.max(self._heights + rising * rising / 2, axis=-1)

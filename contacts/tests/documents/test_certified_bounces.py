@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.proofs.bounces import enclosed_rebounds, hard, rounded_ball
+from bouncing_ball_contacts.documents.certified_bounces import enclosed_rebounds, hard, rounded_ball
 
 G = 9.81
 

@@ -4,7 +4,7 @@ On one orbit, the flights before and after a contact are continued until they me
 computed along ϖ. Random orbits show their orders in 1/ϖ and the remainder of the error law. Errors
 are relative to the simple model as in Eqs. 37-38, ``|q_SD - q|/|q|`` with q of the
 corrected model, or of the restitution model with the r that the contact really has, which
-differs from the r of Eq. 16 for the force release. The first-order law is that of
+differs from the r of Eq. 16 for the force release. The error law is that of
 :mod:`bouncing_ball_beyond.accuracy.error_law`.
 """
 
@@ -34,7 +34,7 @@ VARIABLES = {
         symbol="C",
         budget=1e-07,
     ),
-    "law_threshold": Variable("frequency ratio for the tolerance by the error law", symbol="|K|/ε"),
+    "law_threshold": Variable("frequency ratio for the tolerance by the error law", symbol="ϖ"),
     "error_zero": Variable(
         "frequency ratio at which the error passes through zero", symbol="ϖ", budget=1e-11
     ),
@@ -59,7 +59,10 @@ VARIABLES = {
     "pair": Variable("contact between which and another one the orders are measured"),
     "law_sample": Variable("random orbit on which the error law is tried"),
     "law_remainder": Variable(
-        "remainder of the error law over its scale and δ", symbol="M", budget=0.0001, scale="1"
+        "remainder of the error law over its scale and small parameter",
+        symbol="|e - E|/(S η)",
+        budget=0.0001,
+        scale="1",
     ),
     "flight_before": Variable("flight before the contact, continued", symbol="z"),
     "flight_after": Variable("flight after the contact, continued backwards", symbol="z"),
@@ -166,11 +169,14 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     contact = SpringDamper(omega, zeta, release)
     of_restitution_model, _ = errors(contact, n, lam)
     instant = Signature(contact)()
-    remainder = error_law.remainder(n, instant, lam, of_restitution_model)
+    law = error_law.law_errors(n, instant, lam)
+    bound = error_law.remainder_scale(n, instant, lam)
+    small = error_law.small_parameter(n, instant, lam)
+    left = np.abs(of_restitution_model - [*law.values()]) / ([*bound.values()] * small)
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "order_frequency_ratio": ("pair", _TWO_STIFF.ravel()),
-        "law_remainder": (("quantity", "law_sample"), remainder.factor),
+        "law_remainder": (("quantity", "law_sample"), left),
     }
 
 
@@ -187,8 +193,8 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
 
     For random orbits it has the measured ``order`` (model, quantity, sample) between the two ϖ in
     ``order_frequency_ratio`` (pair,), and
-    ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law.
-    M was fitted to other orbits (:data:`~bouncing_ball_beyond.accuracy.error_law.REMAINDER`).
+    ``law_remainder`` (quantity, law_sample), which is |error - law|/(S η) and at most 1 by the law.
+    The bound was fitted to other orbits (:mod:`~bouncing_ball_beyond.accuracy.error_law`).
     """
     n = parameters.n
     lam = parameters.amplitude
@@ -206,7 +212,8 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
         quantities=tuple(Quantity),
     )
     k = error_law.coefficients(n, zeta, lam, release)
-    *law, still = error_law.law_thresholds(n, zeta, lam, release, tolerance).values()
+    allowed = -tolerance, tolerance
+    *law, still = error_law.law_thresholds(n, zeta, lam, release, allowed).values()
     return described(
         {
             "relative_error": (

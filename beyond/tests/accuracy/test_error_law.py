@@ -166,12 +166,11 @@ def test_between_the_orders_pass_from_three_halves_to_two(release):
 def test_at_the_saddle_node_the_height_needs_a_contact_that_is_stiffer_by_the_square():
     """ϖ = 2Cσ₁/((1 + r)(εH)²), of the order ε⁻², for small ε."""
     r = np.array([0.05, 0.3, 0.65])
-    zeta = damping_ratio(r)
-    fold = restitution_saddle_node(1, r)
-    load = Signature(SpringDamper(1.0, zeta))().load
+    unit = Signature(SpringDamper(1.0, damping_ratio(r)))()
+    fold = restitution_saddle_node(1, unit.restitution)
     for small in (1e-4, 1e-5):
-        found = law_thresholds(1, zeta, fold, Release.DISPLACEMENT, (-small, small))
-        rule = 2 * fold * load / ((1 + r) * (small * np.pi**2 / 2) ** 2)
+        found = law_thresholds(1, unit, fold, (-small, small))
+        rule = 2 * fold * unit.load / ((1 + r) * (small * np.pi**2 / 2) ** 2)
         # The next term is a share √u of the first: u k against √(2Cs₁u).
         share = 20 / np.sqrt(rule)
         assert np.all(np.abs(found[Quantity.MAX_HEIGHT] / rule - 1) < share)
@@ -185,7 +184,8 @@ def test_from_the_threshold_on_the_errors_of_the_law_are_allowed(release, allowe
     r = SpringDamper(1.0, zeta, release).restitution
     low = restitution_saddle_node(n, r)
     lam = low + np.where(rng.random(300) < 0.5, 1, 1e-4) * (lam - low)
-    needed = law_thresholds(n, zeta, lam, release, allowed)
+    unit = Signature(SpringDamper(1.0, zeta, release))()
+    needed = law_thresholds(n, unit, lam, allowed)
 
     def at(share, name):
         omega = needed[name] / share
@@ -206,7 +206,7 @@ def test_the_phase_has_its_allowed_error_to_the_order_of_the_law():
     n, zeta, lam, _ = random_orbits(300, 6, Release.DISPLACEMENT, (0.05, 1.0))
     left = []
     for small in (1e-2, 1e-3):
-        needed = law_thresholds(n, zeta, lam, Release.DISPLACEMENT, (-small, small))
+        needed = law_thresholds(n, Signature(SpringDamper(1.0, zeta))(), lam, (-small, small))
         omega = needed[Quantity.PHASE]
         error = law_errors(n, Signature(SpringDamper(omega, zeta))(), lam)[Quantity.PHASE]
         left.append(np.abs(np.abs(error) / small - 1))

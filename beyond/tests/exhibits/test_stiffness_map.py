@@ -76,6 +76,15 @@ def test_the_thresholds_are_those_of_the_search_for_any_quantity(row):
     assert np.abs(found.threshold[0, 0] / some.error_threshold.values - 1).max() < 1e-9
 
 
+def test_the_law_has_the_thresholds_of_the_branch(data):
+    apart = np.abs(data.threshold_by_law / data.error_threshold - 1)
+    # Elsewhere the error only just reaches the tolerance with one of both signs.
+    assert float((apart > data.law_differs_above).sum() / apart.notnull().sum()) < 0.01
+    # At the saddle-node, too, and there ϖ is in the thousands.
+    node = apart.sel(n=1, position=0).where(data.error_threshold.sel(n=1, position=0) > 500)
+    assert node.notnull().sum() >= 3 and node.max() < 1e-3
+
+
 def test_from_the_threshold_on_the_error_stays_within_the_tolerance(row):
     known = row.isel(node=row.error_threshold.notnull().values)
     nodes = nodes_of(known)
@@ -185,9 +194,12 @@ def test_the_map_is_drawn_with_a_panel_for_each_family(data, families):
     with style():
         figure = drawn(part)
         labels = [[float(text.get_text()) for text in axes.texts] for axes in figure.axes]
-    assert [axes.get_title() for axes in figure.axes] == [f"$n={n}$" for n in families]
-    # Each contour is labelled once, by a ϖ of the map.
-    for names, n in zip(labels, families, strict=True):
-        needed = data.error_threshold.sel(n=n)
+    titles = [axes.get_title() for axes in figure.axes]
+    assert titles == [f"$n={n}$" for n in families] + len(families) * [""]
+    # Each contour is labelled once, by a ϖ of the map: by the branch above, by the law below.
+    maps = [
+        data[name].sel(n=n) for name in ("error_threshold", "threshold_by_law") for n in families
+    ]
+    for names, needed in zip(labels, maps, strict=True):
         assert names and len(set(names)) == len(names)
         assert float(needed.min()) < min(names) and max(names) < float(needed.max())

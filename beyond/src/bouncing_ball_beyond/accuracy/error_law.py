@@ -199,15 +199,9 @@ def coefficients(
     >>> round(float(law["max_height"]) * (1 + 2 / np.pi**2), 14)
     -1.0
     """
-    return _over_share(_linear(n, damping_ratio, amplitude, release), curvature=0.0, share=0.0)
-
-
-def _linear(
-    n: ArrayLike, damping_ratio: ArrayLike, amplitude: ArrayLike, release: Release
-) -> _Terms:
-    """The terms of a linear contact with ϖ = 1."""
     contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
-    return _Terms.of(n, Signature(contact)(), amplitude)
+    terms = _Terms.of(n, Signature(contact)(), amplitude)
+    return _over_share(terms, curvature=0.0, share=0.0)
 
 
 def _over_share(t: _Terms, curvature: ArrayLike, share: float) -> ByQuantity:
@@ -280,59 +274,57 @@ def curvature_of(signature: Callable[[np.ndarray], Instant], speed: ArrayLike) -
 
 
 def law_thresholds(
-    n: ArrayLike,
-    damping_ratio: ArrayLike,
-    amplitude: ArrayLike,
-    release: Release,
-    allowed: tuple[float, float],
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, allowed: tuple[float, float]
 ) -> ByQuantity:
     """The ϖ from which on each error is within the allowed ones by the law.
 
     For the height, ``u = 1/ϖ`` is the smallest root of ``(Y₀ + E H + ku)² = Λ² - (C - s₁u)²`` for
     one of the allowed errors E, with ``k = s₁C + v₀t₁`` and the signature of ϖ = 1: a quadratic
     equation. So is that of the phase, ``Λ cos(ψ₀(1 + E) + mu) = C - s₁u`` with ``m = s₁ + t₁``, if
-    the cosine is expanded to the second order. The other thresholds are K/E, and √(K₂/E) for
-    the permanent contact. At the saddle-node that of the phase is infinite.
+    the cosine is expanded to the second order. The other thresholds are K/E. At the saddle-node
+    that of the phase is infinite.
 
     Parameters
     ----------
-    n, damping_ratio, amplitude, release
-        As in :func:`coefficients`.
+    n, amplitude : array_like
+        As in :func:`law_errors`.
+    instant : Instant
+        The signature of the contact with ϖ = 1. With the signature of another contact of constant
+        signature, the result is in units of its ϖ.
     allowed : tuple of float
         The lowest error, between -1 and 0, and the highest, above 0.
 
     Returns
     -------
     dict
-        One array for each of the seven quantities.
+        One array for each quantity of an impact.
 
     Raises
     ------
     NoOrbitError
         If Λ lies below the saddle-node of the restitution model.
-    ModelError
-        If ζ is outside [0, 1).
 
     Examples
     --------
-    >>> law = law_thresholds(1, 0.0, 1.0, Release.DISPLACEMENT, (-0.01, 0.01))
-    >>> [round(float(law[q]), 12) for q in ("bounce_velocity", "permanent_contact")]
-    [50.0, 10.0]
+    >>> unit = Signature(SpringDamper(1.0, 0.0))()
+    >>> law = law_thresholds(1, unit, 1.0, (-0.01, 0.01))
+    >>> round(float(law["bounce_velocity"]), 12)
+    50.0
 
     At the saddle-node K is infinite, but a contact can be stiff enough for the height:
 
     >>> from bouncing_ball_beyond.models.damping import damping_ratio
-    >>> zeta, fold = damping_ratio(0.05), restitution_saddle_node(1, 0.05)
-    >>> law = law_thresholds(1, zeta, fold, Release.DISPLACEMENT, (-0.01, 0.01))
-    >>> round(float(law["max_height"]))
+    >>> unit = Signature(SpringDamper(1.0, damping_ratio(0.05)))()
+    >>> fold = restitution_saddle_node(1, unit.restitution)
+    >>> round(float(law_thresholds(1, unit, fold, (-0.01, 0.01))["max_height"]))
     5597
     """
-    t = _linear(n, damping_ratio, amplitude, release)
-    found = _over_share(t, curvature=0.0, share=0.0)
-    found[Quantity.PERMANENT_CONTACT] = permanent_contact_coefficient(damping_ratio, release)
+    t = _Terms.of(n, instant, amplitude)
     # With the sign of K an error grows towards one of the allowed ones.
-    needed = {name: k / np.where(k > 0, allowed[1], allowed[0]) for name, k in found.items()}
-    needed[Quantity.PERMANENT_CONTACT] = np.sqrt(needed[Quantity.PERMANENT_CONTACT])
+    needed = {
+        name: k / np.where(k > 0, allowed[1], allowed[0])
+        for name, k in _over_share(t, curvature=0.0, share=0.0).items()
+    }
     with np.errstate(divide="ignore", invalid="ignore"):
         # The orbits on the line C - s end where it no longer meets the circle of radius Λ.
         end = np.where(t.shift < 0, t.line - t.amplitude, t.line + t.amplitude) / t.shift
@@ -443,3 +435,17 @@ def permanent_contact_coefficient(
     if release is Release.FORCE:
         return np.full_like(zeta, -1.0)
     return 2 * zeta * zeta - 1
+
+
+def permanent_contact_ratio(
+    damping_ratio: ArrayLike, release: Release, allowed: tuple[float, float]
+) -> np.ndarray:
+    """The ϖ from which on the error K₂/ϖ² of the permanent contact is within the allowed ones.
+
+    Examples
+    --------
+    >>> float(permanent_contact_ratio(0.0, Release.DISPLACEMENT, (-0.01, 0.01)))
+    10.0
+    """
+    k = permanent_contact_coefficient(damping_ratio, release)
+    return np.sqrt(k / np.where(k > 0, allowed[1], allowed[0]))

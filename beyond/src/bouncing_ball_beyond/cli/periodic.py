@@ -20,6 +20,7 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.accuracy import error_law as error_laws
+from bouncing_ball_beyond.accuracy.errors import Quantity
 from bouncing_ball_beyond.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
@@ -170,12 +171,14 @@ def error_law(*, n: int, amplitude: float, tolerance: float, **contact: Any) -> 
     """
     # The law does not depend on ϖ; the contact with ϖ = 1 stands for all.
     law = _ball(frequency_ratio=1.0, **contact).impact_law
-    orbit = n, law.damping_ratio, amplitude, law.release
-    signed = _finite(error_laws.coefficients(*orbit))
+    signed = _finite(error_laws.coefficients(n, law.damping_ratio, amplitude, law.release))
+    allowed = -tolerance, tolerance
+    needed = error_laws.law_thresholds(n, Signature(law)(), amplitude, allowed)
+    still = error_laws.permanent_contact_ratio(law.damping_ratio, law.release, allowed)
     second = error_laws.permanent_contact_coefficient(law.damping_ratio, law.release)
     return {
         "tolerance": tolerance,
-        "frequency_ratio": _finite(error_laws.law_thresholds(*orbit, (-tolerance, tolerance))),
+        "frequency_ratio": _finite(needed | {Quantity.PERMANENT_CONTACT: still}),
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
         "second_order": {"permanent_contact": abs(float(second))},

@@ -42,7 +42,8 @@ from bouncing_ball.periodic.explicit import restitution_period_doubling, restitu
 from bouncing_ball_beyond.accuracy.error_law import law_thresholds
 from bouncing_ball_beyond.accuracy.errors import Quantity, paper_error
 from bouncing_ball_beyond.accuracy.thresholds import ThresholdStatus, thresholds
-from bouncing_ball_beyond.models.damping import Release, damping_ratio
+from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
@@ -53,12 +54,15 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
+    "threshold_by_law": Variable(
+        "frequency ratio for the tolerance of the height by the error law", symbol="ϖ"
+    ),
     "position": Variable(
         "position of the amplitude in the stable range of the restitution model, 0 at the "
         "saddle-node and 1 at the period doubling",
         symbol="p",
     ),
-    "law_threshold": Variable("frequency ratio for the tolerance by the error law", symbol="ϖ"),
+    "law_differs_above": Variable("share by which both frequency ratios differ where it is marked"),
     "rule_product": Variable(
         "n times the frequency ratio times the error, at the threshold; its modulus is at most 1 "
         "where the frequency ratio 1/(nε) is enough",
@@ -180,12 +184,10 @@ def law_ratios(nodes: Nodes, tolerance: float) -> np.ndarray:
     >>> law_ratios(node, 0.01).round(2).tolist()
     [82.18]
     """
-    zeta = damping_ratio(nodes.restitution)
-    # Rounding of ζ may put Λ below the saddle-node of the contact's r.
-    fold = restitution_saddle_node(nodes.n, SpringDamper(1.0, zeta).restitution)
-    amplitude = np.maximum(nodes.amplitude, fold)
-    allowed = -tolerance, tolerance
-    needed = law_thresholds(nodes.n, zeta, amplitude, Release.DISPLACEMENT, allowed)
+    unit = Signature(SpringDamper(1.0, damping_ratio(nodes.restitution)))()
+    # The r of the contact differs by rounding, which matters at the saddle-node.
+    instant = unit._replace(restitution=nodes.restitution)
+    needed = law_thresholds(nodes.n, instant, nodes.amplitude, (-tolerance, tolerance))
     return needed[Quantity.MAX_HEIGHT]
 
 
@@ -193,10 +195,11 @@ def stiffness_map(parameters: StiffnessMap) -> xr.Dataset:
     """The ϖ from which on the greatest height of the restitution model is within the tolerance.
 
     Over (n, restitution, position) the dataset has ``amplitude``, Λ; ``error_threshold``, the ϖ
-    from which on the modulus of the error is within the tolerance; ``law_threshold``, the ϖ by the
-    error law; and ``rule_product``, nϖe with the signed error e at the first ϖ. That and the first
-    ϖ are NaN where the contact has no stable and admissible orbit
-    at this ϖ, and where the error is not within the tolerance at the largest ϖ of the range.
+    from which on the modulus of the error is within the tolerance; ``threshold_by_law``, the ϖ by the
+    error law, and the share ``law_differs_above`` above which a difference is marked; and
+    ``rule_product``, nϖe with the signed error e at the first ϖ. That and the first ϖ are NaN where
+    the contact has no stable and admissible orbit at this ϖ, and where the error is not within the
+    tolerance at the largest ϖ of the range.
     """
     r = parameters.restitution.grid()
     position = np.sin(np.linspace(0.0, np.pi / 2, parameters.positions)) ** 2
@@ -226,7 +229,8 @@ def stiffness_map(parameters: StiffnessMap) -> xr.Dataset:
         {
             "amplitude": (dims, nodes.amplitude),
             "error_threshold": (dims, threshold.reshape(shape)),
-            "law_threshold": (dims, law_ratios(nodes, parameters.tolerance)),
+            "law_differs_above": 0.1,
+            "threshold_by_law": (dims, law_ratios(nodes, parameters.tolerance)),
             "rule_product": (dims, product.reshape(shape)),
         },
         coords={"n": family, "restitution": r, "position": position},

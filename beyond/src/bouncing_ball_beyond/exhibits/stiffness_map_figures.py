@@ -24,7 +24,6 @@ _RULE: Look = {"colors": "black", "linewidths": 2.0}
 _JUMP: Look = {"colors": "black", "linewidths": 1.0, "linestyles": [(0, (1, 1.5))]}
 _FAILS = "#b9d7ea"
 _ABSENT: Look = {"facecolor": "white", "edgecolor": GUIDE["color"], "hatch": "////", "linewidth": 0}
-_DIFFERENT = 0.1
 _DIFFERS: Look = {"facecolor": "white", "edgecolor": "#b2182b", "hatch": "....", "linewidth": 0}
 # Heights of the labels of neighbouring contours, as shares of the heights of the contours.
 _SHARES = (0.4, 0.65)
@@ -60,12 +59,13 @@ def stiffness_map(data: xr.Dataset) -> Figure:
     )
     line = Line2D([], [], color="black", linewidth=_RULE["linewidths"])
     jump = Line2D([], [], color="black", linewidth=1.0, linestyle=_JUMP["linestyles"][0])
+    apart = 100 * data.law_differs_above.item()
     entries = {
         r"rule of thumb, $\varpi = 1/(n\varepsilon)$": line,
         r"a larger $\varpi$ is needed": Patch(facecolor=_FAILS),
         "the error changes its sign": jump,
         r"orbit not stable at this $\varpi$": Patch(**_ABSENT),
-        "the law differs by more than 10 %": Patch(**_DIFFERS),
+        f"the law differs by more than {apart:g} %": Patch(**_DIFFERS),
     }
     legend_below(figure, list(entries.values()), labels=list(entries))
     return figure
@@ -81,8 +81,8 @@ def _draw_family(axes: Axes, one: xr.Dataset) -> None:
 
 def _draw_law(axes: Axes, one: xr.Dataset) -> None:
     """The map of one n by the error law, and where it differs from the branch."""
-    _draw_ratios(axes, one, one.law_threshold, np.sign(one.rule_product))
-    differs = np.abs(one.law_threshold / one.error_threshold - 1) > _DIFFERENT
+    _draw_ratios(axes, one, one.threshold_by_law, np.sign(one.rule_product))
+    differs = np.abs(one.threshold_by_law / one.error_threshold - 1) > one.law_differs_above
     with plt.rc_context({"hatch.color": _DIFFERS["edgecolor"]}):
         places = one.restitution, np.sqrt(one.position)
         axes.contourf(*places, differs, levels=[0.5, 2], colors="none", hatches=["...."])

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball_beyond.accuracy.error_law import law_thresholds
+from bouncing_ball_beyond.accuracy.error_law import law_thresholds, permanent_contact_ratio
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, Quantity, as_deviation
 from bouncing_ball_beyond.accuracy.simple_models import search
 from bouncing_ball_beyond.accuracy.thresholds import RATIOS
+from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
@@ -38,6 +39,14 @@ class Needed:
 def finite(value: float | np.ndarray) -> float | None:
     """The value as a Python float; None if it is NaN or infinite."""
     return float(value) if math.isfinite(value) else None
+
+
+def _by_law(
+    quantity: Quantity, unit: SpringDamper, n: int, amplitude: float, allowed: tuple[float, float]
+) -> float | None:
+    if quantity is Quantity.PERMANENT_CONTACT:
+        return finite(permanent_contact_ratio(unit.damping_ratio, unit.release, allowed))
+    return finite(law_thresholds(n, Signature(unit)(), amplitude, allowed)[quantity])
 
 
 NO_ORBIT = "no orbit"
@@ -77,7 +86,7 @@ def needed(
     # The paper's errors of which the deviations are the tolerance and its opposite.
     allowed = -tolerance / (1 + tolerance), tolerance / (1 - tolerance)
     try:
-        by_law = finite(law_thresholds(n, zeta, there, rule, allowed)[Quantity(quantity)])
+        by_law = _by_law(Quantity(quantity), SpringDamper(1.0, zeta, rule), n, there, allowed)
     except NoOrbitError:
         return Needed(
             quantity=quantity,

@@ -195,8 +195,8 @@ def stiffness_map(parameters: StiffnessMap) -> xr.Dataset:
     """The ϖ from which on the greatest height of the restitution model is within the tolerance.
 
     Over (n, restitution, position) the dataset has ``amplitude``, Λ; ``error_threshold``, the ϖ
-    from which on the modulus of the error is within the tolerance; ``threshold_by_law``, the ϖ by the
-    error law, and the share ``law_differs_above`` above which a difference is marked; and
+    from which on the modulus of the error is within the tolerance; ``threshold_by_law``, the ϖ by
+    the error law, and the share ``law_differs_above`` above which a difference is marked; and
     ``rule_product``, nϖe with the signed error e at the first ϖ. That and the first ϖ are NaN where
     the contact has no stable and admissible orbit at this ϖ, and where the error is not within the
     tolerance at the largest ϖ of the range.

@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 from loaded_laws import Sharing
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball.periodic.orbit import Side
-from bouncing_ball_beyond.accuracy.error_law import first_order
-from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, paper_error
+from bouncing_ball_beyond.accuracy.error_law import curvature_of, doubling_lift, law_errors
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, paper_error, values
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
-from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
@@ -50,43 +51,69 @@ def test_the_impact_speed_of_the_restitution_models_orbits_solves_its_equation(l
     np.testing.assert_allclose(period, 2 * np.pi * n, rtol=1e-6)
 
 
-# A Hertz contact, and a law that feels its load and has a kink; the others weekly.
-SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x != "tsuji"]
+def beyond_a_period(speed, signature):
+    """Impulse of a free impact less that of the weight in a period, 0 at v₀ of n = 1."""
+    return float((1 + signature(speed).restitution) * speed) - 2 * np.pi
 
 
-@pytest.mark.parametrize("name", ["tsuji", "by depth", *SELDOM])
-def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name):
-    errors = []
-    for duration in (0.04, 0.02):
+def errors_of_durations(name, amplitude, durations):
+    """Errors of the restitution model, of the corrected one and by the law, on the contacts with
+    these durations, shape (3, duration, quantity).
+
+    The restitution model has r(v). Without Λ the orbits are at its saddle-node.
+    """
+    found = []
+    for duration in durations:
         if name == "by depth":
             # The width is that of the impact, so that r is the same at both durations.
             law = Sharing(np.pi / duration, 0.1, 0.95, 0.5, width=duration / 2)
         else:
             # The damping of this law is limited by e = 0, and r by 2/3.
             r = 0.7 if LAWS[name] is LankaraniNikravesh else 0.65
-            law = orbit_of_law(LAWS[name], r, duration, 1, 1.0).law
-        orbit, corrected = (
-            n_t.require_orbit(model, 1, 1.0)
-            for model in (ContactModel(law), CorrectedModel(Signature(law)))
+            law = law_of_impact(LAWS[name], r, duration, rigid_speed(1, r))
+        model, signature = ContactModel(law), Signature(law)
+        speed = brentq(beyond_a_period, 1.0, 7.0, (signature,))
+        instant = signature(speed)
+        r = float(instant.restitution)
+        fold = float(restitution_saddle_node(1, r))
+        # Not below it by rounding, and above it by less than the contact moves it.
+        lam = fold * (1 + 1e-12) if amplitude is None else amplitude
+        exact, corrected, rigid = (
+            values(each, 1, lam) for each in (model, CorrectedModel(signature), RestitutionModel(r))
         )
-        # The simple models compared have the r of the speed at the instant.
-        _, impact = corrected._start
-        instant = Instant(*(float(x[0]) for x in impact.known.instant))
-        rigid = n_t.require_orbit(RestitutionModel(float(instant.restitution)), 1, 1.0)
-        simple, left = (
-            np.array(
-                [paper_error(exact=getattr(orbit, q), simple=getattr(one, q)) for q in OF_ORBITS]
-            )
-            for one in (rigid, corrected)
+        lift = doubling_lift(r, r + float(instant.d_restitution) * speed)
+        rigid[-1] = np.hypot(fold, lift)
+        law_of = law_errors(1, instant, lam, curvature_of(signature, speed))
+        found.append(
+            [paper_error(exact=exact, simple=each) for each in (rigid, corrected)]
+            + [[float(law_of[q]) for q in OF_IMPACTS]]
         )
-        expected = first_order(1, instant, 1.0)
-        errors.append([simple, left, simple - np.array([expected[q] for q in OF_ORBITS])])
-    first, second, law_left = np.array(errors[0]) / np.array(errors[1])
+    return np.moveaxis(found, 1, 0)
+
+
+# A Hertz contact, one whose r depends on the speed, and a law that feels its load and has a kink;
+# the others weekly.
+OFTEN = ("tsuji", "hunt-crossley")
+SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in OFTEN]
+
+
+@pytest.mark.parametrize("name", [*OFTEN, "by depth", *SELDOM])
+def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name):
+    simple, corrected, law = errors_of_durations(name, 1.0, (0.04, 0.02))
     # The next order is a share of D. It is seen in the apparent restitution, most of whose first
-    # order cancels.
-    assert first[:3] == pytest.approx(np.full(3, 2.0), rel=0.04)
-    assert second == pytest.approx(np.full(4, 4.0), rel=0.04)
-    assert law_left == pytest.approx(np.full(4, 4.0), rel=0.04)
+    # order cancels, and in the period doubling.
+    assert (simple[0] / simple[1])[[0, 1, 2, 4]] == pytest.approx(np.full(4, 2.0), rel=0.04)
+    for left in (corrected, simple - law):
+        assert left[0] / left[1] == pytest.approx(np.full(len(OF_IMPACTS), 4.0), rel=0.07)
+
+
+@pytest.mark.parametrize("name", [*OFTEN, "by depth", *SELDOM])
+def test_at_the_saddle_node_the_height_on_any_law_is_right_to_the_order_three_halves(name):
+    simple, _, law = errors_of_durations(name, None, (0.01, 0.0025))
+    left = (simple - law)[:, 0]
+    # The next term is a share √D of it, 0.1 and 0.05.
+    assert np.log(left[0] / left[1]) / np.log(4) == pytest.approx(1.5, abs=0.1)
+    assert np.all(np.abs(left) < 0.1 * np.abs(law[:, 0]))
 
 
 @every_kind

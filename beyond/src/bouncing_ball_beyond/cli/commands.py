@@ -109,12 +109,13 @@ COMMANDS = {
         cheaper="fewer digits",
     ),
     "error-law": Command(
-        purpose="the error K/ϖ of the restitution model to first order",
+        purpose="the ϖ that the restitution model needs, by the error law",
         text=(
-            "The difference of the contact from the restitution model, relative to the restitution "
-            "model (Eqs. 37-38), is K/ϖ to first order. The deviation of the model relative to the "
-            "contact is to this order the same with the other sign. To this order "
-            "both fall to ε at the frequency ratio ϖ = |K|/ε. This is an estimate and no bound."
+            "The ϖ from which on each error of the restitution model is within the tolerance, by "
+            "the error law, which holds from the saddle-node to the period doubling. An error is "
+            "the difference of the contact from the restitution model, relative to the restitution "
+            "model (Eqs. 37-38). Far above the saddle-node it is K/ϖ to first order, and the "
+            "answer has K too. These are estimates and no bounds."
         ),
         examples=("error-law --amplitude 1 --restitution 0.65",),
         program=_error_law,

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.cli.balls import Answer, SideOrAll, add_contact, add_orbit
 from bouncing_ball.cli.options import Parser, add_number, meanings
-from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, ReleaseName
+from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, TOLERANCE, ReleaseName
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation
 from bouncing_ball_beyond.accuracy import error_law as error_laws
@@ -118,32 +119,42 @@ def error_law_options(parser: Parser) -> None:
     texts = meanings(library.orbit)
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
+    add_number(parser, "tolerance", TOLERANCE, "Tolerated relative error.", default=0.01)
     add_contact(parser)
 
 
-def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:
-    """The coefficient K of each quantity, whose error has the modulus K/ϖ + O(1/ϖ²).
+def error_law(*, n: int, amplitude: float, tolerance: float, **contact: Any) -> Answer:
+    """The ϖ from which on each error is within the tolerance, and the coefficient K of each error.
 
     The error is the paper's (Eqs. 37-38): exact value minus restitution model, relative to the
     restitution model, which has the r of a free impact on the contact. The sign in ``signed`` is
-    that of this error. A quantity without a first-order law is null.
+    that of this error. Far above the saddle-node its modulus is K/ϖ + O(1/ϖ²). A number that is
+    infinite is null.
 
     Raises
     ------
     NoOrbitError
         If Λ lies below the saddle-node of the restitution model.
     """
-    # The coefficients do not depend on ϖ; the contact with ϖ = 1 stands for all.
+    # The law does not depend on ϖ; the contact with ϖ = 1 stands for all.
     law = _ball(frequency_ratio=1.0, **contact).impact_law
-    found = error_laws.coefficients(n, law.damping_ratio, amplitude, law.release)
-    signed = {str(name): float(k) if math.isfinite(k) else None for name, k in found.items()}
+    signed = _finite(error_laws.coefficients(n, law.damping_ratio, amplitude, law.release))
+    allowed = -tolerance, tolerance
+    needed = error_laws.law_thresholds(n, Signature(law)(), amplitude, allowed)
+    still = error_laws.permanent_contact_ratio(law.damping_ratio, law.release, allowed)
     second = error_laws.permanent_contact_coefficient(law.damping_ratio, law.release)
     return {
+        "tolerance": tolerance,
+        "frequency_ratio": _finite(needed | {Quantity.PERMANENT_CONTACT: still}),
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
         "second_order": {"permanent_contact": abs(float(second))},
         **law_values(law),
     }
+
+
+def _finite(values: error_laws.ByQuantity) -> dict[str, float | None]:
+    return {str(name): float(x) if math.isfinite(x) else None for name, x in values.items()}
 
 
 def _ball(*, release: ReleaseName | None, **contact: Any) -> ContactModel:

@@ -4,7 +4,7 @@ On one orbit, the flights before and after a contact are continued until they me
 computed along ϖ. Random orbits show their orders in 1/ϖ and the remainder of the error law. Errors
 are relative to the simple model as in Eqs. 37-38, ``|q_SD - q|/|q|`` with q of the
 corrected model, or of the restitution model with the r that the contact really has, which
-differs from the r of Eq. 16 for the force release. The first-order law is that of
+differs from the r of Eq. 16 for the force release. The error law is that of
 :mod:`bouncing_ball_beyond.accuracy.error_law`.
 """
 
@@ -17,6 +17,7 @@ from pydantic import Field
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search
@@ -30,13 +31,13 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 
 VARIABLES = {
     "contact_force": Variable("force of the table over the weight", symbol="F"),
+    "law_threshold": Variable("frequency ratio for the tolerance by the error law", symbol="ϖ"),
     "coefficient": Variable("relative error times the frequency ratio, to first order", symbol="K"),
     "second_order": Variable(
         "relative error of the corrected model times the squared frequency ratio",
         symbol="C",
         budget=1e-07,
     ),
-    "law_threshold": Variable("frequency ratio for the tolerance by the error law", symbol="|K|/ε"),
     "error_zero": Variable(
         "frequency ratio at which the error passes through zero", symbol="ϖ", budget=1e-11
     ),
@@ -55,13 +56,25 @@ VARIABLES = {
     "order": Variable(
         "order of convergence of the relative error in 1/ϖ", budget=0.0001, scale="1"
     ),
+    "law_left": Variable("modulus of the error that the error law leaves", budget=1e-11),
+    "law_order": Variable(
+        "order of convergence in 1/ϖ of what the error law leaves", budget=0.001, scale="1"
+    ),
+    "node_error": Variable(
+        "modulus of the relative error of the restitution model at its saddle-node", budget=1e-11
+    ),
+    "node_order": Variable("order of convergence in 1/ϖ of this error", budget=0.001, scale="1"),
+    "place": Variable("the orbit, or the saddle-node of the restitution model"),
     "order_frequency_ratio": Variable(
         "two frequency ratios between which the orders are measured", symbol="ϖ"
     ),
     "pair": Variable("contact between which and another one the orders are measured"),
     "law_sample": Variable("random orbit on which the error law is tried"),
     "law_remainder": Variable(
-        "remainder of the error law over its scale and δ", symbol="M", budget=0.0001, scale="1"
+        "remainder of the error law over its scale and small parameter",
+        symbol="|e - E|/(S η)",
+        budget=0.0001,
+        scale="1",
     ),
     "flight_before": Variable("flight before the contact, continued", symbol="z"),
     "flight_after": Variable("flight after the contact, continued backwards", symbol="z"),
@@ -157,22 +170,47 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     return 2 * twice - once
 
 
+def _left_by_law(n, contact: SpringDamper, amplitude) -> tuple[np.ndarray, np.ndarray]:
+    """Moduli of what the error law leaves, and of the restitution model's errors."""
+    error, _ = errors(contact, n, amplitude)
+    law = error_law.law_errors(n, Signature(contact)(), amplitude)
+    return np.abs(error - np.stack(np.broadcast_arrays(*law.values()))), np.abs(error)
+
+
+def _saddle_node(n, restitution) -> np.ndarray:
+    """Λ at the saddle-node of the restitution model.
+
+    Rounding must not put it below, and a root of the share added is small next to what the contact
+    changes at ϖ up to 10⁴.
+    """
+    return (1 + 1e-9) * restitution_saddle_node(n, restitution)
+
+
 def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     """Orders of both models, and the remainder of the restitution model's errors from the law."""
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
     stiff = errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)
     once, twice = np.moveaxis(np.abs(stiff), 2, 0)
+    at_orbit, _ = _left_by_law(n, SpringDamper(_TWO_STIFF, zeta, release), lam)
+    node = _saddle_node(n, SpringDamper(1.0, zeta, release).restitution)
+    at_node, error = _left_by_law(n, SpringDamper(_TWO_STIFF, zeta, release), node)
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
     span = sample.frequency_ratio
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
-    of_restitution_model, _ = errors(contact, n, lam)
+    left, _ = _left_by_law(n, contact, lam)
     instant = Signature(contact)()
-    remainder = error_law.remainder(n, instant, lam, of_restitution_model)
+    bound = error_law.remainder_scale(n, instant, lam)
+    small = error_law.small_parameter(n, instant, lam)
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
+        "law_order": (
+            ("place", "quantity", "sample"),
+            np.log2([x[:, 0] / x[:, 1] for x in (at_orbit, at_node)]),
+        ),
+        "node_order": (("quantity", "sample"), np.log2(error[:, 0] / error[:, 1])),
         "order_frequency_ratio": ("pair", _TWO_STIFF.ravel()),
-        "law_remainder": (("quantity", "law_sample"), remainder.factor),
+        "law_remainder": (("quantity", "law_sample"), left / ([*bound.values()] * small)),
     }
 
 
@@ -187,10 +225,15 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     ``permanent_coefficient``, ``permanent_law`` and ``permanent_threshold`` are the same numbers
     for the permanent contact, which has no impact to correct.
 
+    ``law_left`` (place, quantity, ϖ) is the modulus of the error that the error law leaves, on the
+    orbit and at the saddle-node of the restitution model, whose ``node_error`` (quantity, ϖ) is its
+    error there. It is NaN for the phase, because that of the restitution model is 0.
+
     For random orbits it has the measured ``order`` (model, quantity, sample) between the two ϖ in
-    ``order_frequency_ratio`` (pair,), and
-    ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law.
-    M was fitted to other orbits (:data:`~bouncing_ball_beyond.accuracy.error_law.REMAINDER`).
+    ``order_frequency_ratio`` (pair,); ``law_order`` (place, quantity, sample) of what the law
+    leaves, and ``node_order`` (quantity, sample) of ``node_error``; and ``law_remainder``
+    (quantity, law_sample), which is |error - law|/(S η) and at most 1 by the law.
+    The bound was fitted to other orbits (:mod:`~bouncing_ball_beyond.accuracy.error_law`).
     """
     n = parameters.n
     lam = parameters.amplitude
@@ -208,7 +251,12 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
         quantities=tuple(Quantity),
     )
     k = error_law.coefficients(n, zeta, lam, release)
-    *law, still = error_law.law_thresholds(n, zeta, lam, release, tolerance).values()
+    allowed = -tolerance, tolerance
+    contact = SpringDamper(ratios, zeta, release)
+    left, _ = _left_by_law(n, contact, lam)
+    left_at_node, node_error = _left_by_law(n, contact, _saddle_node(n, contact.restitution))
+    unit = Signature(SpringDamper(1.0, zeta, release))()
+    law = error_law.law_thresholds(n, unit, lam, allowed)
     return described(
         {
             "relative_error": (
@@ -217,16 +265,23 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
             ),
             "coefficient": ("quantity", list(k.values())),
             "second_order": ("quantity", _second_order(zeta, release, n, lam)),
-            "law_threshold": ("quantity", law),
+            "law_threshold": ("quantity", list(law.values())),
             "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
             "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
+            "law_left": (("place", "quantity", "frequency_ratio"), [left, left_at_node]),
+            "node_error": (("quantity", "frequency_ratio"), node_error),
             "error_zero": ("quantity", found.zero[0, :-1, 0]),
             "corrected_error_zero": ("quantity", found.zero[1, :-1, 0]),
             "permanent_coefficient": error_law.permanent_contact_coefficient(zeta, release),
-            "permanent_law": still,
+            "permanent_law": error_law.permanent_contact_ratio(zeta, release, allowed),
             "permanent_threshold": found.threshold[0, -1, 0],
             **_of_random_orbits(parameters, release),
         },
-        coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), "frequency_ratio": ratios},
+        coords={
+            "model": list(SIMPLE),
+            "place": ["orbit", "saddle-node"],
+            "quantity": list(OF_IMPACTS),
+            "frequency_ratio": ratios,
+        },
         variables=VARIABLES,
     )

@@ -1,6 +1,7 @@
 """The corrected model: flights that meet at an instant, and orders of convergence."""
 
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
@@ -19,6 +20,10 @@ from bouncing_ball.drawing.tables import (
 )
 from bouncing_ball.drawing.thresholds import with_zeros
 
+# Errors are below 1 but next to a phase of 0; the orders have the room above.
+_ERRORS = (1e-11, 1e5)
+_LAW: Look = {"color": COLOURS[3], "linewidth": 1.0}
+_AT_NODE: Look = {"linestyle": (0, (1, 1.5)), "linewidth": 1.6}
 # Quantiles of the measured orders: the median, and the ends of the middle 90 %.
 _QUANTILES = (0.05, 0.5, 0.95)
 
@@ -59,29 +64,53 @@ def meeting_flights(data: xr.Dataset) -> Figure:
 
 
 def orders(data: xr.Dataset) -> Figure:
-    """ext_orders: errors of both models along ϖ, with the slopes 1 and 2."""
-    figure, axes_of = panels_by_quantity(data, 4.2, r"frequency ratio $\varpi$")
+    """ext_orders: errors of both models and what the error law leaves, along ϖ.
+
+    The panel of the height has them at the saddle-node of the restitution model, too.
+    """
+    figure, axes_of = panels_by_quantity(data, 4.6, r"frequency ratio $\varpi$")
     ratio = data.frequency_ratio.values
+    orbit, node = (data.sel(place=place) for place in data["place"].values)
     for name, axes in axes_of.items():
+        part = orbit.sel(quantity=name)
         for order, model in enumerate(data["model"].values, 1):
-            part = data.sel(model=model, quantity=name)
+            one = part.sel(model=model)
             look = MODELS[model]
-            error = part.relative_error.values
+            error = one.relative_error.values
             zero = part.error_zero if model == "restitution" else part.corrected_error_zero
             axes.plot(*with_zeros(ratio, error, zero), label=model, **look)
             # A guide with this slope through the last point.
             axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
-            low, middle, high = part.order.quantile(_QUANTILES).values
-            measured = f"{middle:.2f} ({low:.2f} to {high:.2f})"
-            place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
-            axes.text(0.97, 1.04 - 0.11 * order, measured, color=look["color"], fontsize=8, **place)
-        logarithmic(axes, yscale="log", xlim=(ratio[0], ratio[-1]), ylim=(1e-9, 3.0))
+            _note_order(axes, order, one.order, look)
+        axes.plot(ratio, part.law_left, label="error law, what it leaves", **_LAW)
+        _note_order(axes, 3, part.law_order, _LAW)
+    height = node.sel(quantity="max_height")
+    axes = axes_of["max_height"]
+    rows = (
+        (height.node_error, height.node_order, 0.5, MODELS["restitution"]),
+        (height.law_left, height.law_order, 1.5, _LAW),
+    )
+    for line, (error, order, slope, look) in enumerate(rows, 4):
+        axes.plot(ratio, error, **look | _AT_NODE)
+        axes.plot(ratio, error.values[-1] * (ratio[-1] / ratio) ** slope, **GUIDE)
+        _note_order(axes, line, order, look)
+    for other in axes_of.values():
+        logarithmic(other, yscale="log", xlim=(ratio[0], ratio[-1]), ylim=_ERRORS)
+    axes.plot([], [], color=GUIDE["color"], label="at the saddle-node", **_AT_NODE)
     figure.suptitle(
         f"{parameters(data, 'n', 'restitution', 'amplitude')}; orders of "
         f"{data.sizes['sample']} random orbits, median (and the middle 90 %)"
     )
     legend_below(figure, ncols=2)
     return figure
+
+
+def _note_order(axes: Axes, line: int, order: xr.DataArray, look: Look) -> None:
+    """The median of measured orders and the middle 90 %, in a line at the top right."""
+    low, middle, high = order.quantile(_QUANTILES).values
+    text = f"{middle:.2f} ({low:.2f} to {high:.2f})"
+    place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
+    axes.text(0.97, 1.05 - 0.07 * line, text, color=look["color"], fontsize=7, **place)
 
 
 def ext_orders(data: xr.Dataset) -> TextTable:

@@ -16,6 +16,9 @@ excess angle of the contact. From the free contact, whose excess angle is 0, a f
 method lead to the Λ of the node: along the branch (X, Y) = Λ (cos φ, sin φ) is almost a straight
 line, on which the change of the angle to a given Λ solves a quadratic equation; the smaller
 solution belongs to the stable side of the saddle-node.
+
+Beside the ϖ by the branch the map has the ϖ by the error law, which is a closed formula
+(:func:`~bouncing_ball_beyond.accuracy.error_law.law_thresholds`).
 """
 
 from typing import Annotated, NamedTuple
@@ -37,8 +40,10 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
+from bouncing_ball_beyond.accuracy.error_law import law_thresholds
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
@@ -49,11 +54,15 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
+    "threshold_by_law": Variable(
+        "frequency ratio for the tolerance of the height by the error law", symbol="ϖ"
+    ),
     "position": Variable(
         "position of the amplitude in the stable range of the restitution model, 0 at the "
         "saddle-node and 1 at the period doubling",
         symbol="p",
     ),
+    "law_differs_above": Variable("share by which both frequency ratios differ where it is marked"),
     "rule_product": Variable(
         "n times the frequency ratio times the error, at the threshold; its modulus is at most 1 "
         "where the frequency ratio 1/(nε) is enough",
@@ -166,13 +175,31 @@ def height_errors(nodes: Nodes, frequency_ratio: np.ndarray) -> np.ndarray:
     return paper_error(exact=orbits.max_height, simple=nodes.height)
 
 
+def law_ratios(nodes: Nodes, tolerance: float) -> np.ndarray:
+    """The ϖ from which on the height is within the tolerance by the error law, at each node.
+
+    Examples
+    --------
+    >>> node = Nodes(np.array([1]), np.array([0.65]), np.array([1.0]))
+    >>> law_ratios(node, 0.01).round(2).tolist()
+    [82.18]
+    """
+    unit = Signature(SpringDamper(1.0, damping_ratio(nodes.restitution)))()
+    # The r of the contact differs by rounding, which matters at the saddle-node.
+    instant = unit._replace(restitution=nodes.restitution)
+    needed = law_thresholds(nodes.n, instant, nodes.amplitude, (-tolerance, tolerance))
+    return needed[Quantity.MAX_HEIGHT]
+
+
 def stiffness_map(parameters: StiffnessMap) -> xr.Dataset:
     """The ϖ from which on the greatest height of the restitution model is within the tolerance.
 
     Over (n, restitution, position) the dataset has ``amplitude``, Λ; ``error_threshold``, the ϖ
-    from which on the modulus of the error is within the tolerance; and ``rule_product``, nϖe with
-    the signed error e at this ϖ. Both are NaN where the contact has no stable and admissible orbit
-    at this ϖ, and where the error is not within the tolerance at the largest ϖ of the range.
+    from which on the modulus of the error is within the tolerance; ``threshold_by_law``, the ϖ by
+    the error law, and the share ``law_differs_above`` above which a difference is marked; and
+    ``rule_product``, nϖe with the signed error e at the first ϖ. That and the first ϖ are NaN where
+    the contact has no stable and admissible orbit at this ϖ, and where the error is not within the
+    tolerance at the largest ϖ of the range.
     """
     r = parameters.restitution.grid()
     position = np.sin(np.linspace(0.0, np.pi / 2, parameters.positions)) ** 2
@@ -202,6 +229,8 @@ def stiffness_map(parameters: StiffnessMap) -> xr.Dataset:
         {
             "amplitude": (dims, nodes.amplitude),
             "error_threshold": (dims, threshold.reshape(shape)),
+            "law_differs_above": 0.1,
+            "threshold_by_law": (dims, law_ratios(nodes, parameters.tolerance)),
             "rule_product": (dims, product.reshape(shape)),
         },
         coords={"n": family, "restitution": r, "position": position},

@@ -14,6 +14,7 @@ import numpy as np
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.accuracy import error_law, errors
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, deviation
@@ -21,6 +22,7 @@ from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_contacts.contact.needed import finite
 from bouncing_ball_contacts.contact.rebounds import greatest_loads
@@ -128,8 +130,9 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     """The deviations of the restitution model from the contact that the error law predicts, shape
     (quantity, n), and whether it holds, shape (n,).
 
-    The law has the paper's error e. To its order the deviation -e/(1 + e) is -e. The error of the
-    permanent contact, K₂/ϖ², is known for the linear contact only.
+    The law has the paper's error e, of which the deviation is -e/(1 + e). If r depends on the
+    speed, the period doubling of the restitution model, whose r is constant, differs from that of
+    r(v) too. The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
 
     Examples
     --------
@@ -137,8 +140,8 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
     >>> spring = SpringDamper(10.0, 0.0)
     >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 1.0, 1.0), spring, spring)
-    >>> by_error_law(case, np.array([1]))[0][-1].tolist()
-    [0.01]
+    >>> by_error_law(case, np.array([1]))[0][-1].round(12).tolist()
+    [0.010101010101]
     """
     lam = case.table.amplitude
     contact = case.equivalent
@@ -146,7 +149,16 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     holds = np.zeros(n.size, dtype=bool)
     there = n_t.orbit(case.models["restitution"], n, lam).exists
     instant = case.instant(n[there])
-    of_paper[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
+    speed = rigid_speed(n[there], instant.restitution)
+    curvature = error_law.curvature_of(case.models["corrected"].signature, speed)
+    found = error_law.law_errors(n[there], instant, lam, curvature)
+    r = instant.restitution
+    line = restitution_saddle_node(n[there], r)
+    by_speed = np.hypot(line, error_law.doubling_lift(r, r + instant.d_restitution * speed))
+    by_constant = restitution_period_doubling(n[there], r)
+    doubling = found[Quantity.PERIOD_DOUBLING]
+    found[Quantity.PERIOD_DOUBLING] = (1 + doubling) * by_speed / by_constant - 1
+    of_paper[: len(OF_IMPACTS), there] = [*found.values()]
     is_small = error_law.small_parameter(n[there], instant, lam) < error_law.VALID_BELOW
     # If the r of a contact law depends on the speed, it equals the r of the restitution model at
     # one speed only.
@@ -154,7 +166,7 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     if case.is_linear:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         of_paper[-1] = second / contact.frequency_ratio**2
-    return -of_paper, holds
+    return errors.as_deviation(of_paper), holds
 
 
 def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:

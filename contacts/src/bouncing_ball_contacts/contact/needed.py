@@ -8,9 +8,10 @@ import numpy as np
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball_beyond.accuracy.error_law import law_thresholds
+from bouncing_ball_beyond.accuracy.error_law import law_thresholds, permanent_contact_ratio
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, as_deviation
 from bouncing_ball_beyond.accuracy.simple_models import search
+from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
@@ -23,9 +24,8 @@ class Needed:
 
     ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
     tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
-    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact; to this order it does not matter
-    against which of both values the error is taken. A value that does not exist is None,
-    and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
+    law gives (:func:`~bouncing_ball_beyond.accuracy.error_law.law_thresholds`). A value that does
+    not exist is None, and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
     """
 
     quantity: str
@@ -40,6 +40,14 @@ class Needed:
 def finite(value: float | np.ndarray) -> float | None:
     """The value as a Python float; None if it is NaN or infinite."""
     return float(value) if math.isfinite(value) else None
+
+
+def _by_law(
+    quantity: Quantity, unit: SpringDamper, n: int, amplitude: float, allowed: tuple[float, float]
+) -> float | None:
+    if quantity is Quantity.PERMANENT_CONTACT:
+        return finite(permanent_contact_ratio(unit.damping_ratio, unit.release, allowed))
+    return finite(law_thresholds(n, Signature(unit)(), amplitude, allowed)[quantity])
 
 
 NO_ORBIT = "no orbit"
@@ -68,16 +76,18 @@ def needed(
     that it deviates by 1/(ϖ² - 1):
 
     >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
-    >>> round(found.frequency_ratio**2, 9), round(found.by_law, 12)
-    (101.0, 10.0)
+    >>> round(found.frequency_ratio**2, 9), round(found.by_law**2, 9)
+    (101.0, 101.0)
     """
     zeta = contact.damping_ratio
     rule = contact.release
     # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
     # replaced by nπ, which is above the saddle-node.
     there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
+    # The paper's errors of which the deviations are the tolerance and its opposite.
+    allowed = -tolerance / (1 + tolerance), tolerance / (1 - tolerance)
     try:
-        by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
+        by_law = _by_law(Quantity(quantity), SpringDamper(1.0, zeta, rule), n, there, allowed)
     except NoOrbitError:
         return Needed(
             quantity=quantity,

@@ -36,7 +36,13 @@ import xarray as xr
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.periodic.explicit import restitution_saddle_node
-from bouncing_ball_beyond.accuracy.error_law import VALID_BELOW, first_order, small_parameter
+from bouncing_ball_beyond.accuracy.error_law import (
+    VALID_BELOW,
+    curvature_of,
+    doubling_lift,
+    law_errors,
+    small_parameter,
+)
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -369,8 +375,10 @@ class _OrbitsOnShaker:
         impact = self.speed * self.motion.time / self.motion.length
         assert best.curve.kind is not None
         law = law_of_impact(best.curve.kind, self.restitution, duration, impact)
-        instant = Signature(law)(impact)
-        errors = first_order(self.n, instant, self.amplitude)
+        signature = Signature(law)
+        instant = signature(impact)
+        curvature = curvature_of(signature, impact)
+        errors = law_errors(self.n, instant, self.amplitude, curvature)
         return (
             float(linear.frequency_ratio),
             np.array([float(errors[quantity]) for quantity in COMPARED]),
@@ -394,5 +402,5 @@ class _OrbitsOnShaker:
 
 def _doubling(n: int, restitution: float, slope: float) -> float:
     """Λ of the period doubling of impacts with r(v)."""
-    lift = 2 * (1 + restitution * slope) / ((1 + restitution) * (1 + slope))
+    lift = doubling_lift(restitution, slope)
     return float(np.hypot(restitution_saddle_node(n, restitution), lift))

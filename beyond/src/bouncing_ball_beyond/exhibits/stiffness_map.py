@@ -27,6 +27,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, thresholds
 from bouncing_ball.datasets.parameters import (
     Family,

@@ -22,7 +22,7 @@ from bouncing_ball.drawing.thresholds import with_zeros
 
 # Errors are below 1 but next to a phase of 0; the orders have the room above.
 _ERRORS = (1e-11, 1e5)
-_LAW: Look = {"color": COLOURS[3], "linewidth": 1.0}
+_LAW: Look = {"color": COLOURS[4], "linewidth": 1.0}
 _AT_NODE: Look = {"linestyle": (0, (1, 1.5)), "linewidth": 1.6}
 # Quantiles of the measured orders: the median, and the ends of the middle 90 %.
 _QUANTILES = (0.05, 0.5, 0.95)

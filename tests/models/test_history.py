@@ -12,7 +12,7 @@ from bouncing_ball.models import history
 from bouncing_ball.models.history import impacts_of, impacts_until, motion_at, next_impact
 from bouncing_ball.models.model import Status
 from bouncing_ball.models.restitution import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper import SpringDamper, force
 
 MODELS = [
     RestitutionModel(0.6),
@@ -33,7 +33,8 @@ def integrated(model, amplitude, phase, velocity, end):
 
     def motion(time, state):
         gap, rate = relative(time, state)
-        return [state[1], -1 + (model.force(-gap, -rate) if touching else 0.0)]
+        pushed = force(model.frequency_ratio, model.damping_ratio, -gap, -rate) if touching else 0.0
+        return [state[1], pushed - 1]
 
     def switches(time, state):
         gap, rate = relative(time, state)

@@ -14,7 +14,7 @@ from bouncing_ball.models.permanent_contact import (
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper import SpringDamper, force
 
 EPS = np.finfo(float).eps
 
@@ -35,7 +35,7 @@ def test_at_the_threshold_the_steady_oscillation_just_reaches_the_release(omega,
     t = a_period_after(zeta * omega)
     flow = SpringDamper(omega, zeta).flow(t, 0.0, 0.0, lam)
     if release is Release.FORCE:
-        reserve = SpringDamper(omega, zeta).force(-flow.displacement, -flow.velocity)
+        reserve = force(omega, zeta, -flow.displacement, -flow.velocity)
     else:
         reserve = -(omega**2) * flow.displacement
     just_reaches_its_release(reserve)

@@ -90,7 +90,7 @@ def test_the_ball_stays_above_the_table_and_each_impact_obeys_the_law(r, lam, ph
 
 def test_the_derivative_of_an_impact_and_its_determinant():
     model = RestitutionModel([0.3, 0.9])
-    found = model.derivative(np.zeros(2), np.array([-1.0, -2.0]), 1.0, 0.0)
+    found = model.derivative(0.0, np.zeros(2), np.array([-1.0, -2.0]), 1.0)
     assert found.tolist() == [[[1.0, 0.0], [0.0, -0.3]], [[1.0, 0.0], [0.0, -0.9]]]
     assert model.contraction(0.0) == pytest.approx([0.09, 0.81], rel=4 * EPS)
 

@@ -11,7 +11,7 @@ from bouncing_ball import spring_damper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.model import Status
-from bouncing_ball.models.spring_damper import SpringDamper, responses
+from bouncing_ball.models.spring_damper import SpringDamper, force, responses
 
 EPS = np.finfo(float).eps
 # A signal y is known to some units in the last place of its terms, which are of order 10 here.
@@ -95,8 +95,8 @@ def test_the_acceleration_is_that_of_the_equation_of_motion():
     time = np.linspace(0, 3, 20)
     contact = SpringDamper(5.0, 0.2)
     state = contact.flow(time, 0.3, -1.0, 1.2, 0.1)
-    force = contact.force(-state.displacement, -state.velocity)
-    balance = force - 1 + 1.2 * np.sin(time + 0.3)
+    pushed = force(5.0, 0.2, -state.displacement, -state.velocity)
+    balance = pushed - 1 + 1.2 * np.sin(time + 0.3)
     assert state.acceleration == pytest.approx(balance, abs=200 * EPS)
 
 
@@ -116,8 +116,8 @@ def test_a_contact_loses_the_energy_that_its_damper_takes(omega, zeta):
         """Of the damper, and of the table that moves the foot of spring and damper."""
         state = contact.flow(time, phase, velocity, lam)
         of_damper = -2 * zeta * omega * state.velocity**2
-        force = contact.force(-state.displacement, -state.velocity)
-        return of_damper + force * lam * np.cos(phase + time)
+        pushed = force(omega, zeta, -state.displacement, -state.velocity)
+        return of_damper + pushed * lam * np.cos(phase + time)
 
     work, _ = quad(power, 0.0, end, epsabs=1e-12, epsrel=1e-12, limit=400)
     assert float(energy(end) - energy(0.0)) == pytest.approx(work, abs=1e-10)
@@ -156,14 +156,14 @@ def test_a_contact_ends_where_an_integrator_with_events_ends_it(release):
             assert not found.duration[0] < 12.0
             continue
         ended += 1
-        opening = float(contact.opening_rate(phase, velocity, lam, time))
+        opening = float(contact.opening_rate(time, phase, velocity, lam))
         # The integrator's error, over the rate at which the contact opens.
         allowed = 1e-9 / min(1.0, abs(opening))
         assert found.duration[0] == pytest.approx(time, abs=allowed)
         assert found.displacement[0] == pytest.approx(state[0], abs=10 * allowed)
         assert found.velocity[0] == pytest.approx(state[1], abs=10 * allowed)
         assert found.status[0] == Status.BOUNCING
-        of_duration = contact.released(phase, velocity, lam, found.duration[0])
+        of_duration = contact.released(found.duration[0], phase, velocity, lam)
         ends = found.displacement[0], found.velocity[0]
         assert ends == pytest.approx(of_duration, abs=100 * NOISE)
     assert ended > 15
@@ -179,7 +179,7 @@ def test_the_derivative_of_a_contact_is_its_difference_quotient(release):
     lam = rng.uniform(0.1, 2.0, size)
     duration = contact.impact(phase, velocity, lam).duration
     ends = np.where(np.isfinite(duration), duration, 0.0)
-    opening = contact.opening_rate(phase, velocity, lam, ends)
+    opening = contact.opening_rate(ends, phase, velocity, lam)
     good = np.flatnonzero((ends > 0) & (opening > 0.3))
     assert good.size > 30
     contact, phase, velocity, lam = contact.take(good), phase[good], velocity[good], lam[good]
@@ -193,7 +193,7 @@ def test_the_derivative_of_a_contact_is_its_difference_quotient(release):
     by_phase = ends(phase + step, velocity) - ends(phase - step, velocity)
     by_velocity = ends(phase, velocity + step) - ends(phase, velocity - step)
     expected = np.array([by_phase, by_velocity]).transpose(2, 1, 0) / (2 * step)
-    found = contact.derivative(phase, velocity, lam, duration)
+    found = contact.derivative(duration, phase, velocity, lam)
     # The square of the step times third derivatives, which are divided by the opening rate.
     size = np.abs(expected).max(axis=(-2, -1))
     assert np.all(np.abs(found - expected).max(axis=(-2, -1)) < 1e-5 * size)
@@ -205,7 +205,7 @@ def test_areas_contract_in_contact_by_the_damping(release):
     contact = SpringDamper(np.array([2.0, 7.0, 30.0]), 0.15, release)
     phase, velocity, lam = np.array([0.3, 1.0, 2.0]), np.full(3, -2.5), 0.8
     departure = contact.impact(phase, velocity, lam + 0 * phase)
-    found = np.linalg.det(contact.derivative(phase, velocity, lam, departure.duration))
+    found = np.linalg.det(contact.derivative(departure.duration, phase, velocity, lam))
     # The flow through the section δ = 0 is δ′₀, and that through the release is y′ = δ′ + κ δ″.
     opening = contact.opening_rate(phase, velocity, lam, departure.duration)
     flux = velocity / opening
@@ -221,7 +221,7 @@ def test_a_stiff_contact_becomes_an_impact_with_a_restitution_coefficient():
         found = contact.impact(np.full(1, 0.4), np.full(1, -2.0), np.full(1, 0.9))
         assert found.duration[0] * omega == pytest.approx(np.pi, rel=0.02)
         errors.append(abs(found.velocity[0] / (2.0 * r) - 1))
-        of_impact = contact.derivative(0.4, -2.0, 0.9, found.duration[0])
+        of_impact = contact.derivative(found.duration[0], 0.4, -2.0, 0.9)
         assert of_impact[1, 1] == pytest.approx(-r, abs=20 / omega)
     # The first correction is of the order 1/ϖ.
     assert errors[1] < errors[0] / 8 and errors[2] < errors[1] / 8

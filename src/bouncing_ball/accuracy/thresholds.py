@@ -23,7 +23,6 @@ from bouncing_ball.datasets.arguments import (
     TOLERANCE,
     AmplitudeOfOrbitAxis,
     FamilyAxis,
-    ReleaseName,
     ToleranceAxis,
     checked,
     chosen,
@@ -247,13 +246,12 @@ def error_thresholds(
     amplitude: AmplitudeOfOrbitAxis,
     tolerance: ToleranceAxis = 0.01,
     quantities: Sequence[str] | None = None,
-    release: ReleaseName = "displacement",
 ) -> Result:
     """The ϖ above which the restitution model is accurate for a contact with a spring and a damper.
 
-    The contact has the r of the ball as the restitution coefficient of a free impact. The error of
-    a quantity is its value on the contact minus its value in the restitution model, over the latter
-    (Eqs. 37-38).
+    The contact has the paper's release and, by Eq. 16, the r of the ball as the restitution
+    coefficient of a free impact. The error of a quantity is its value on the contact minus its
+    value in the restitution model, over the latter (Eqs. 37-38).
 
     Parameters
     ----------
@@ -268,8 +266,6 @@ def error_thresholds(
     quantities : sequence of str, optional
         The quantities compared; by default all: "max_height", "bounce_velocity", "phase",
         "apparent_restitution", "saddle_node", "period_doubling" and "permanent_contact".
-    release : str
-        Where a contact ends, "displacement" or "force".
 
     Returns
     -------
@@ -300,7 +296,6 @@ def error_thresholds(
 
     if not isinstance(a_ball(ball), RestitutionModel):
         raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
-    rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     wanted = quantity_names(quantities)
     grid = Grid(
         n=checked("n", n, FAMILY),
@@ -309,14 +304,14 @@ def error_thresholds(
         **ball.parameters,
     )
     r, family, lam = (grid.row(name) for name in ("restitution", "n", "amplitude"))
-    zeta = damping_ratio(r, rule)
+    zeta = damping_ratio(r)
     threshold = np.full((grid.size, len(wanted)), np.nan)
     status = np.full(threshold.shape, "", dtype=object)
     for level in np.unique(grid.row("tolerance")):
         here = np.flatnonzero(grid.row("tolerance") == level)
         found = search(
             zeta[here],
-            rule,
+            Release.DISPLACEMENT,
             r[here],
             family[here],
             lam[here],

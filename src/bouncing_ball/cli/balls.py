@@ -267,19 +267,15 @@ def thresholds_options(parser: Parser) -> None:
     add_number(parser, "tolerance", TOLERANCE, texts["tolerance"], default=0.01)
     text = meanings(rigid)["restitution"]
     add_number(parser, "restitution", RESTITUTION, text, required=True)
-    add_choice(parser, "release", Release, texts["release"], default="displacement")
 
 
-def thresholds(
-    *, n: int, amplitude: float, tolerance: float, restitution: float, release: ReleaseName
-) -> Answer:
+def thresholds(*, n: int, amplitude: float, tolerance: float, restitution: float) -> Answer:
     """The ϖ from which on each error of the restitution model is tolerable, or a status."""
     found = error_thresholds(
         rigid(restitution=restitution),
         n,
         amplitude=amplitude,
         tolerance=tolerance,
-        release=release,
     )
     pairs = zip(found.error_threshold.values, found.threshold_status.values, strict=True)
     told = [_known(ratio) if status == "found" else str(status) for ratio, status in pairs]

@@ -141,6 +141,19 @@ def check_restitution(value: ArrayLike) -> np.ndarray:
     return r
 
 
+def damped_frequency(damping_ratio: ArrayLike, frequency_ratio: ArrayLike = 1.0) -> np.ndarray:
+    """ϖ_d = ϖ√(1 - ζ²), the frequency with which a damped contact oscillates.
+
+    Examples
+    --------
+    >>> float(damped_frequency(0.6, 10.0))
+    8.0
+    """
+    zeta = np.asarray(damping_ratio)
+    # As a product the difference has no cancellation for ζ next to 1.
+    return np.asarray(frequency_ratio) * np.sqrt((1 - zeta) * (1 + zeta))
+
+
 def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
@@ -232,4 +245,4 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     """
     rule = Release.of(release)
     zeta = check_damping(damping)
-    return exponential(-rule.free_angle(zeta) * zeta / np.sqrt((1 - zeta) * (1 + zeta)))
+    return exponential(-rule.free_angle(zeta) * zeta / damped_frequency(zeta))

@@ -7,7 +7,8 @@ A subclass of :class:`Model` defines
 * :meth:`~Model.derivative`, that of the phase and velocity at the release by those at the impact;
 * :meth:`~Model.contraction`, the determinant of that derivative with the flight that follows, on a
   periodic orbit;
-* :meth:`~Model.in_contact`, the motion in between.
+* :meth:`~Model.in_contact`, the motion in between;
+* :meth:`~Model.permanent_contact_threshold`, and :attr:`~Model.label`, the model in a few symbols.
 
 The flight (:mod:`bouncing_ball.models.flight`) is the same for both. Models are arrays: their
 parameters broadcast, and an array of models is indexed, ``model[3]``.
@@ -129,12 +130,12 @@ class Model(Batch, ABC):
 
     @abstractmethod
     def released(
-        self, phase: Any, velocity: Any, amplitude: Any, duration: Any
+        self, duration: Any, phase: Any, velocity: Any, amplitude: Any
     ) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at the end of contacts of these durations."""
 
     @abstractmethod
-    def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+    def derivative(self, duration: Any, phase: Any, velocity: Any, amplitude: Any) -> np.ndarray:
         """The derivative of (φ_b, δ′_b) at the release by (φ, δ′) at the impact, at releases after
         these durations, shape (..., 2, 2).
         """

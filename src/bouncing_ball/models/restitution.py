@@ -154,13 +154,13 @@ class RestitutionModel(Model):
         )
 
     def released(
-        self, phase: Any, velocity: Any, amplitude: Any, duration: Any
+        self, duration: Any, phase: Any, velocity: Any, amplitude: Any
     ) -> tuple[np.ndarray, np.ndarray]:
         """δ = 0 and -r δ′, because the impact is an instant."""
         rebound = -self.restitution * np.asarray(velocity)
         return np.zeros(rebound.shape), rebound
 
-    def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+    def derivative(self, duration: Any, phase: Any, velocity: Any, amplitude: Any) -> np.ndarray:
         """The phase stays, and the velocity is multiplied by -r."""
         slope = -self.restitution + 0.0 * np.asarray(velocity)
         return matrix_of(np.ones_like(slope), 0.0 * slope, 0.0 * slope, slope)

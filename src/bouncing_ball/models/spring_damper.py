@@ -60,7 +60,13 @@ from bouncing_ball.datasets.arguments import (
     is_array,
 )
 from bouncing_ball.errors import ParameterError, suggesting
-from bouncing_ball.models.damping import Release, check_damping, check_positive, damping_ratio
+from bouncing_ball.models.damping import (
+    Release,
+    check_damping,
+    check_positive,
+    damped_frequency,
+    damping_ratio,
+)
 from bouncing_ball.models.flight import matrix_of, table
 from bouncing_ball.models.model import Departure, Model, Status
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
@@ -104,7 +110,7 @@ def _double_quotient(
 ) -> np.ndarray:
     """h of the module's docstring: the response to e^{νs}, with g of the same contact."""
     decay_rate = zeta * omega
-    pole = -decay_rate + 1j * omega * np.sqrt((1 - zeta) * (1 + zeta))
+    pole = -decay_rate + 1j * damped_frequency(zeta, omega)
     found = np.asarray((_quotient(nu, pole, time) - g) / (nu - np.conj(pole)))
     short = np.abs(time) * (omega + abs(nu)) < 1
     if not short.any():
@@ -151,7 +157,7 @@ def responses(
     """
     s, omega, zeta = np.broadcast_arrays(*map(np.asarray, (time, frequency_ratio, damping_ratio)))
     decay_rate = zeta * omega
-    damped = omega * np.sqrt((1 - zeta) * (1 + zeta))
+    damped = damped_frequency(zeta, omega)
     sine, cosine = swing or (np.sin(damped * s), np.cos(damped * s))
     decay = np.exp(-decay_rate * s)
     g = decay * sine / damped
@@ -173,14 +179,34 @@ class ContactState(NamedTuple):
     acceleration: np.ndarray
 
 
+def force(
+    frequency_ratio: ArrayLike, damping_ratio: ArrayLike, penetration: ArrayLike, rate: ArrayLike
+) -> np.ndarray:
+    """The force over the weight, f = ϖ² p + 2ζϖ p′, of a penetration p = w - z.
+
+    With this force z″ = f - 1. In the paper ::
+
+        m ÿ + c (ẏ - ẇ) + k (y - w) = -m g              (10)
+        z″ + 2ζϖ (z′ - w′) + ϖ² (z - w) = -1            (11)
+
+    Examples
+    --------
+    >>> float(force(2.0, 0.25, 1.0, -3.0))
+    1.0
+    """
+    omega = np.asarray(frequency_ratio, dtype=float)
+    loss = 2 * np.asarray(damping_ratio) * omega
+    return omega * omega * np.asarray(penetration) + loss * np.asarray(rate)
+
+
 def flow(
     frequency_ratio: ArrayLike,
     damping_ratio: ArrayLike,
     time: ArrayLike,
-    displacement: ArrayLike,
-    velocity: ArrayLike,
     phase: ArrayLike,
+    velocity: ArrayLike,
     amplitude: ArrayLike,
+    displacement: ArrayLike = 0.0,
 ) -> ContactState:
     """The state of a ball in contact a time s after (δ₀, δ′₀) at the phase φ (Eqs. 12-13).
 
@@ -189,7 +215,7 @@ def flow(
     On a table at rest a ball without weight would come back after half a period of the contact; the
     weight 1 displaces it by 2/ϖ²:
 
-    >>> state = flow(2.0, 0.0, np.pi / 2, 0.0, -3.0, 0.0, 0.0)
+    >>> state = flow(2.0, 0.0, np.pi / 2, 0.0, -3.0, 0.0)
     >>> round(float(state.displacement), 12), round(float(state.velocity), 12)
     (-0.5, 3.0)
     """
@@ -204,7 +230,8 @@ def flow(
     gap = displacement * (rate + loss * g) + velocity * g + forced
     speed = velocity * rate - displacement * stiffness * g + forced_rate
     _, height = table(np.asarray(phase) + time, np.asarray(amplitude, dtype=float))
-    return ContactState(gap, speed, height - 1 - loss * speed - stiffness * gap)
+    pushed = force(frequency_ratio, damping_ratio, -gap, -speed)
+    return ContactState(gap, speed, height - 1 + pushed)
 
 
 @dataclass(frozen=True, repr=False)
@@ -283,29 +310,13 @@ class SpringDamper(Model):
     @cached_property
     def damped_frequency(self) -> Any:
         """ϖ_d = ϖ√(1 - ζ²)."""
-        return self.frequency_ratio * np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
-
-    def force(self, penetration: ArrayLike, rate: ArrayLike) -> np.ndarray:
-        """The force over the weight, f = ϖ² p + 2ζϖ p′, of a penetration p = w - z.
-
-        With this force z″ = f - 1. In the paper ::
-
-            m ÿ + c (ẏ - ẇ) + k (y - w) = -m g              (10)
-            z″ + 2ζϖ (z′ - w′) + ϖ² (z - w) = -1            (11)
-
-        Examples
-        --------
-        >>> float(SpringDamper(2.0, 0.25).force(1.0, -3.0))
-        1.0
-        """
-        omega = self.frequency_ratio
-        return omega * (omega * np.asarray(penetration) + 2 * self.damping_ratio * np.asarray(rate))
+        return damped_frequency(self.damping_ratio, self.frequency_ratio)[()]
 
     def flow(
         self, time: Any, phase: Any, velocity: Any, amplitude: Any, displacement: Any = 0.0
     ) -> ContactState:
         """δ, δ′ and δ″ at times since the starts of contacts: see :func:`flow`."""
-        start = displacement, velocity, phase, amplitude
+        start = phase, velocity, amplitude, displacement
         return flow(self.frequency_ratio, self.damping_ratio, time, *start)
 
     def in_contact(
@@ -315,7 +326,7 @@ class SpringDamper(Model):
         return self.flow(time, phase, velocity, amplitude, displacement)[:2]
 
     def released(
-        self, phase: Any, velocity: Any, amplitude: Any, duration: Any
+        self, duration: Any, phase: Any, velocity: Any, amplitude: Any
     ) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at the end of contacts of these durations, whether they are releases or not."""
         return self.flow(duration, phase, velocity, amplitude)[:2]
@@ -354,12 +365,12 @@ class SpringDamper(Model):
         duration = np.where(leaves, end.time, np.inf)
         return Departure(duration, -self.lag * speed, speed, status)
 
-    def opening_rate(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+    def opening_rate(self, duration: Any, phase: Any, velocity: Any, amplitude: Any) -> np.ndarray:
         """δ′ + κ δ″ at the end of contacts of these durations: positive where they open."""
         state = self.flow(duration, phase, velocity, amplitude)
         return state.velocity + self.lag * state.acceleration
 
-    def derivative(self, phase: Any, velocity: Any, amplitude: Any, duration: Any) -> np.ndarray:
+    def derivative(self, duration: Any, phase: Any, velocity: Any, amplitude: Any) -> np.ndarray:
         """The derivative of (φ_b, δ′_b) by (φ, δ′), with the release condition, shape (..., 2, 2).
 
         At a fixed time ``∂δ/∂φ = XQ - YP``, ``∂δ′/∂φ = X(g - P) - YQ``, ``∂δ/∂δ′₀ = g`` and
@@ -370,7 +381,7 @@ class SpringDamper(Model):
         x, y = table(np.asarray(phase, dtype=float), amplitude)
         by_phase = x * found.in_phase - y * found.quadrature
         rate_by_phase = x * (found.impulse - found.quadrature) - y * found.in_phase
-        opening = self.opening_rate(phase, velocity, amplitude, duration)
+        opening = self.opening_rate(duration, phase, velocity, amplitude)
         later_by_phase = -(by_phase + self.lag * rate_by_phase) / opening
         later_by_velocity = -(found.impulse + self.lag * found.impulse_rate) / opening
         return matrix_of(
@@ -411,7 +422,7 @@ class _Contact(Motion):
         self.forcing = amplitude * np.sqrt(1 + lag * lag)
         self.phase = phase + np.arctan(lag)
         _, height = table(phase, amplitude)
-        acceleration = height - 1 - self.loss * velocity - self.stiffness * displacement
+        acceleration = height - 1 + force(omega, zeta, -displacement, -velocity)
         self.start = displacement + lag * velocity
         self.start_rate = velocity + lag * acceleration
         detuning = (omega - 1) * (omega + 1)
@@ -420,14 +431,14 @@ class _Contact(Motion):
         # The steady part ρ sin(s + ψ), and the amplitude R of the transient.
         self.steady = np.where(self.resonant, np.inf, self.forcing / np.where(root > 0, root, 1.0))
         self.steady_phase = self.phase - np.arctan2(self.loss, detuning)
-        damped = omega * np.sqrt((1 - zeta) * (1 + zeta))
+        damped = damped_frequency(zeta, omega)
         rho = np.where(self.resonant, 0.0, self.steady)
         a = self.start + 1 / self.stiffness - rho * np.sin(self.steady_phase)
         rate = self.start_rate - rho * np.cos(self.steady_phase)
         self.envelope = np.hypot(a, (rate + zeta * omega * a) / damped)
 
     def __call__(self, time: np.ndarray) -> Derivatives:
-        start = self.start, self.start_rate, self.phase, self.forcing
+        start = self.phase, self.start_rate, self.forcing, self.start
         value, rate, second = flow(self.omega, self.zeta, time, *start)
         jerk, _ = table(self.phase + time, self.forcing)
         transient = self.envelope * np.exp(-self.zeta * self.omega * time)

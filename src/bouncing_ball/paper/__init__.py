@@ -33,7 +33,7 @@ Eqs.    what                      where
 8       its period doubling       ``periodic.explicit.restitution_period_doubling``
 9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
 ..      where a ball lifts off    ``models.restitution.lift_off_phase``
-10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
+10, 11  force of the contact      ``models.spring_damper.force``
 12, 13  motion in contact         ``models.spring_damper.flow``
 ..      with its A and B          ``periodic.continuation.PaperEquations.point``
 14, 15  flight after it           ``periodic.orbit.flight_path``

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball import datasets
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import damped_frequency
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import pick
@@ -121,7 +122,7 @@ class PaperEquations:
         derivative, of the transient after the time τ: shape (3, 2, ...).
         """
         zeta = self.contact.damping_ratio
-        root = np.sqrt((1 - zeta) * (1 + zeta))
+        root = damped_frequency(zeta)
         decay = np.exp(-zeta * theta)
         cosine = decay * np.cos(root * theta)
         sine = decay * np.sin(root * theta)
@@ -154,7 +155,7 @@ class PaperEquations:
         cosine, sine, swing, swing_rate = self._of_table(phase)
         cosine_b, sine_b, swing_b, swing_rate_b = self._of_table(phase + time)
         (of_a, of_b), (rate_of_a, rate_of_b), _ = self._transient(theta)
-        closing = root_of(zeta) * b - zeta * a + amplitude * swing_rate
+        closing = damped_frequency(zeta) * b - zeta * a + amplitude * swing_rate
         leaving = rate_of_a * a + rate_of_b * b + amplitude * swing_rate_b
         gap = of_a * a + of_b * b + amplitude * swing_b - 1 / omega
         left = amplitude * sine_b - lag * (bounce - amplitude * cosine_b)
@@ -196,7 +197,7 @@ class PaperEquations:
             (1, 0): -amplitude * (swing / omega + sine),
             (1, 1): -1.0,
             (1, 4): -zeta,
-            (1, 5): root_of(zeta),
+            (1, 5): damped_frequency(zeta),
             (1, 6): swing_rate + cosine,
             (2, 0): amplitude * omega * swing_rate_b + weight * leaving_by_phase,
             (2, 2): leaving + weight * leaving_by_theta,
@@ -235,7 +236,7 @@ class PaperEquations:
         cosine, _, swing, swing_rate = self._of_table(np.asarray(orbit.phase))
         a = 1 / omega - lam * swing
         closing = orbit.impact_velocity - lam * (cosine + swing_rate)
-        b = (closing + zeta * a) / root_of(zeta)
+        b = (closing + zeta * a) / damped_frequency(zeta)
         theta = omega * np.asarray(orbit.contact_duration)
         unknowns = orbit.phase, orbit.impact_velocity, theta, orbit.bounce_velocity, a, b, lam
         return np.stack(np.broadcast_arrays(*unknowns), axis=-1)
@@ -243,11 +244,6 @@ class PaperEquations:
     def test(self, kind: Bifurcation, y: np.ndarray) -> np.ndarray:
         """The test function of a bifurcation."""
         return kind.test(*trace_and_determinant(self.orbit(y)))
-
-
-def root_of(zeta: Any) -> Any:
-    """√(1 - ζ²)."""
-    return np.sqrt((1 - zeta) * (1 + zeta))
 
 
 def _events(equations: PaperEquations, top: float, ends: Sequence[str]) -> list[Event]:
@@ -259,7 +255,7 @@ def _events(equations: PaperEquations, top: float, ends: Sequence[str]) -> list[
     def opening(y: np.ndarray) -> np.ndarray:
         orbit = equations.orbit(y)
         start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
-        return equations.contact.opening_rate(*start, orbit.contact_duration)
+        return equations.contact.opening_rate(orbit.contact_duration, *start)
 
     def in_a_row(margin: Any) -> Any:
         """A margin of orbits at y of any leading shape."""

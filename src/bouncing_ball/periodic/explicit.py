@@ -66,7 +66,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.damping import check_restitution
+from bouncing_ball.models.damping import check_restitution, damped_frequency
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper, responses
@@ -385,7 +385,7 @@ class BranchPoint(NamedTuple):
         contact: Any = orbit.model
         closing = orbit.relative_impact_velocity
         start = orbit.phase, closing, orbit.amplitude
-        opening = contact.opening_rate(*start, orbit.contact_duration)
+        opening = contact.opening_rate(orbit.contact_duration, *start)
         # The determinant has the equation of the release times ϖ.
         determinant = self.determinant / contact.frequency_ratio
         return -self.test(Bifurcation.SADDLE_NODE) * closing * opening / determinant
@@ -426,7 +426,7 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     swing = sine * np.cos(eps) + cosine * np.sin(eps), cosine * np.cos(eps) - sine * np.sin(eps)
     g, rate, gravity, q, p = responses(duration, omega, zeta, swing)
     # ϖ (g + κ g′), in which the terms of order 1 cancel but for sin ε.
-    root = np.sqrt((1 - zeta) * (1 + zeta))
+    root = damped_frequency(zeta)
     push = -np.exp(-zeta * omega * duration) / root * np.sin(eps)
     cos_less_one = -2 * np.sin(duration / 2) ** 2
     sin_d = np.sin(duration)

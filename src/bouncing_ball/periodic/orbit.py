@@ -326,7 +326,7 @@ def defect(orbit: Orbit) -> np.ndarray:
     """
     closing = orbit.relative_impact_velocity
     duration = orbit.contact_duration
-    gap, rate = orbit.model.released(orbit.phase, closing, orbit.amplitude, duration)
+    gap, rate = orbit.model.released(duration, orbit.phase, closing, orbit.amplitude)
     landed, at_landing, *_ = Flight(orbit.release_phase, gap, rate, orbit.amplitude).gap(
         orbit.flight_time
     )
@@ -341,7 +341,7 @@ def defect(orbit: Orbit) -> np.ndarray:
 def monodromy(orbit: Orbit) -> np.ndarray:
     """Derivative of the return map (φ, δ′) → (φ, δ′) at the impact, shape (..., 2, 2)."""
     at_impact = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
-    of_impact = orbit.model.derivative(*at_impact, orbit.contact_duration)
+    of_impact = orbit.model.derivative(orbit.contact_duration, *at_impact)
     of_flight = flight_derivative(
         orbit.release_phase,
         orbit.flight_time,

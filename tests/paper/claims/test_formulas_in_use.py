@@ -82,8 +82,8 @@ EDITS = [
     Edit(PERMANENT, "RESTITUTION_THRESHOLD = 1.0", "RESTITUTION_THRESHOLD = 1.1", "Eq. 9"),
     Edit(
         CONTACT,
-        "+ 2 * self.damping_ratio * np.asarray(rate)",
-        "+ self.damping_ratio * np.asarray(rate)",
+        "+ loss * np.asarray(rate)",
+        "+ loss / 2 * np.asarray(rate)",
         "ϖ = Ω/ω, Ω of the contact",
     ),
     Edit(CONTACT, "+ y * in_phase - gravity", "+ y * in_phase + gravity", "Eqs. 12-13"),

@@ -54,6 +54,9 @@ def error_thresholds(
     ----------
     ball : Ball
         A ball made by :func:`bouncing_ball_beyond.rigid`.
+    release : str
+        Where a contact ends, "displacement" or "force"; its ζ is that with which a free impact has
+        the r of the ball.
 
     Returns
     -------

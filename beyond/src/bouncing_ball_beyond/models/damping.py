@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import one_of, require
 from bouncing_ball.models import damping as linear
-from bouncing_ball.models.damping import check_restitution
+from bouncing_ball.models.damping import check_restitution, damped_frequency
 from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball.numerics.elementary import logarithm
 
@@ -97,7 +97,7 @@ class Release(StrEnum):
         if self.is_linear:
             return damped
         zeta = np.asarray(damping_ratio, dtype=float)
-        return damped + np.pi / 2 * np.sqrt((1 - zeta) * (1 + zeta))
+        return damped + np.pi / 2 * damped_frequency(zeta)
 
     def require_rebound(self, damping_ratio: ArrayLike) -> np.ndarray:
         """ζ as an array.

@@ -238,7 +238,7 @@ class ResonantMotion(ContactMotion):
         self.phase = np.arctan2(self.push, x - self.lag * y)
 
     def __call__(self, time: np.ndarray) -> Derivatives:
-        state = time, self.start, self.start_rate, self.phase, self.forcing
+        state = time, self.phase, self.start_rate, self.forcing, self.start
         flow = linear_flow(self.omega, self.zeta, *state)
         value = flow.displacement
         rate = flow.velocity

@@ -19,6 +19,7 @@ from bouncing_ball.models.flight import Flight
 from bouncing_ball.models.history import impacts_of, next_impact
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper import force as force_of
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.periodic import explicit
 from bouncing_ball.periodic.continuation import PaperEquations
@@ -189,12 +190,12 @@ def _contact(rng, samples) -> Rows:
     zeta = rng.uniform(0.01, 0.5, samples)
     rise = -rng.uniform(0.1, 1, samples) / omega
     rate = rng.uniform(-3, 3, samples)
-    force = SpringDamper(omega, zeta).force(-rise, -rate)
+    force = force_of(omega, zeta, -rise, -rate)
     r = rng.uniform(0.1, 0.99, samples)
     damping = printed.damping_ratio(r)
     return {
         "ϖ = Ω/ω, Ω of the contact": _used(
-            "models.spring_damper.SpringDamper.force",
+            "models.spring_damper.force",
             # The force over ϖ is of the order of the velocity.
             defects=((printed.acceleration(rise, rate, omega, zeta) + 1 - force) / omega,),
         ),

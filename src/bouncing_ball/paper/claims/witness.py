@@ -145,7 +145,7 @@ def formula_and_equations(shown: Shown) -> np.ndarray:
 def _defect_of_flow(orbit: Orbit) -> np.ndarray:
     """The largest defect of Eqs. 23-26, with the flow in contact in place of A and B."""
     start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
-    gap, rate = orbit.model.released(*start, orbit.contact_duration)
+    gap, rate = orbit.model.released(orbit.contact_duration, *start)
     landing = orbit.amplitude * np.sin(orbit.release_phase) - orbit.bounce_height
     return np.max(np.abs([gap, rate - orbit.relative_bounce_velocity, landing]), axis=0)
 

@@ -85,7 +85,7 @@ def growth(path: ImpactSequence, ball: int) -> np.ndarray:
     velocity = path.relative_velocity[:, ball]
     lam = path.amplitude[ball]
     time = np.diff(path.time[:, ball])
-    of_impact = path.model.derivative(phase[:-1], velocity[:-1], lam, 0.0)
+    of_impact = path.model.derivative(0.0, phase[:-1], velocity[:-1], lam)
     maps = flight_derivative(phase[:-1], time, velocity[1:], lam) @ of_impact
     deviation = np.array([1.0, 0.0])
     found = np.empty(len(maps))

@@ -45,6 +45,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
+from bouncing_ball.models.damping import damped_frequency
 from bouncing_ball.numerics.arrays import blocks, pick
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.oscillator import gravity_response, table_response
@@ -271,7 +272,7 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
 @np.errstate(under="ignore")
 def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     """:func:`branch_point` for one block of arrays; ``sine`` is sin α = κϖ/2."""
-    root = np.sqrt((1 - zeta) * (1 + zeta))
+    root = damped_frequency(zeta)
     per_angle = 1 / (omega * root)
     duration = (2 * np.arccos(sine) + eps) * per_angle
     flight = 2 * np.pi * n - duration
@@ -321,7 +322,7 @@ def excess_angle(contact: SpringDamper, duration: ArrayLike) -> np.ndarray:
     0.25
     """
     zeta = contact.damping_ratio
-    root = np.sqrt((1 - zeta) * (1 + zeta))
+    root = damped_frequency(zeta)
     free = 2 * np.arccos(contact.release_sine)
     return np.asarray(duration) * contact.frequency_ratio * root - free
 

@@ -207,7 +207,7 @@ def test_areas_contract_in_contact_by_the_damping(release):
     departure = contact.impact(phase, velocity, lam + 0 * phase)
     found = np.linalg.det(contact.derivative(departure.duration, phase, velocity, lam))
     # The flow through the section δ = 0 is δ′₀, and that through the release is y′ = δ′ + κ δ″.
-    opening = contact.opening_rate(phase, velocity, lam, departure.duration)
+    opening = contact.opening_rate(departure.duration, phase, velocity, lam)
     flux = velocity / opening
     expected = contact.contraction(departure.duration) * flux
     assert found == pytest.approx(expected, rel=1e-11)

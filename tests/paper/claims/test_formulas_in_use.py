@@ -88,9 +88,14 @@ EDITS = [
     ),
     Edit(CONTACT, "+ y * in_phase - gravity", "+ y * in_phase + gravity", "Eqs. 12-13"),
     Edit(ORBIT, "+ velocity) / 2 * since", "+ velocity) * since", "Eqs. 14-15"),
-    Edit("models/damping.py", "/ np.hypot(np.pi, decrement)", "/ np.pi", "Eq. 16"),
     Edit(
-        "models/damping.py", "np.exp(-rule.free_angle(", "np.exp(-0.9 * rule.free_angle(", "Eq. 16"
+        "models/damping.py", "/ np.sqrt(np.pi * np.pi + decrement * decrement)", "/ np.pi", "Eq. 16"
+    ),
+    Edit(
+        "models/damping.py",
+        "exponential(-rule.free_angle(",
+        "exponential(-0.9 * rule.free_angle(",
+        "Eq. 16",
     ),
     Edit(
         ORBIT,

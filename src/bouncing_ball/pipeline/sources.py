@@ -37,8 +37,11 @@ LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 # The packages of all houses begin with it.
 _OURS = "bouncing_ball"
 # The package imports its public functions only when a user asks for them, and a result imports what
-# draws it only when it is drawn, which no study does.
-_ON_DEMAND = ("bouncing_ball/__init__.py", "bouncing_ball/drawing/result.py")
+# draws it only when it is drawn, which no study does. What they import at once is named here.
+_ON_DEMAND = {
+    "bouncing_ball/__init__.py": ["bouncing_ball.first_use"],
+    "bouncing_ball/drawing/result.py": [],
+}
 _STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
 
 
@@ -186,7 +189,8 @@ def module(path: Path) -> Module:
 @cache
 def imported(path: Path) -> frozenset[Path]:
     """The files that are read when a file is imported, without what these import."""
-    names = [] if path.as_posix().endswith(_ON_DEMAND) else module(path).imports
+    at_once = (names for file, names in _ON_DEMAND.items() if path.as_posix().endswith(file))
+    names = next(at_once, module(path).imports)
     return frozenset(file for name in names for file in files_of_module(name))
 
 
@@ -207,8 +211,8 @@ def sources(modules: Iterable[str], others: Iterable[Path] = ()) -> list[Path]:
 
     Examples
     --------
-    >>> [name_of(path) for path in sources(["bouncing_ball.errors"])]
-    ['src/bouncing_ball/__init__.py', 'src/bouncing_ball/errors.py']
+    >>> [path.name for path in sources(["bouncing_ball.errors"])]
+    ['__init__.py', 'errors.py', 'first_use.py']
     """
     given = set(others)
     found: set[Path] = set()

@@ -123,7 +123,7 @@ RATIOS = np.array([4e3, 1.6e4])
 def measured_orders(release, position):
     """The order in 1/ϖ of the largest remainder over r and n, and of the law itself."""
     r, n = np.meshgrid(np.linspace(0.2, 0.95, 16), [1, 2, 3])
-    zeta = SpringDamper.from_restitution(r, 1.0, release, measured=True).damping_ratio
+    zeta = damping_ratio(r, release)
     low = restitution_saddle_node(n, r)
     lam = low + position * (restitution_period_doubling(n, r) - low)
     left, size = [], []

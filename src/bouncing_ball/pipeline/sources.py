@@ -35,7 +35,7 @@ LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 # The packages of all houses begin with it.
 _OURS = "bouncing_ball"
 # The package imports its public functions only when a user asks for them, and a result imports what
-# draws it only when it is drawn, which no study does.
+# draws it only when it is drawn, which no study does: what their functions import does not count.
 _ON_DEMAND = ("bouncing_ball/__init__.py", "bouncing_ball/drawing/result.py")
 # How a module reads docstrings.
 _READER = r"\bgetdoc\("
@@ -95,7 +95,7 @@ def files_of_module(name: str) -> list[Path]:
 @cache
 def imported(path: Path) -> frozenset[Path]:
     """The files that are read when a file is imported, without what these import."""
-    if path.suffix != ".py" or path.as_posix().endswith(_ON_DEMAND):
+    if path.suffix != ".py":
         return frozenset()
     try:
         tree = ast.parse(path.read_bytes())
@@ -103,7 +103,7 @@ def imported(path: Path) -> frozenset[Path]:
     except (SyntaxError, ValueError):
         return frozenset()
     names = set()
-    for node in ast.walk(tree):
+    for node in tree.body if path.as_posix().endswith(_ON_DEMAND) else ast.walk(tree):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:

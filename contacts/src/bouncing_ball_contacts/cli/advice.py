@@ -31,7 +31,7 @@ _WITHOUT_VALUE = ("--all", "--intervals")
 def advice_of_design(unknown: str, arguments: Sequence[str], known: Iterable[str]) -> str:
     """A clause on the first argument that ``design`` does not know; empty if nothing is known.
 
-    The parameters are those of :func:`bouncing_ball.cli.advice.advice`.
+    The parameters are those of :func:`bouncing_ball.cli.options.advice`.
 
     Examples
     --------

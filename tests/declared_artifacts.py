@@ -34,18 +34,10 @@ def imported(script: Path) -> dict[str, Callable[..., Any]]:
     }
 
 
-def studies(scripts: Path = SCRIPTS) -> dict[str, Callable[..., xr.Dataset]]:
-    """The study of each dataset."""
-    return {
-        keyword.arg: imported(script)[keyword.value.id]
-        for script in sorted(scripts.glob("*.py"))
-        if (call := called(script, "make_datasets"))
-        for keyword in call.keywords
-    }
-
-
 def shown(name: str, scripts: Path = SCRIPTS) -> dict[str, Callable[..., Any]]:
-    """The function with which each script calls ``draw`` or ``write_table``, by the artifact."""
+    """The functions with which scripts call ``make_dataset``, ``draw`` or ``write_table``, by the
+    names of their artifacts.
+    """
     return {
         script.stem.partition("_")[2]: imported(script)[call.args[1].id]
         for script in sorted(scripts.glob("*.py"))
@@ -53,22 +45,14 @@ def shown(name: str, scripts: Path = SCRIPTS) -> dict[str, Callable[..., Any]]:
     }
 
 
-def by_key(run: dict[str, Any], section: str = "paper") -> dict[str, Any]:
-    """The parameters of each artifact and the settings of a configuration, as a job has them."""
-    return {**run, **run[section]}
+def given_to(artifact: str, run: dict[str, Any], section: str = "paper") -> dict[str, Any]:
+    """What the job of an artifact is given: its parameters, and the settings of a configuration."""
+    return {**run, "parameters": run[section].get(artifact)}
 
 
-STUDIES = studies()
+STUDIES = shown("make_dataset")
 DRAWINGS = shown("draw")
 TABLES = shown("write_table")
-
-
-def made_by(artifact: str, scripts: Path = SCRIPTS) -> str:
-    """The name of the script that makes the dataset of an artifact."""
-    calls = {script.stem: called(script, "make_datasets") for script in scripts.glob("*.py")}
-    return next(
-        name for name, call in calls.items() if call and artifact in {x.arg for x in call.keywords}
-    )
 
 
 def read_by(artifact: str) -> list[str]:

@@ -28,7 +28,7 @@ MODULE = re.compile(r"\bbouncing_ball(?:\.\w+)+")
 LINK = re.compile(r"\]\(([^):\s#]+)[^):\s]*\)")
 # The figure and the study that the recipes of CONTRIBUTING make, and the schema for editors, which
 # is made and not in git.
-MADE = re.compile("heights|height_levels|schema.json")
+MADE = re.compile("heights|height_levels|compute_level|schema.json")
 
 every_page = pytest.mark.parametrize(
     "page", PAGES, ids=lambda page: f"{page.parent.name}/{page.name}"

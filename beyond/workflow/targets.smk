@@ -5,7 +5,7 @@ rule ext_instant:
     """Flights before and after a contact meet at the centroid of its force."""
     localrule: True
     input:
-        rules.ext_instant_study.output,
+        rules.compute_ext_instant.output,
         rules.draw_ext_instant.output,
 
 
@@ -13,7 +13,7 @@ rule ext_orders:
     """Order of convergence of the restitution model and of the corrected one."""
     localrule: True
     input:
-        rules.ext_orders_study.output,
+        rules.compute_ext_orders.output,
         rules.draw_ext_orders.output,
         rules.set_ext_orders.output,
 
@@ -22,7 +22,7 @@ rule ext_map:
     """How stiff a contact must be for the greatest height, over r and Λ."""
     localrule: True
     input:
-        rules.ext_map_study.output,
+        rules.compute_ext_map.output,
         rules.draw_ext_map.output,
 
 
@@ -30,14 +30,14 @@ rule ext_release:
     """Bifurcations and thresholds under both release rules."""
     localrule: True
     input:
-        rules.ext_release_study.output,
+        rules.compute_ext_release.output,
 
 
 rule ext_impact:
     """Restitution and duration of a free impact, by damping and release rule."""
     localrule: True
     input:
-        rules.ext_impact_study.output,
+        rules.compute_ext_impact.output,
         rules.draw_ext_impact.output,
 
 
@@ -45,7 +45,7 @@ rule ext_laws:
     """Errors of the restitution model and of the corrected one on the contacts of engineers."""
     localrule: True
     input:
-        rules.ext_laws_study.output,
+        rules.compute_ext_laws.output,
         rules.draw_ext_laws.output,
         rules.set_ext_laws.output,
 
@@ -54,7 +54,7 @@ rule ext_flights:
     """From permanent contact to chattering: the cascade of flights in a period."""
     localrule: True
     input:
-        rules.ext_flights_study.output,
+        rules.compute_ext_flights.output,
         rules.draw_ext_flights.output,
 
 
@@ -62,7 +62,7 @@ rule explorer:
     """A page to explore the models, and the orbits that it checks itself against."""
     localrule: True
     input:
-        rules.explorer_study.output,
+        rules.compute_explorer.output,
         rules.draw_explorer.output,
 
 
@@ -70,7 +70,7 @@ rule ext_proofs:
     """Printed numbers, certified by ball arithmetic."""
     localrule: True
     input:
-        rules.ext_proofs_study.output,
+        rules.compute_ext_proofs.output,
         rules.set_ext_proofs.output,
 
 
@@ -78,5 +78,5 @@ rule ext_verdicts:
     """Verdicts on the printed numbers by certified intervals."""
     localrule: True
     input:
-        rules.ext_verdicts_study.output,
+        rules.compute_ext_verdicts.output,
         rules.set_ext_verdicts.output,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from declared_artifacts import BUDGETS, STUDIES, by_key, compare_artifact
+from declared_artifacts import BUDGETS, STUDIES, compare_artifact, given_to
 
 from bouncing_ball.datasets.variables import IGNORED
 from bouncing_ball.pipeline.job import arguments, typed
@@ -86,7 +86,7 @@ def results(coarse):
             continue
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
         given = mapped(
-            arguments(study, artifact, by_key(RUN)),
+            arguments(study, given_to(artifact, RUN)),
             lambda key, x, fewer=fewer: fewer.get(key, x),
         )
         record = made(**given)

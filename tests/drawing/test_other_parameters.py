@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from declared_artifacts import DRAWINGS, STUDIES, by_key
+from declared_artifacts import DRAWINGS, STUDIES, given_to
 from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
@@ -70,7 +70,7 @@ def drawn_once(name, changes):
     """A figure that several tests look at; the changes are a text, which is a key."""
     configuration = read_yaml(ROOT / "config" / "config.yaml")
     configuration["paper"][name] |= json.loads(changes)
-    given = arguments(STUDIES[name], name, by_key(configuration))
+    given = arguments(STUDIES[name], given_to(name, configuration))
     data = typed(STUDIES[name])(**given).assign_attrs(recorded(given))
     with style():
         figure = DRAWINGS[name](data)

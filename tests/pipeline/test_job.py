@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.job import logged, make_datasets, publish, read_input, using
+from bouncing_ball.pipeline.job import logged, make_dataset, read_input, using
 
 
 @pytest.fixture
@@ -19,8 +19,8 @@ def interruptible(monkeypatch):
 @pytest.mark.parametrize(
     ("error", "said"),
     [
-        (ValueError("one\ntwo\n  three"), "stage/fig08: one two three (details in "),
-        (KeyError("ϖ"), "stage/fig08: KeyError: 'ϖ' (details in "),
+        (ValueError("one\ntwo\n  three"), "compute_fig08: one two three (details in "),
+        (KeyError("ϖ"), "compute_fig08: KeyError: 'ϖ' (details in "),
     ],
 )
 def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
@@ -28,16 +28,16 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
         raise error
 
     log = tmp_path / "logs" / "job.log"
-    job = SimpleNamespace(rule="stage", log=[str(log)], input={}, params={})
+    job = SimpleNamespace(rule="compute_fig08", log=[str(log)], input={}, params={})
     with pytest.raises(SystemExit) as exit_, logged(job):
-        make_datasets(job, fig08=study)
+        make_dataset(job, study)
     one_line(exit_, f"{said}{log})")
     assert "Traceback" in log.read_text(encoding="utf-8")
 
 
 def test_a_variable_without_a_unit_is_refused(refusal):
     with refusal(ModelError, "phase has no unit: the study ends with described(...)"):
-        publish(SimpleNamespace(), "one", xr.Dataset({"phase": 0.0}), {})
+        make_dataset(SimpleNamespace(input={}, params={}), lambda: xr.Dataset({"phase": 0.0}))
 
 
 def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from declared_artifacts import SCRIPTS, STUDIES, by_key, made_by
+from declared_artifacts import SCRIPTS, STUDIES, given_to
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.job import arguments
@@ -23,7 +23,7 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
 def arguments_in(run):
-    return {x: arguments(study, x, by_key(run)) for x, study in STUDIES.items()}
+    return {x: arguments(study, given_to(x, run)) for x, study in STUDIES.items()}
 
 
 @pytest.mark.parametrize(
@@ -65,13 +65,13 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
 def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
     changed = PACKAGE / file
     assert changed.is_file()
-    scripts = {name: SCRIPTS / f"{made_by(name)}.py" for name in STUDIES}
+    scripts = {name: SCRIPTS / f"compute_{name}.py" for name in STUDIES}
     users = {name for name, script in scripts.items() if changed in sources([script])}
     assert users == expected
 
 
 def test_the_modules_of_a_stage_are_those_that_python_imports():
-    script = SCRIPTS / "orbit_branches.py"
+    script = SCRIPTS / "compute_fig08.py"
     code = (
         "import sys, bouncing_ball.paper.exhibits.continuation_of_orbits\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"

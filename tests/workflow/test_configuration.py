@@ -41,7 +41,7 @@ def test_results_are_a_folder_or_a_link_to_one(fresh, tmp_path):
     results.symlink_to(tmp_path / "elsewhere")
     assert fresh.refusal("fig03") == refused
     (tmp_path / "elsewhere").mkdir()
-    assert {"restitution_model_study", "draw_fig03"} <= fresh.planned("fig03")
+    assert {"compute_fig03", "draw_fig03"} <= fresh.planned("fig03")
     # The link is no change of the tree, which the provenance would call dirty.
     assert fresh.git("status", "--porcelain") == ""
     results.unlink()

@@ -91,16 +91,16 @@ def test_a_study_that_fails_is_listed_and_all_else_is_made_and_compared(recorded
     recorded.rewrite(other, '("frequency_ratio", curve),', '("frequency_ratio", 1.001 * curve),')
     # What fails and what waits for it has its line, each once, and the rest is made.
     done = recorded.run("--cores", "1", check=False)
-    reason = "restitution_model_study/fig02: no orbit"
+    reason = "compute_fig02: no orbit"
     *_, failed, waiting = done.stderr.splitlines()
-    assert done.returncode == 1 and failed == f"not made: fig02, fig03 ({reason})"
+    assert done.returncode == 1 and failed == f"not made: fig02 ({reason})"
     # Before them, where its log is, which alone has the sources.
-    log = "results/logs/restitution_model.log"
+    log = "results/logs/compute_fig02.log"
     said = done.stdout + done.stderr
     assert f"{reason} (details in {log})" in said and "src/bouncing_ball" not in said
     assert "src/bouncing_ball" in (recorded.path / log).read_text(encoding="utf-8")
     # Snakemake gives them in an order of its own.
-    waiting = waiting.removeprefix("not made: ").removesuffix(" (needs restitution_model_study)")
+    waiting = waiting.removeprefix("not made: ").removesuffix(" (needs compute_fig02)")
     assert {"witness", "claims", "paper"} <= {*waiting.split(", ")}
     assert "made results/figures/fig11.nc" in done.stdout and not page.exists()
 
@@ -108,7 +108,7 @@ def test_a_study_that_fails_is_listed_and_all_else_is_made_and_compared(recorded
     lines = done.stdout.splitlines()
     assert done.returncode == 1 and "results/diff/index.html" in done.stderr.splitlines()[-1]
     assert f"fig02: not made, {reason}" in lines
-    assert "paper: not made, needs restitution_model_study" in lines
+    assert "paper: not made, needs compute_fig02" in lines
     # The file of code that changed is named.
     (line,) = (line for line in lines if line.startswith("fig11: "))
     assert line.startswith(f"fig11: changed code, {other}; +0.1 % in ")

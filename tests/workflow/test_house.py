@@ -23,10 +23,10 @@ rule history:
     input:
         code=code("history.py"),
     output:
-        fig02="results/figures/fig02.nc",
+        "results/figures/fig02.nc",
     params:
-        artifacts=about("fig02"),
-        fig02=config["paper"]["fig02"],
+        artifact=about("fig02"),
+        parameters=config["paper"]["fig02"],
     log:
         "results/logs/history.log",
     script:
@@ -57,10 +57,10 @@ include: "../workflow/rules/record.smk"
 """
 SCRIPT = """\
 from bouncing_ball.paper.exhibits.restitution_model import restitution_history
-from bouncing_ball.pipeline.job import logged, make_datasets
+from bouncing_ball.pipeline.job import logged, make_dataset
 
 with logged(snakemake):
-    make_datasets(snakemake, fig02=restitution_history)
+    make_dataset(snakemake, restitution_history)
 """
 
 

@@ -36,33 +36,33 @@ def heights(data: xr.Dataset) -> Figure:
 '''
 
 
-RULE = """rule lowest_study:
+RULE = """rule compute_threshold:
     message:
         "Computing threshold"
     input:
-        code=code("lowest.py"),
+        code=code("compute_threshold.py"),
         data=["results/figures/fig11.nc"],
     output:
-        threshold="results/figures/threshold.nc",
+        "results/figures/threshold.nc",
     params:
-        artifacts=about("threshold"),
-        threshold=config["paper"]["threshold"],
+        artifact=about("threshold"),
+        parameters=config["paper"]["threshold"],
     log:
-        "results/logs/lowest.log",
+        "results/logs/compute_threshold.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/lowest.py"
+        "../scripts/compute_threshold.py"
 
 
 """
 SCRIPT = '''"""A number from the curve of another stage."""
 
 from bouncing_ball.paper.exhibits.lowest import lowest
-from bouncing_ball.pipeline.job import logged, make_datasets
+from bouncing_ball.pipeline.job import logged, make_dataset
 
 with logged(snakemake):
-    make_datasets(snakemake, threshold=lowest)
+    make_dataset(snakemake, lowest)
 '''
 STUDY = '''"""A number from the curve of another stage."""
 
@@ -95,6 +95,12 @@ def copy_of(text, first, last):
     return part.replace("fig10", "heights").replace("Figure 10", "The greatest height")
 
 
+def copied(tree, script, new):
+    """A script of another name with the content of one that there is."""
+    text = (tree.path / script).read_text(encoding="utf-8")
+    (tree.path / new).write_text(text, encoding="utf-8")
+
+
 def test_a_figure_needs_the_files_of_its_recipe_only(fresh):
     artifacts = f"{PAPER}/artifacts.py"
     drawn = "apparent_restitution_figures:heights"
@@ -104,38 +110,32 @@ def test_a_figure_needs_the_files_of_its_recipe_only(fresh):
     fresh.rewrite(types, "    fig10: Sweep\n", "    fig10: Sweep\n    heights: Sweep\n")
     assert fresh.refusal().startswith("configuration: missing key paper.heights: ")
     fresh.rewrite(CONFIG, "paper:\n", PARAMETERS)
-    datasets = f"{RULES}/datasets.smk"
-    for old in (
-        '        fig10="results/figures/fig10.nc",\n',
-        '        fig10=config["paper"]["fig10"],\n',
-    ):
-        fresh.rewrite(datasets, old, old + old.replace("fig10", "heights"))
-    fresh.rewrite(datasets, 'about("fig10"', 'about("heights", "fig10"')
-    study = f"{SCRIPTS}/frequency_sweeps.py"
-    fresh.rewrite(study, "fig10=frequency_sweep", "fig10=frequency_sweep, heights=frequency_sweep")
+    compute = f"{SCRIPTS}/compute_heights.py"
+    copied(fresh, f"{SCRIPTS}/compute_fig10.py", compute)
+    datasets = fresh.path / RULES / "datasets.smk"
+    text = datasets.read_text(encoding="utf-8")
+    rule = copy_of(text, "rule compute_fig10:", "rule compute_fig11:")
+    datasets.write_text(f"{text}\n\n{rule.strip()}\n", encoding="utf-8")
     with (fresh.path / FIGURES).open("a", encoding="utf-8") as module:
         module.write(DRAWING)
     pictures = fresh.path / RULES / "figures.smk"
     text = pictures.read_text(encoding="utf-8")
     rules = copy_of(text, "rule draw_fig10:", "rule draw_fig11:")
     pictures.write_text(f"{text}\n\n{rules.strip()}\n", encoding="utf-8")
-    script = (fresh.path / SCRIPTS / "draw_fig10.py").read_text(encoding="utf-8")
     draw = f"{SCRIPTS}/draw_heights.py"
-    (fresh.path / draw).write_text(script.replace("bounce_velocity", "heights"), encoding="utf-8")
+    copied(fresh, f"{SCRIPTS}/draw_fig10.py", draw)
+    text = (fresh.path / draw).read_text(encoding="utf-8")
+    (fresh.path / draw).write_text(text.replace("bounce_velocity", "heights"), encoding="utf-8")
     caption = "workflow/report/heights.rst"
     (fresh.path / caption).write_text("The greatest height.", encoding="utf-8")
     targets = f"{RULES}/targets.smk"
     line = "        rules.fig10.input,\n"
     fresh.rewrite(targets, line, line + line.replace("fig10", "heights"))
-    named = {artifacts, types, CONFIG, datasets, study, FIGURES, f"{RULES}/figures.smk", targets}
-    assert changed(fresh) == named | {draw, caption}
+    rules = {f"{RULES}/{each}.smk" for each in ("datasets", "figures", "targets")}
+    assert changed(fresh) == rules | {artifacts, types, CONFIG, FIGURES, compute, draw, caption}
     fresh.run("--cores", "1", "heights")
     made = {path.name: path for path in fresh.path.glob("results/figures/*.*")}
-    assert made.keys() == {
-        *(f"heights.{kind}" for kind in ("nc", "png", "svg")),
-        # Computed by the same job.
-        *("fig10.nc", "fig13.nc"),
-    }
+    assert made.keys() == {f"heights.{kind}" for kind in ("nc", "png", "svg")}
     # The tree has changes that its commit has not.
     assert {read_provenance(path)["dirty"] for path in made.values()} == {"yes"}
     # It is part of a whole run.
@@ -154,10 +154,10 @@ def test_a_study_on_the_dataset_of_another_needs_the_files_of_its_recipe_only(fr
         types, "    formulas: Formulas\n", "    formulas: Formulas\n    threshold: Lowest\n"
     )
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    script = f"{SCRIPTS}/lowest.py"
+    script = f"{SCRIPTS}/compute_threshold.py"
     (fresh.path / script).write_text(SCRIPT, encoding="utf-8")
     datasets = f"{RULES}/datasets.smk"
-    first = "rule permanent_contact_study:"
+    first = "rule compute_fig11:"
     fresh.rewrite(datasets, first, RULE + first)
     fresh.rewrite(CONFIG, "paper:\n", "paper:\n  threshold: { n: 110 }\n")
     assert changed(fresh) == {artifacts, types, STAGE, script, datasets, CONFIG}

@@ -25,31 +25,30 @@ def test_a_commit_and_remarks_run_nothing_again(complete):
 
 # What is made from all that is shown.
 ALWAYS = {
-    *("witness_study", "set_witness"),
-    *("claims_study", "set_claims", "paper"),
+    *("compute_witness", "set_witness"),
+    *("compute_claims", "set_claims", "paper"),
 }
 
 
 def test_a_parameter_a_formula_a_drawing_and_a_lost_file_run_again_what_they_decide(complete):
     complete.configure("paper", "fig12", "amplitude", value=1.1)
-    # The second figure of the same job is made with it.
-    expected = {"time_histories_study", "draw_fig07", "draw_fig12"}
+    expected = {"compute_fig12", "draw_fig12"}
     assert complete.planned() == expected | ALWAYS
     complete.edit("paper/exhibits/restitution_model_figures.py")
     expected |= {"draw_fig02", "draw_fig03"}
     complete.edit("paper/claims/forensics.py")
-    expected |= {"forensics_study", "set_forensics"}
+    expected |= {"compute_forensics", "set_forensics"}
     assert complete.planned() == expected | ALWAYS
     printed = "src/bouncing_ball/paper/exhibits/printed_table1.py"
     complete.rewrite(printed, '"1.032"', '"1.033"')
     # The script of each imports the module of Table 1.
-    expected |= {"orbit_branches_study", "draw_fig08", "draw_fig09"}
-    expected |= {"both_domains_study", "draw_fig15", "stability_ranges_study", "set_table1"}
+    expected |= {"compute_fig08", "draw_fig08", "compute_fig09", "draw_fig09"}
+    expected |= {"compute_fig15", "draw_fig15", "compute_table1", "set_table1"}
     # The printed ratio of Fig. 16 is in the module of the printed entries.
     expected |= {"draw_fig11", "draw_fig16"}
     assert complete.planned() == expected | ALWAYS
     (complete.path / "results/figures/formulas.nc").unlink()
-    expected |= {"formulas_study", "set_formulas"}
+    expected |= {"compute_formulas", "set_formulas"}
     # A picture alone is drawn alone.
     (complete.path / "results/figures/fig13.png").unlink()
     expected |= {"draw_fig13"}
@@ -61,7 +60,7 @@ def test_no_file_time_hides_a_change_of_the_code(complete):
     formula = "np.asarray(n) * np.pi * (1 - r) / (1 + r)"
     complete.rewrite(equation_7, f"return {formula}", f"return 1.001 * {formula}")
     os.utime(complete.path / equation_7, (0, 0))
-    again = {"restitution_model_study", "draw_fig02", "fig02"}
+    again = {"compute_fig02", "draw_fig02", "fig02"}
     complete.run("--cores", "1", "--touch", "fig02")
     # The other triggers would only add to this.
     assert complete.planned("fig02", "--rerun-triggers", "mtime") == again
@@ -81,4 +80,4 @@ def test_another_version_of_a_library_makes_everything_again(complete):
     about = complete.path / "src" / "numpy-1.0.dist-info" / "METADATA"
     about.parent.mkdir()
     about.write_text("Metadata-Version: 2.1\nName: numpy\nVersion: 1.0\n", encoding="utf-8")
-    assert complete.planned("fig02") == {"restitution_model_study", "draw_fig02", "fig02"}
+    assert complete.planned("fig02") == {"compute_fig02", "draw_fig02", "fig02"}

@@ -62,15 +62,13 @@ def check(model):
         sys.exit(error)
 
 
-# What a dataset says of itself, for each artifact of a stage.
-def about(*names):
+# What the dataset of an artifact says of itself.
+def about(name):
+    artifact = ARTIFACTS[name]
     return {
-        name: {
-            "title": ARTIFACTS[name].title,
-            "drawing": ARTIFACTS[name].drawing,
-            "budgets": BUDGETS.get(name, {}),
-        }
-        for name in names
+        "title": artifact.title,
+        "drawing": artifact.drawing,
+        "budgets": BUDGETS.get(name, {}),
     }
 
 

@@ -1,305 +1,412 @@
-# The datasets of the paper. A job computes one, or two where the second costs less than another
-# process, with the studies that its script imports; the rules that draw and list them are in
-# figures.smk and tables.smk. All values are dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g,
+# The datasets of the paper. Each is computed by the study that its script imports; the rules
+# that draw and list them are in figures.smk and tables.smk. All values are dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g,
 # with phases in radians.
 
 
-rule restitution_model_study:
-    """The restitution model: one orbit over time, and all orbits in closed form."""
+rule compute_fig02:
+    """One orbit of the restitution model over time."""
     message:
-        "Computing fig02 and fig03"
+        "Computing fig02"
     input:
-        code=code("restitution_model.py"),
+        code=code("compute_fig02.py"),
     output:
-        fig02="results/figures/fig02.nc",
-        fig03="results/figures/fig03.nc",
+        "results/figures/fig02.nc",
     params:
-        artifacts=about("fig02", "fig03"),
-        fig02=config["paper"]["fig02"],
-        fig03=config["paper"]["fig03"],
+        artifact=about("fig02"),
+        parameters=config["paper"]["fig02"],
     log:
-        "results/logs/restitution_model.log",
+        "results/logs/compute_fig02.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/restitution_model.py"
+        "../scripts/compute_fig02.py"
 
 
-rule apparent_restitution_study:
-    """Apparent restitution along the frequency ratio."""
+rule compute_fig03:
+    """All orbits of the restitution model, in closed form."""
     message:
-        "Computing fig05 and fig06"
+        "Computing fig03"
     input:
-        code=code("apparent_restitution.py"),
+        code=code("compute_fig03.py"),
     output:
-        fig05="results/figures/fig05.nc",
-        fig06="results/figures/fig06.nc",
+        "results/figures/fig03.nc",
     params:
-        artifacts=about("fig05", "fig06"),
-        fig05=config["paper"]["fig05"],
-        fig06=config["paper"]["fig06"],
+        artifact=about("fig03"),
+        parameters=config["paper"]["fig03"],
+    log:
+        "results/logs/compute_fig03.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig03.py"
+
+
+rule compute_fig05:
+    """Apparent restitution along the frequency ratio, by restitution and amplitude."""
+    message:
+        "Computing fig05"
+    input:
+        code=code("compute_fig05.py"),
+    output:
+        "results/figures/fig05.nc",
+    params:
+        artifact=about("fig05"),
+        parameters=config["paper"]["fig05"],
         release=config["release"],
     log:
-        "results/logs/apparent_restitution.log",
+        "results/logs/compute_fig05.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/apparent_restitution.py"
+        "../scripts/compute_fig05.py"
 
 
-rule frequency_sweeps_study:
-    """Bouncing-off velocity and Poincaré map along the frequency ratio."""
+rule compute_fig06:
+    """Apparent restitution along the frequency ratio, by amplitude."""
     message:
-        "Computing fig10 and fig13"
+        "Computing fig06"
     input:
-        code=code("frequency_sweeps.py"),
+        code=code("compute_fig06.py"),
     output:
-        fig10="results/figures/fig10.nc",
-        fig13="results/figures/fig13.nc",
+        "results/figures/fig06.nc",
     params:
-        artifacts=about("fig10", "fig13"),
-        fig10=config["paper"]["fig10"],
-        fig13=config["paper"]["fig13"],
+        artifact=about("fig06"),
+        parameters=config["paper"]["fig06"],
         release=config["release"],
     log:
-        "results/logs/frequency_sweeps.log",
+        "results/logs/compute_fig06.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/frequency_sweeps.py"
+        "../scripts/compute_fig06.py"
 
 
-rule time_histories_study:
-    """Time histories of orbits of the spring-damper model."""
+rule compute_fig10:
+    """Bouncing-off velocity along the frequency ratio."""
     message:
-        "Computing fig07 and fig12"
+        "Computing fig10"
     input:
-        code=code("time_histories.py"),
+        code=code("compute_fig10.py"),
     output:
-        fig07="results/figures/fig07.nc",
-        fig12="results/figures/fig12.nc",
+        "results/figures/fig10.nc",
     params:
-        artifacts=about("fig07", "fig12"),
-        fig07=config["paper"]["fig07"],
-        fig12=config["paper"]["fig12"],
+        artifact=about("fig10"),
+        parameters=config["paper"]["fig10"],
         release=config["release"],
     log:
-        "results/logs/time_histories.log",
+        "results/logs/compute_fig10.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/time_histories.py"
+        "../scripts/compute_fig10.py"
 
 
-rule orbit_branches_study:
-    """Existence and stability of n-T orbits of the spring-damper model, by continuation."""
+rule compute_fig13:
+    """The Poincaré map of both models along the frequency ratio."""
     message:
-        "Computing fig08 and fig09"
+        "Computing fig13"
     input:
-        code=code("orbit_branches.py"),
+        code=code("compute_fig13.py"),
     output:
-        fig08="results/figures/fig08.nc",
-        fig09="results/figures/fig09.nc",
+        "results/figures/fig13.nc",
     params:
-        artifacts=about("fig08", "fig09"),
-        fig08=config["paper"]["fig08"],
-        fig09=config["paper"]["fig09"],
+        artifact=about("fig13"),
+        parameters=config["paper"]["fig13"],
+        release=config["release"],
+    log:
+        "results/logs/compute_fig13.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig13.py"
+
+
+rule compute_fig07:
+    """One cycle of the spring-damper model."""
+    message:
+        "Computing fig07"
+    input:
+        code=code("compute_fig07.py"),
+    output:
+        "results/figures/fig07.nc",
+    params:
+        artifact=about("fig07"),
+        parameters=config["paper"]["fig07"],
+        release=config["release"],
+    log:
+        "results/logs/compute_fig07.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig07.py"
+
+
+rule compute_fig12:
+    """Time histories of both models."""
+    message:
+        "Computing fig12"
+    input:
+        code=code("compute_fig12.py"),
+    output:
+        "results/figures/fig12.nc",
+    params:
+        artifact=about("fig12"),
+        parameters=config["paper"]["fig12"],
+        release=config["release"],
+    log:
+        "results/logs/compute_fig12.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig12.py"
+
+
+rule compute_fig08:
+    """n-T orbits of the spring-damper model of the first family, by continuation."""
+    message:
+        "Computing fig08"
+    input:
+        code=code("compute_fig08.py"),
+    output:
+        "results/figures/fig08.nc",
+    params:
+        artifact=about("fig08"),
+        parameters=config["paper"]["fig08"],
         release=config["release"],
         continuation=config["continuation"],
     log:
-        "results/logs/orbit_branches.log",
+        "results/logs/compute_fig08.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/orbit_branches.py"
+        "../scripts/compute_fig08.py"
 
 
-rule both_domains_study:
+rule compute_fig09:
+    """n-T orbits of the spring-damper model of the second family, by continuation."""
+    message:
+        "Computing fig09"
+    input:
+        code=code("compute_fig09.py"),
+    output:
+        "results/figures/fig09.nc",
+    params:
+        artifact=about("fig09"),
+        parameters=config["paper"]["fig09"],
+        release=config["release"],
+        continuation=config["continuation"],
+    log:
+        "results/logs/compute_fig09.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig09.py"
+
+
+rule compute_fig15:
     """Existence and stability of n-T orbits of both models, by continuation."""
     message:
         "Computing fig15"
     input:
-        code=code("both_domains.py"),
+        code=code("compute_fig15.py"),
     output:
-        fig15="results/figures/fig15.nc",
+        "results/figures/fig15.nc",
     params:
-        artifacts=about("fig15"),
-        fig15=config["paper"]["fig15"],
+        artifact=about("fig15"),
+        parameters=config["paper"]["fig15"],
         release=config["release"],
         continuation=config["continuation"],
     log:
-        "results/logs/both_domains.log",
+        "results/logs/compute_fig15.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/both_domains.py"
+        "../scripts/compute_fig15.py"
 
 
-rule stability_ranges_study:
+rule compute_table1:
     """The ranges of Table 1, by continuation."""
     message:
         "Computing table1"
     input:
-        code=code("stability_ranges.py"),
+        code=code("compute_table1.py"),
     output:
-        table1="results/figures/table1.nc",
+        "results/figures/table1.nc",
     params:
-        artifacts=about("table1"),
-        table1=config["paper"]["table1"],
+        artifact=about("table1"),
+        parameters=config["paper"]["table1"],
         release=config["release"],
         continuation=config["continuation"],
     log:
-        "results/logs/stability_ranges.log",
+        "results/logs/compute_table1.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/stability_ranges.py"
+        "../scripts/compute_table1.py"
 
 
-rule permanent_contact_study:
-    """Permanent contact: the amplitude from which on the table throws the ball off."""
+rule compute_fig11:
+    """The threshold of permanent contact along the frequency ratio."""
     message:
-        "Computing fig11 and fig16"
+        "Computing fig11"
     input:
-        code=code("permanent_contact.py"),
+        code=code("compute_fig11.py"),
     output:
-        fig11="results/figures/fig11.nc",
-        fig16="results/figures/fig16.nc",
+        "results/figures/fig11.nc",
     params:
-        artifacts=about("fig11", "fig16"),
-        fig11=config["paper"]["fig11"],
-        fig16=config["paper"]["fig16"],
+        artifact=about("fig11"),
+        parameters=config["paper"]["fig11"],
         release=config["release"],
     log:
-        "results/logs/permanent_contact.log",
+        "results/logs/compute_fig11.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/permanent_contact.py"
+        "../scripts/compute_fig11.py"
 
 
-rule height_error_study:
+rule compute_fig16:
+    """The threshold of permanent contact of both models, and its error."""
+    message:
+        "Computing fig16"
+    input:
+        code=code("compute_fig16.py"),
+    output:
+        "results/figures/fig16.nc",
+    params:
+        artifact=about("fig16"),
+        parameters=config["paper"]["fig16"],
+        release=config["release"],
+    log:
+        "results/logs/compute_fig16.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig16.py"
+
+
+rule compute_fig14:
     """The frequency ratio from which on the restitution model has the right greatest height."""
     message:
         "Computing fig14"
     input:
-        code=code("height_error.py"),
+        code=code("compute_fig14.py"),
     output:
-        fig14="results/figures/fig14.nc",
+        "results/figures/fig14.nc",
     params:
-        artifacts=about("fig14"),
-        fig14=config["paper"]["fig14"],
+        artifact=about("fig14"),
+        parameters=config["paper"]["fig14"],
         release=config["release"],
     log:
-        "results/logs/height_error.log",
+        "results/logs/compute_fig14.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/height_error.py"
+        "../scripts/compute_fig14.py"
 
 
-rule error_thresholds_study:
+rule compute_thresholds:
     """Error thresholds: the frequency ratio from which on the restitution model is accurate."""
     message:
         "Computing thresholds"
     input:
-        code=code("error_thresholds.py"),
+        code=code("compute_thresholds.py"),
     output:
-        thresholds="results/figures/thresholds.nc",
+        "results/figures/thresholds.nc",
     params:
-        artifacts=about("thresholds"),
-        thresholds=config["paper"]["thresholds"],
+        artifact=about("thresholds"),
+        parameters=config["paper"]["thresholds"],
         release=config["release"],
     log:
-        "results/logs/error_thresholds.log",
+        "results/logs/compute_thresholds.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/error_thresholds.py"
+        "../scripts/compute_thresholds.py"
 
 
-rule lowest_period_doubling_study:
+rule compute_lowest_doubling:
     """The frequency ratio at which the period doubling of each family is lowest."""
     message:
         "Computing lowest_doubling"
     input:
-        code=code("lowest_period_doubling.py"),
+        code=code("compute_lowest_doubling.py"),
     output:
-        lowest_doubling="results/figures/lowest_doubling.nc",
+        "results/figures/lowest_doubling.nc",
     params:
-        artifacts=about("lowest_doubling"),
-        lowest_doubling=config["paper"]["lowest_doubling"],
+        artifact=about("lowest_doubling"),
+        parameters=config["paper"]["lowest_doubling"],
         release=config["release"],
     log:
-        "results/logs/lowest_period_doubling.log",
+        "results/logs/compute_lowest_doubling.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/lowest_period_doubling.py"
+        "../scripts/compute_lowest_doubling.py"
 
 
-rule kinds_of_motion_study:
+rule compute_three_balls:
     """A periodic, a subharmonic and a chaotic motion of the restitution model."""
     message:
         "Computing three_balls"
     input:
-        code=code("kinds_of_motion.py"),
+        code=code("compute_three_balls.py"),
     output:
-        three_balls="results/figures/three_balls.nc",
+        "results/figures/three_balls.nc",
     params:
-        artifacts=about("three_balls"),
-        three_balls=config["paper"]["three_balls"],
+        artifact=about("three_balls"),
+        parameters=config["paper"]["three_balls"],
     log:
-        "results/logs/kinds_of_motion.log",
+        "results/logs/compute_three_balls.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/kinds_of_motion.py"
+        "../scripts/compute_three_balls.py"
 
 
-rule formulas_study:
+rule compute_formulas:
     """The printed formulas against a second computation."""
     message:
         "Computing formulas"
     input:
-        code=code("formulas.py"),
+        code=code("compute_formulas.py"),
     output:
-        formulas="results/figures/formulas.nc",
+        "results/figures/formulas.nc",
     params:
-        artifacts=about("formulas"),
-        formulas=config["paper"]["formulas"],
+        artifact=about("formulas"),
+        parameters=config["paper"]["formulas"],
     log:
-        "results/logs/formulas.log",
+        "results/logs/compute_formulas.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/formulas.py"
+        "../scripts/compute_formulas.py"
 
 
-rule forensics_study:
+rule compute_forensics:
     """Table 1 under readings of what the authors may have done."""
     message:
         "Computing forensics"
     input:
-        code=code("forensics.py"),
+        code=code("compute_forensics.py"),
     output:
-        forensics="results/figures/forensics.nc",
+        "results/figures/forensics.nc",
     params:
-        artifacts=about("forensics"),
+        artifact=about("forensics"),
     log:
-        "results/logs/forensics.log",
+        "results/logs/compute_forensics.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/forensics.py"
+        "../scripts/compute_forensics.py"
 
 
-rule witness_study:
+rule compute_witness:
     """Every orbit shown by three routes: continuation, formula and simulation."""
     message:
         "Computing witness"
     input:
-        code=code("witness.py"),
+        code=code("compute_witness.py"),
         data=[
             "results/figures/fig02.nc",
             "results/figures/fig03.nc",
@@ -316,23 +423,23 @@ rule witness_study:
             "results/figures/table1.nc",
         ],
     output:
-        witness="results/figures/witness.nc",
+        "results/figures/witness.nc",
     params:
-        artifacts=about("witness"),
+        artifact=about("witness"),
     log:
-        "results/logs/witness.log",
+        "results/logs/compute_witness.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/witness.py"
+        "../scripts/compute_witness.py"
 
 
-rule claims_study:
+rule compute_claims:
     """The verdicts on the paper's claims."""
     message:
         "Computing claims"
     input:
-        code=code("claims.py"),
+        code=code("compute_claims.py"),
         data=[
             "results/figures/fig03.nc",
             "results/figures/fig05.nc",
@@ -354,12 +461,12 @@ rule claims_study:
             "results/figures/witness.nc",
         ],
     output:
-        claims="results/figures/claims.nc",
+        "results/figures/claims.nc",
     params:
-        artifacts=about("claims"),
+        artifact=about("claims"),
     log:
-        "results/logs/claims.log",
+        "results/logs/compute_claims.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/claims.py"
+        "../scripts/compute_claims.py"

@@ -62,29 +62,15 @@ rule error_thresholds:
         rules.thresholds.input,
 
 
-rule lowest_period_doubling:
-    """The lowest period doublings, a dataset."""
-    localrule: True
-    input:
-        rules.lowest_period_doubling_study.output,
-
-
 rule lowest_doubling:
     """The lowest period doublings, a dataset."""
     localrule: True
     input:
-        rules.lowest_period_doubling_study.output,
-
-
-rule kinds_of_motion:
-    """A periodic, a subharmonic and a chaotic motion, a dataset."""
-    localrule: True
-    input:
-        rules.kinds_of_motion_study.output,
+        rules.compute_lowest_doubling.output,
 
 
 rule three_balls:
     """A periodic, a subharmonic and a chaotic motion, a dataset."""
     localrule: True
     input:
-        rules.kinds_of_motion_study.output,
+        rules.compute_three_balls.output,

@@ -1,8 +1,7 @@
 """The readings of Table 1."""
 
 from bouncing_ball.paper.claims.claim_tables import forensics
-from bouncing_ball.pipeline.figures_and_tables import write_table
-from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.job import logged, write_table
 
 with logged(snakemake):
     write_table(snakemake, forensics)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from declared_artifacts import given_to
 
 from bouncing_ball.datasets.variables import budgeted
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
@@ -48,7 +49,7 @@ def test_a_study_gives_the_accepted_dataset(recorded, name):
     study = STUDIES[name]
     record = recorded[name]
     found = budgeted(
-        typed(study)(**arguments(study, name, {**RUN, **RUN["beyond"]})), BUDGETS.get(name, {})
+        typed(study)(**arguments(study, given_to(name, RUN, "beyond"))), BUDGETS.get(name, {})
     )
     again = found.assign_attrs(record.attrs)
     rows = compare_datasets(record, again)

@@ -1,7 +1,7 @@
 """The figure ext_map."""
 
-from bouncing_ball.pipeline.figures_and_tables import draw
 from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.pictures import draw
 from bouncing_ball_beyond.exhibits.stiffness_map_figures import stiffness_map
 
 with logged(snakemake):

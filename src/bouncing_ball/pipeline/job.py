@@ -1,9 +1,9 @@
 """A job of the workflow: its log, an error of one line, its datasets and their provenance.
 
-Every script of the workflow runs in :func:`logged`. A script of studies calls
-:func:`make_datasets`, which runs them and writes their datasets; the scripts of pictures and tables
-call a function of :mod:`.figures_and_tables`. ``snakemake`` is the object that Snakemake provides
-for its scripts.
+Every script of the workflow runs in :func:`logged`. The script of a dataset calls
+:func:`make_dataset` with its study, that of a table :func:`write_table` with its columns, and that
+of a picture :func:`.pictures.draw` with its drawing. ``snakemake`` is the object that Snakemake
+provides for its scripts.
 
 The signature of a study declares what it takes, for example ``study(parameters, release,
 continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
@@ -31,6 +31,7 @@ from bouncing_ball.datasets.files import (
     write_text,
 )
 from bouncing_ball.datasets.variables import budgeted
+from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.provenance import PREFIX, gather
 from bouncing_ball.pipeline.run import CONCLUSION
@@ -54,9 +55,8 @@ def conclude(sentence: str) -> None:
 def logged(snakemake: Any) -> Iterator[list[str]]:
     """Collect lines for the log of the job; on failure print one line about the failure.
 
-    The line begins with the name of the rule, and with the notes of the error, such as the artifact
-    that was made. The traceback is then in the log, whose last line is the same, and the process
-    exits with status 1.
+    The line begins with the name of the rule. The traceback is then in the log, whose last line is
+    the same, and the process exits with status 1.
     """
     # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
     # closing the file would then wait forever. Because files are written completely or not at all,
@@ -71,9 +71,8 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
         if snakemake.output:
             print("made", *snakemake.output, flush=True)
     except Exception as error:
-        name = "/".join([snakemake.rule, *getattr(error, "__notes__", [])])
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        message = f"{name}: {kind}{' '.join(str(error).split())}"
+        message = f"{snakemake.rule}: {kind}{' '.join(str(error).split())}"
         # For example, writing the log fails if the disk is full.
         with suppress(OSError):
             write_text(log, f"{traceback.format_exc()}{message}\n")
@@ -141,20 +140,18 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
     return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
 
 
-def arguments(study: Callable[..., Any], artifact: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of a study for an artifact, in the form that the configuration has.
-
-    ``given`` has the parameters of each artifact and the settings of the run, by their names.
+def arguments(study: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the given arguments that a study takes: its parameters, and settings of the run.
 
     Examples
     --------
     >>> def study(parameters, release):
     ...     pass
-    >>> arguments(study, "fig05", {"release": "force", "fig05": {"n": 1}, "fig06": {"n": 2}})
+    >>> arguments(study, {"parameters": {"n": 1}, "release": "force", "continuation": {}})
     {'parameters': {'n': 1}, 'release': 'force'}
     """
-    names = [name for name in inspect.signature(study).parameters if name != "data"]
-    return {name: given[artifact if name == "parameters" else name] for name in names}
+    names = inspect.signature(study).parameters
+    return {name: given[name] for name in names if name != "data"}
 
 
 def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
@@ -169,39 +166,29 @@ def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
     return parameter_attributes({**arguments.get("parameters", {}), **others})
 
 
-def make_datasets(snakemake: Any, **studies: Callable[..., xr.Dataset]) -> None:
-    """Run the studies of the job, each named by its artifact, and write their datasets.
+def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> None:
+    """Run the study of the job, and write its dataset.
 
-    The parameters of the job have the parameters of each artifact, and the settings of the run that
-    its studies take, in the form that the configuration has. The variables get the budgets of the
-    artifact. The provenance becomes global attributes, and so do the parameters and the settings,
-    unless the study itself sets attributes.
-    """
-    data = {Path(path).stem: read_input(path) for path in snakemake.input.get("data", [])}
-    for name, study in studies.items():
-        try:
-            given = arguments(study, name, snakemake.params)
-            dataset = typed(study)(**given, **({"data": data} if data else {}))
-            publish(snakemake, name, dataset, dataset.attrs or recorded(given))
-        except Exception as error:
-            error.add_note(name)
-            raise
-
-
-def publish(snakemake: Any, name: str, dataset: xr.Dataset, parameters: Mapping[str, Any]) -> None:
-    """Write the dataset of an artifact, with its title, parameters and provenance as attributes.
+    The parameters of the job have those of the artifact and the settings of the run that the study
+    takes, in the form that the configuration has. The variables get the budgets of the artifact.
+    Its title and the provenance become global attributes, and so do the parameters and the
+    settings, unless the study itself sets attributes.
 
     Raises
     ------
     ModelError
         If a variable has no unit.
     """
+    given = arguments(study, snakemake.params)
+    data = {Path(path).stem: read_input(path) for path in snakemake.input.get("data", [])}
+    dataset = typed(study)(**given, **({"data": data} if data else {}))
     for variable in dataset.variables:
         if "units" not in dataset[variable].attrs:
             raise ModelError(f"{variable} has no unit: the study ends with described(...)")
-    about = snakemake.params.artifacts[name]
+    about = snakemake.params.artifact
+    path = snakemake.output[0]
+    parameters = dataset.attrs or recorded(given)
     dataset = budgeted(dataset, about["budgets"])
-    path = snakemake.output[name]
     dataset.attrs = {
         "Conventions": CONVENTIONS,
         "title": about["title"],
@@ -212,3 +199,10 @@ def publish(snakemake: Any, name: str, dataset: xr.Dataset, parameters: Mapping[
         **provenance(snakemake, path),
     }
     write_dataset(dataset, path)
+
+
+def write_table(snakemake: Any, table: Callable[[xr.Dataset], Any]) -> None:
+    """Write the table of the job, as CSV and in Markdown, with columns from its dataset."""
+    columns = table(read_input(snakemake.input.data))
+    write_text(snakemake.output.csv, to_csv(*columns))
+    write_text(snakemake.output.md, to_markdown(*columns))

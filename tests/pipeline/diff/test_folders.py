@@ -336,7 +336,7 @@ def test_what_is_made_from_a_changed_artifact_names_it(pair):
 @pytest.mark.parametrize(
     ("file", "rule", "job"),
     [
-        ("figures/fig05.nc", "apparent_restitution_study", "apparent_restitution"),
+        ("figures/fig05.nc", "compute_fig05", "compute_fig05"),
         (PNG, "draw_fig05", "draw_fig05"),
         ("figures/fig05.svg", "draw_fig05", "draw_fig05"),
     ],

@@ -115,7 +115,7 @@ class _Comparison:
         if data is Outcome.PARAMETERS and "/" in file:
             rows = [replace(row, outcome=Outcome.PARAMETERS) for row in rows]
         # A run notes the code with which it would make a file now.
-        note = self.folders[1] / "code" / made[1].get("rule", "").removesuffix("_study")
+        note = self.folders[1] / "code" / made[1].get("rule", "")
         code = made[1].get("code")
         if code and note.is_file() and code != parts_of_note(note.read_text(errors="replace"))[0]:
             told = "made by older code than that of the working tree"

@@ -13,6 +13,7 @@ import scipy
 
 from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.laws.march import march
 from bouncing_ball_beyond.models.laws.panel import Start
@@ -67,7 +68,9 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
     """
     length, rate = (float(x[0]) for x in scales(law, np.array([speed]), np.ones(1)))
     unit = length / rate
-    loaded = under(law, 1.0)
+    # Of some laws the damping depends on the speed with which the contact starts.
+    started = law.started(speed)
+    loaded = under(started, 1.0)
 
     def fall(_: float, state: np.ndarray) -> list[float]:
         p, v = state * [length, rate]
@@ -90,13 +93,13 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
         p, v = run.sol(times) * np.array([[length], [rate]])
         return p, v, np.ones_like(times)
 
-    deepest, heaviest = greatest_loads(law, contact_motion, times)
+    deepest, heaviest = greatest_loads(started, contact_motion, times)
     turned = run.t_events[0].size > 0
     return deepest if turned else max(rest(law), deepest), max(heaviest, 1.0)
 
 
 def greatest_loads(
-    law: ContactLaw,
+    law: ForceLaw,
     motion: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]],
     times: np.ndarray,
 ) -> tuple[float, float]:
@@ -104,7 +107,8 @@ def greatest_loads(
 
     Parameters
     ----------
-    law : ContactLaw
+    law : ForceLaw
+        That of a contact with this start (:meth:`~.ForceLaw.started`).
     motion : callable
         Penetration p, its rate p′ and the load a at times, which is 1 on a table at rest.
     times : ndarray

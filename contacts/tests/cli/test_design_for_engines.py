@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import pytest
 from asked_contacts import answered
@@ -124,9 +125,12 @@ def test_mistakes_are_one_line(refused, arguments, says):
     assert status == 2 and says in line
 
 
-def test_the_stiffest_contact_of_parameters_says_how_deep_the_ball_rests(said, ask):
+def test_parameters_at_a_step_say_what_suits_it(said, ask):
     given = ("design", "--from", "pybullet", "--mass", "1", "--set", "contactStiffness=1e5",
              "--set", "contactDamping=100")  # fmt: skip
     text = said(*given, "--time-step", "1 ms")
-    stiffest = ask(*given, "--time-step", "1 ms")["at_step"]["stiffest"]
-    assert f"in which the ball rests {9.80665e3 / stiffest:.4g} mm deep." in text
+    (suited,) = re.findall(r"What suits this step: (.*)\.", text)
+    found = ask("design", *suited.split())["engine"]
+    drop = ask(*given, "--time-step", "1 ms")["dropped_at_step"]
+    assert found["drop"]["error"] < drop["error"]
+    assert f"lies {9.80665e3 / 5e4:.4g} mm deep at rest" in text.replace("196.1 µm", "0.1961 mm")

@@ -145,7 +145,7 @@ BALL TABLE --tolerance "1 %%"
 --mass "20 g" --radius "5 mm" --reduced-modulus "1 GPa" --restitution 0.8 TABLE --engine mujoco
     a Hertz contact is not written for mujoco: give --stiffness
 --mass "20 g" --from pybullet --set restitution=0.9
-    restitution of pybullet has no stiffness: if ball and table have it, r = 0.81 at any time step
+    restitution of pybullet has no stiffness: if ball and table have it, r = 0.81 with small steps
 --mass "20 g" --from lammps --set kn=1e5 --set gamma_n=1 --set time_step=1e-3
     lammps has no 'time_step': its parameters are kn and gamma_n, and the step of any engine is
 CROSSLEY --set time_step=1e-3

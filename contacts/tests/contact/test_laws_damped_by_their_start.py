@@ -49,9 +49,7 @@ def greatest(law, mass, speed, load, longest):
 
 @pytest.mark.parametrize(("law", "mass", "time", "r", "speed"), DROPS)
 def test_a_drop_sinks_in_by_the_damped_law(law, mass, time, r, speed):
-    found = answered(
-        mass=mass, law=law, contact_time=time, restitution=r, speed=speed, radius=5e-3
-    )
+    found = answered(mass=mass, law=law, contact_time=time, restitution=r, speed=speed, radius=5e-3)
     depth, force = greatest(found.found.law, mass, speed, lambda t: G, 1.0)
     assert found.dropped.greatest_compression == pytest.approx(depth, rel=1e-6)
     assert found.dropped.peak_force == pytest.approx(force, rel=1e-6)

@@ -74,7 +74,7 @@ COARSE = {"mass": 0.5, "stiffness": 1e5, "restitution": 0.75, "time_step": "4 ms
 
 def test_pybullets_restitution_is_said_where_a_step_is_too_long(said, refused):
     found = answered(**COARSE, engine="pybullet").engine
-    assert "Without a spring, restitution=0.866025 of ball and table alike" in found.instant
+    assert found.instant.startswith("restitution=0.866025 of ball and table alike")
     text = said("design", "--engine=pybullet", "--mass=0.5", "--stiffness=1e5",
                 "--restitution=0.75", "--time-step=4 ms")  # fmt: skip
     assert found.instant in text

@@ -31,10 +31,8 @@ from bouncing_ball_contacts.contact.write import (
     at_given_step,
     at_own_step,
     describe_for,
-    dropped_at_step,
-    looser,
+    drop_of_parameters,
     settings_for,
-    softer_contact,
 )
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 
@@ -116,19 +114,17 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         found = describe_contact(contact, si.get("gravity"), speed)
     else:
         found = describe_for(contact, setup, si.get("gravity"), speed)
-    engine = None if setup is None else settings_for(found, setup)
+    engine = None if setup is None else settings_for(found, setup, speed)
     if engine is not None and isinstance(found, Assessment):
         found = replace(found, time_step=_step_of(engine))
     error = si.get("restitution_error", ERROR)
-    if error != ERROR and setup is None and contact.from_engine is None:
+    if "restitution_error" in si and setup is None and contact.from_engine is None:
         raise ParameterError(
             "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
             "as generic"
         )
-    softer = None
     if engine is not None:
-        at_step = engine.at_step
-        softer = softer_contact(found.case, engine, question, speed)
+        at_step = engine.asked or engine.at_step
     elif "time_step" in si:
         at_step = at_given_step(contact, si["time_step"], error, _impact_speed(found, speed))
     else:
@@ -140,9 +136,11 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         engine=engine,
         at_step=at_step,
         question=read,
-        dropped_at_step=dropped_at_step(found.case, engine, speed),
-        softer=softer,
-        looser=looser(found.case, at_step),
+        dropped_at_step=(
+            None
+            if engine is not None
+            else drop_of_parameters(contact, at_step, found.case.table.gravity, speed)
+        ),
         doubts=doubts(given, KINDS),
     )
 
@@ -207,7 +205,7 @@ def design_document(given: DesignAnswer) -> dict[str, Any]:
     """The answer as plain values for JSON, with the options."""
     found = rows.document(given.found)
     # What was not asked for has no key.
-    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer", "looser"):
+    for name in ("dropped", "engine", "at_step", "dropped_at_step"):
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)

@@ -171,17 +171,23 @@ def design_lines(given: DesignAnswer) -> list[str]:
 
 
 def _description(given: DesignAnswer, found: Description) -> list[str]:
-    """The contact without a table."""
-    return [
-        _echo(given.question),
-        *(f"Note: {doubt}." for doubt in given.doubts),
+    """The contact without a table; for an engine what is pasted first."""
+    numbers = [
         *(line(*row) for row in contact_numbers(given)),
         line("release", found.release),
         *law_lines(found),
-        *(f"Note: {note}." for note in found.notes),
-        *_drop_remarks(given),
-        *_of_parameters(given.at_step),
+    ]
+    doubts = [f"Note: {doubt}." for doubt in given.doubts]
+    notes = [*(f"Note: {note}." for note in found.notes), *_drop_remarks(given)]
+    if given.engine is None:
+        stepped = [*_of_parameters(given.at_step), *engine_lines(given)]
+        return [_echo(given.question), *doubts, *numbers, *notes, *stepped]
+    return [
         *engine_lines(given),
+        *doubts,
+        *notes,
+        _echo(given.question),
+        *(["", "Without time steps:", *numbers] if given.whole else []),
     ]
 
 

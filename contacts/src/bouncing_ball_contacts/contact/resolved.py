@@ -174,7 +174,15 @@ class ResolvedContact:
 
     @property
     def static_deflection(self) -> float:
-        """mg/k in m; for a contact law the deflection at which its force at rest is the weight."""
+        """mg/k in m; for a contact law the deflection at which its force at rest is the weight.
+
+        The k of an engine's parameters is the one that they have at rest, whatever contact they are
+        at a time step.
+        """
+        engine = self.given.engine
+        if self.is_linear and engine is not None and self.written is None:
+            parameters = self.given.engine_parameters
+            return self.mass * self.table.gravity / engine.stiffness_at_rest(parameters, self.mass)
         if self.is_linear:
             return self.table.gravity / self.omega**2
         return rest(self.law) * self.table.length

@@ -31,6 +31,7 @@ class _HertzWall(Proportional):
 
     releases = (Release.DISPLACEMENT,)
     scheme = Scheme.SEMI_IMPLICIT
+    half_steps = True
 
     def __init__(self, law_in_si: Mapping[str, Any]):
         self._radius = law_in_si["radius"]

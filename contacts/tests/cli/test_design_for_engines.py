@@ -70,8 +70,8 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     # The default impedance is told what it costs.
     text = said(*FROM, "--mass", "500 g")
     assert "0.95 a contact feels 0.05 of the load" in text
-    # σ_d = σ + 2ζ d r/ω.
-    assert "under a load a this r is r + σ a/v with σ = " in text
+    # The load σ belongs to the corrected model.
+    assert "σ" not in text
     assert "at the surface the spring is 0.9 and the damper 0.95" in text
     solref = ("--from", "mujoco", "--solref", "0.02 0.3", "--solimp", "1e-4 1e-4")
     command = (*BALL, *solref)
@@ -82,10 +82,7 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     assert default["damping_ratio"] == pytest.approx(1)
     assert default["measured_restitution"] == pytest.approx(math.exp(-2))
     assert "0.95 a contact feels 0.05 of the load" in default["notes"][0]
-    # With D = κ = 2/ω, σ = (1 - 3r) 2/ω, and d κ r more with the impedance d.
-    load = 0.04 * (1 - 3 * math.exp(-2))
-    shown = f"σ = {load + 0.95 * 0.04 * math.exp(-2):.4g} s, and {load:.4g} s for a spring"
-    assert shown in default["notes"][1] and "0.1353 where it is much deeper" in default["notes"][3]
+    assert "0.1353 where it is much deeper" in default["notes"][2]
 
 
 def test_with_a_table_it_is_a_design(ask):

@@ -219,7 +219,7 @@ def compare(found, dropped, ball):
     ended, time, _, rate, *_ = ball.contact(speed, gravity=0.0)
     assert ended and found.measured_restitution == pytest.approx(-rate / speed, rel=1e-7)
     assert found.contact_time == pytest.approx(time, rel=1e-6)
-    if found.slowed_speed is not None:
+    if found.slowed_speed:
         slow = found.slowed_speed
         free = -ball.contact(slow, gravity=0.0)[3] / slow
         # The speed is found to 1e-10, and the ratio changes by 1 % over a speed of this size.

@@ -21,6 +21,7 @@ from bouncing_ball_contacts.contact.assess import Assessment, LargestTimeStep, a
 from bouncing_ball_contacts.contact.choose import choose
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import Description, describe_contact
+from bouncing_ball_contacts.contact.diagnose import diagnosis
 from bouncing_ball_contacts.contact.drops import drop_at_rest
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
@@ -141,6 +142,7 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
             if engine is not None
             else drop_of_parameters(contact, at_step, found.case.table.gravity, speed)
         ),
+        diagnosis=diagnosis(contact, None if engine is not None else at_step),
         doubts=doubts(given, KINDS),
     )
 
@@ -209,6 +211,7 @@ def design_document(given: DesignAnswer) -> dict[str, Any]:
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)
-    if given.doubts:
-        found["doubts"] = list(given.doubts)
+    for name in ("doubts", "diagnosis"):
+        if sentences := getattr(given, name):
+            found[name] = list(sentences)
     return found | {"question": given.question}

@@ -28,7 +28,8 @@ class DesignAnswer(NamedTuple):
 
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
     ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them.
-    ``dropped_at_step`` is a drop onto the parameters of an engine at a time step. ``doubts`` are
+    ``dropped_at_step`` is a drop onto the parameters of an engine at a time step, and ``diagnosis``
+    says what keeps them from a bounce. ``doubts`` are
     sentences on numbers that may have been meant in another unit. ``whole`` tells whether all
     numbers are printed, those of the contact in an engine and those of each family.
     """
@@ -40,4 +41,5 @@ class DesignAnswer(NamedTuple):
     question: dict[str, Any]
     whole: bool = True
     dropped_at_step: DropInSteps | None = None
+    diagnosis: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()

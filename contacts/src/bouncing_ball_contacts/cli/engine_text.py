@@ -41,9 +41,11 @@ def engine_lines(given: DesignAnswer) -> list[str]:
     at = given.at_step
     engine = given.engine
     if engine is None:
+        why = [f"Note: {text}." for text in given.diagnosis]
         if at is None:
-            return []
-        return [*_step_lines(at), *drop_lines(given.dropped_at_step), *_alternatives(given, at)]
+            return why
+        alternatives = [] if why else _alternatives(given, at)
+        return [*_step_lines(at), *drop_lines(given.dropped_at_step), *why, *alternatives]
     expected = [
         ("orbit, greatest height", engine.max_height, "m"),
         ("orbit, duration of contact", engine.contact_duration, "s"),

@@ -154,10 +154,12 @@ def _restitution(law: ContactLaw, speed: float) -> float:
 # An answer asks for it of the same contact several times.
 @lru_cache(maxsize=64)
 def slowed(law: ContactLaw, fast: float) -> float | None:
-    """The speed at which gravity lowers r by one part in a hundred; None if it does at no speed.
+    """The speed at which gravity lowers r by one part in a hundred: 0 if it does at no speed, and
+    None if it lowers r by more at every speed.
 
-    ``fast`` is a speed at which gravity is not felt. r is that of a free impact of the same speed.
-    Faster impacts have this r more closely, slower ones are below it, unless nothing is lost.
+    ``fast`` is a speed at which gravity is not felt, unless the loss grows with the speed. r is
+    that of a free impact of the same speed. Faster impacts have this r more closely, slower ones
+    are below it, unless nothing is lost.
 
     Examples
     --------
@@ -182,7 +184,7 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     # A loss that grows with the speed stops fast balls.
     tried = (math.log(fast) - math.log(10) * np.arange(_DECADES)).tolist()
     if restitution(tried[0]) > 1 - _ROUNDING:
-        return None
+        return 0.0
     upper = next((x for x in tried if restitution(x) > 0 and surplus(x) >= 0), None)
     if upper is None:
         return None
@@ -191,4 +193,4 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
         if surplus(lower) < 0:
             return math.exp(scipy.optimize.brentq(surplus, lower, upper, xtol=1e-10))
         upper = lower
-    return None
+    return 0.0

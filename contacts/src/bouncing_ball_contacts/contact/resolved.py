@@ -189,13 +189,11 @@ class ResolvedContact:
 
     @property
     def slowed_speed(self) -> float | None:
-        """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact; None
-        without damping, for ζ ≥ 1, and for a contact law in which it does at no speed.
+        """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact: 0 if
+        it does at no speed, as without damping, and None if it lowers r by more at every speed.
         """
         if self.is_linear:
             zeta = float(self.equivalent.damping_ratio)
-            if not 0 < zeta < 1:
-                return None
             # In units of 1/ω and g/ω² the contact has ϖ = 1.
             found = slowed(SpringDamper(1.0, zeta, self.equivalent.release), _FAST)
             unit = self.table.gravity / self.omega

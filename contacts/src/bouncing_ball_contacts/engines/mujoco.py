@@ -217,14 +217,11 @@ class MuJoCo(Engine):
         law = self.law(parameters)
         if law is None:
             return ()
-        # The impedance is constant at depths greater than the width; d = 0 is a spring and damper.
-        deep = Impedance(law.frequency_ratio, law.damping_ratio, law.share).signature(1.0)
+        # Deep in, where the impedance is constant, a free impact is that of a spring and damper.
         spring = Impedance(law.frequency_ratio, law.damping_ratio, 0.0).signature(1.0)
-        found = (
+        found: tuple[str, ...] = (
             f"with the impedance {law.share:g} a contact feels {1 - law.share:.2g} of the load "
             '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
-            f"under a load a this r is r + σ a/v with σ = {deep.load:.4g} s, and "
-            f"{spring.load:.4g} s for a spring and a damper",
         )
         if law.has_kink:
             share = law.at_surface / law.share

@@ -335,7 +335,8 @@ def test_mujoco_does_with_a_solref_what_the_answer_says(solref, time_step):
     contact = ENGINES["mujoco"].read({"solref": safe}, 1.0)
     text = (
         f'<option timestep="{found.time_step!r}"/>'
-        f'<default><geom condim="1" solref="{solref}" solimp="1e-4 1e-4 0.001"/></default>'
+        '<default><default class="bounce">'
+        f'<geom condim="1" solref="{solref}" solimp="1e-4 1e-4 0.001"/></default></default>'
     )
     lasts = contact.contact_time(Release.FORCE)
     measured = in_engine("mujoco", text, found.time_step, 1.0, lasts)

@@ -268,3 +268,48 @@ def test_no_contact_within_an_error_that_is_given_is_refused(refusal):
             Contact(mass=0.5, restitution=0.75),
             EngineSetup(engine="drake", time_step=1.0, restitution_error=1e-5),
         )
+
+
+def of_mujoco(classes=('class="bounce"', 'class="bounce"'), condim=None, cone="pyramidal"):
+    """The recipe around a ball that is free, and r and the velocity of an oblique impact."""
+    import mujoco
+
+    settings = write_contact(
+        Contact(mass=0.5, restitution=0.75, stiffness=1e4), EngineSetup(engine="mujoco")
+    )
+    text = settings.snippet
+    if condim is not None:
+        text = text.replace('condim="3"', f'condim="{condim}"')
+    plane, sphere = classes
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+{text}
+<option gravity="0 0 0" cone="{cone}"/>
+<worldbody>
+  <geom {plane} type="plane" size="5 5 1"/>
+  <body pos="0 0 0.1001"><freejoint/><geom {sphere} type="sphere" size="0.1" mass="0.5"/></body>
+  <body pos="2 0 0.1"><freejoint/><geom name="other" type="sphere" size="0.1" mass="0.5"/></body>
+</worldbody>
+</mujoco>""")
+    data = mujoco.MjData(model)
+    data.qvel[0] = 1.0
+    data.qvel[2] = -1.0
+    for _ in range(4 * settings.steps):
+        mujoco.mj_step(model, data)
+    other = model.geom("other")
+    return data.qvel[2], data.qvel[0], other, settings
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
+def test_mujocos_recipe_keeps_friction_and_leaves_other_geoms_alone():
+    only_if_installed("mujoco")
+    r, along, other, settings = of_mujoco()
+    # Friction takes some of the sideways speed, and adds up to 2e-3 to r.
+    assert r == pytest.approx(0.75, abs=4e-3) and along < 0.9
+    # MuJoCo's defaults.
+    assert other.condim == 3 and other.solref == pytest.approx([0.02, 1.0])
+    # With a condim of 4 or 6 the pyramid is another contact, and the elliptic cone is not.
+    for condim, least in ((4, 0.03), (6, 0.09)):
+        assert of_mujoco(condim=condim)[0] < 0.75 - least
+        assert of_mujoco(condim=condim, cone="elliptic")[0] == pytest.approx(0.75, abs=4e-3)
+    assert 'cone="elliptic"' in settings.snippet

@@ -11,8 +11,9 @@ class NumbersOfContact:
 
     The r of a free impact holds at speeds above ``slowed_speed``: there, on a table at rest,
     gravity lowers √(h′/h) by 1 %, and at slower impacts by more. It is 0 if gravity does so at no
-    speed, as without damping, and None if it lowers it by more at every speed. ``law`` has the ``name`` of a contact law and its parameters, whose
-    units are powers of kg, m and s; it is None for a spring and a damper.
+    speed, as without damping, and None if it lowers it by more at every speed. ``law`` has the
+    ``name`` of a contact law and its parameters, whose units are powers of kg, m and s; it is None
+    for a spring and a damper.
     """
 
     case: ResolvedContact

@@ -106,6 +106,14 @@ def test_intervals_show_the_biases_that_were_removed(outcome, heard):
     assert "drag of the air" not in outcome("fit", "croquet")[1]
 
 
+@pytest.mark.parametrize("last", [0.207, 0.311, 0.407])
+def test_the_drag_is_removed_by_mass_and_diameter_and_not_by_rounding(outcome, tmp_path, last):
+    path = tmp_path / "heard.csv"
+    path.write_text(f"0.7031\n0.5917\n0.4981\n{last}\n")
+    text = outcome("fit", str(path), "--intervals")[1]
+    assert "drag of the air was not removed" in text and "e-1" not in text
+
+
 @pytest.mark.parametrize(
     ("arguments", "part"),
     [

@@ -4,6 +4,7 @@ from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.options import option
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
+from bouncing_ball_contacts.contact.drops import Dropped
 from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps, Range
@@ -55,6 +56,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
         f"For {engine.name}, at a time step of {shown(engine.time_step, 's')}:",
         *_pasted(engine),
         *drop_lines(engine.drop, engine.wanted),
+        *([] if engine.drop is not None else _without_steps(given.dropped)),
         *_errors(engine),
         *_gravity(engine),
         *_changed(engine),
@@ -87,6 +89,18 @@ def drop_lines(drop: DropInSteps | None, asked: float | None = None) -> list[str
         f"Dropped from {shown(drop.height, 'm', digits=3)} {rises}{ideal}.",
         f"It sinks in {_ends(drop.compression, 'm')}, under {_ends(drop.peak_force, 'N')}, and "
         f"lies {lies} deep at rest.",
+    ]
+
+
+def _without_steps(drop: Dropped | None) -> list[str]:
+    """A drop onto a contact of which steps are not known, or too many."""
+    if drop is None:
+        return []
+    return [
+        f"With small steps, dropped from {shown(drop.drop_height, 'm', digits=3)} it rises "
+        f"{shown(drop.rebound_height, 'm', digits=3)}, sinks in "
+        f"{shown(drop.greatest_compression, 'm', digits=3)}, under "
+        f"{shown(drop.peak_force, 'N', digits=3)}."
     ]
 
 

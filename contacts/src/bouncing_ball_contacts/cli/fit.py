@@ -167,7 +167,7 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
 
 def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     notes = []
-    if found.drag_bias:
+    if found.is_without_drag:
         notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
     elif found.is_of_flights:
         notes += ["The drag of the air was not removed: give the mass and the diameter."]

@@ -18,8 +18,9 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.assess import Assessment, assess
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import LONGEST, Description, description_of
+from bouncing_ball_contacts.contact.hertz import MATERIALS
 from bouncing_ball_contacts.contact.loss import loss, of_loss
-from bouncing_ball_contacts.contact.quantities import check_kinds
+from bouncing_ball_contacts.contact.quantities import check_kinds, given
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.rebounds import rises
 from bouncing_ball_contacts.contact.resolve import resolve
@@ -221,9 +222,9 @@ def _dropped(
     gravity = case.table.gravity
     at = asked.at_step
     r = asked.restitution if at is None else at.restitution
-    given = case.given
-    if given.rebound_height is not None:
-        r = math.sqrt(given.rebound_height / given.drop_height)
+    measured = case.given
+    if measured.rebound_height is not None:
+        r = math.sqrt(measured.rebound_height / measured.drop_height)
     tried = [("", engine, asked)]
     if at is not None and not at.is_within and case.given.is_stiff:
         release = Release(asked.release)
@@ -291,7 +292,10 @@ def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> 
     if law is None:
         return engine
     at = case.law_speed if speed is None else speed
-    return engine.with_law({**law, "radius": case.given.radius, "speed": at})
+    data = given(case.given)
+    materials = tuple(data[name] for name in MATERIALS) if MATERIALS[0] in data else None
+    known = {"radius": case.given.radius, "speed": at, "materials": materials}
+    return engine.with_law({**law, **known})
 
 
 def at_given_step(

@@ -96,6 +96,8 @@ class Experiment:
     drag_bias : float
         The largest change of a restitution coefficient by the removal of the drag; 0 if it was not
         removed.
+    is_without_drag : bool
+        Whether it was removed, for which the mass and the diameter are known.
     is_of_flights : bool
         Whether the speeds follow from heights or times of flights, on which the drag acts.
     heard : Heard or None
@@ -113,6 +115,7 @@ class Experiment:
     mass: float | None = None
     diameter: float | None = None
     drag_bias: float = 0.0
+    is_without_drag: bool = False
     is_of_flights: bool = False
     heard: Heard | None = field(default=None, repr=False)
 
@@ -390,6 +393,7 @@ def _experiment(
         restitutions = found.restitutions
         errors = found.covariance
         bias = float(np.max(np.abs(found.drag_bias)))
+    is_without_drag = math.isfinite(length) and "speed" not in columns
     is_of_heights = errors is None and "speed" not in columns
     return Experiment(
         name=name,
@@ -404,7 +408,8 @@ def _experiment(
         ),
         mass=mass,
         diameter=diameter,
-        drag_bias=bias,
+        drag_bias=bias if is_without_drag else 0.0,
+        is_without_drag=is_without_drag,
         is_of_flights="speed" not in columns,
         heard=found,
     )

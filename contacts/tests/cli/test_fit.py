@@ -128,3 +128,11 @@ def test_a_mistake_gets_one_line(outcome, arguments, part):
     status, out, err = outcome("fit", *arguments)
     assert (status, out) == (2, "")
     assert part in err and err.count("\n") == 1
+
+
+def test_the_order_of_the_laws_is_said_where_the_first_has_not_the_smallest_error(outcome):
+    for name, is_said in (("membrane_heavy", True), ("croquet", False)):
+        answer = json.loads(outcome("fit", name, "--json")[1])
+        least = min(answer["laws"], key=lambda law: law["rms"])["law"]
+        said = any(f"; {least} has the smallest rms." in note for note in answer["notes"])
+        assert said is is_said is (answer["laws"][0]["law"] != least)

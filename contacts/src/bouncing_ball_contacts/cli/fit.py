@@ -103,7 +103,12 @@ def fit(
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
-        "notes": [*fitted.notes, *_notes(found, fitted, v), *_doubts(options | {"speed": speed})],
+        "notes": [
+            *_order(fitted),
+            *fitted.notes,
+            *_notes(found, fitted, v),
+            *_doubts(options | {"speed": speed}),
+        ],
         "design": _design(best, v),
         "design_of_law": _design_of_law(best, v),
     }
@@ -150,7 +155,7 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
         "verdict": str(judgement.verdict),
         "errors_needed": _number(judgement.needed),
         "restitution": fitted.restitution,
-        "restitution_interval": [_number(x) for x in fitted.interval],
+        "restitution_interval": [_number(x) for x in judgement.interval],
         "rms": fitted.rms,
         "left_out_rms": _number(fitted.left_out),
         "extrapolation_rms": _number(judgement.extrapolation),
@@ -177,6 +182,16 @@ def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     if fitted.best.has_stiffness and fitted.best.mass is None:
         notes += ["Without the mass, stiffness and damping are per kilogram."]
     return notes
+
+
+def _order(fitted: ContactFit) -> list[str]:
+    """What the order of the laws means, if the first has not the smallest error."""
+    first = fitted.laws[0]
+    least = min(fitted.laws, key=lambda each: each.rms)
+    if not first.rms > least.rms:
+        return []
+    by = "Akaike's criterion, in which the error of each point counts by its uncertainty"
+    return [f"The laws are in the order of {by}; {least.law} has the smallest rms."]
 
 
 def _doubts(options: dict[str, str | None]) -> list[str]:

@@ -206,6 +206,32 @@ def _of_parameters(at: AtStep | None) -> list[str]:
 
 def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
     """The contact on a table, with the verdict first."""
+    judged = [
+        found.headline,
+        found.verdict,
+        f"Reason: {found.reason}.",
+    ]
+    about = [
+        _echo(given.question),
+        found.ends.sentence,
+        *(f"Note: {doubt}." for doubt in given.doubts),
+        *(f"Note: {note}." for note in found.notes),
+        *_drop_remarks(given),
+        *_at_small_steps(given.at_step),
+    ]
+    if given.engine is None:
+        return [*judged, *about, *engine_lines(given), "", *_numbers(given, found)]
+    return [
+        *engine_lines(given),
+        "",
+        *judged,
+        *about,
+        *(["", *_numbers(given, found)] if given.whole else []),
+    ]
+
+
+def _numbers(given: DesignAnswer, found: Assessment) -> list[str]:
+    """The numbers of the contact, the ϖ that the tolerance needs, and the families."""
     need = found.needed
     always = ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
@@ -219,17 +245,6 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
     by_law = _ratio(need.by_law, need.status)
     by_engine = given.engine is not None
     return [
-        found.headline,
-        found.verdict,
-        f"Reason: {found.reason}.",
-        _echo(given.question),
-        found.ends.sentence,
-        *(f"Note: {doubt}." for doubt in given.doubts),
-        *(f"Note: {note}." for note in found.notes),
-        *_drop_remarks(given),
-        *_at_small_steps(given.at_step),
-        *engine_lines(given),
-        "",
         *(line(*row) for row in contact_numbers(given) if not by_engine or row[0] != _STEP),
         *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
         *law_lines(found),

@@ -54,7 +54,10 @@ __all__ = list(_MODULES)
 def __getattr__(name: str) -> Any:
     """A public name, imported on first use."""
     if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from bouncing_ball.errors import did_you_mean
+
+        meant = did_you_mean(name, _MODULES)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{meant}")
     return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
 
 

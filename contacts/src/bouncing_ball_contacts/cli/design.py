@@ -35,6 +35,7 @@ from bouncing_ball_contacts.contact.write import (
     drop_of_parameters,
     settings_for,
 )
+from bouncing_ball_contacts.engines.drop_scripts import drop_script
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 
 # Parameters of which each implies that there is a table.
@@ -57,6 +58,7 @@ _OPTIONS = (
 def add_options(parser: Parser) -> None:
     """Add the options of :func:`design`."""
     add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
+    add_file(parser, "script", "File for a script in Python that drops the ball in the engine.")
     each = "By default each family has one line, unless n is given."
     parser.add_argument(
         option("all_families"),
@@ -68,7 +70,9 @@ def add_options(parser: Parser) -> None:
         add_optional(parser, kind, names)
 
 
-def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnswer:
+def design(
+    *, plot: Path | None, script: Path | None, all_families: bool, **given: Any
+) -> DesignAnswer:
     """The answer about a contact; with ``plot`` the page to print is written as well.
 
     Raises
@@ -80,14 +84,16 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnsw
         If no model has the orbit.
     """
     require_writable(plot, PICTURES)
-    found = answer_design(given)
+    found = answer_design(given, script)
     if plot is not None:
         _draw(found, plot)
     return found._replace(whole=all_families or given.get("n") is not None)
 
 
-def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
+def answer_design(given: Mapping[str, Any], script: Path | None = None) -> DesignAnswer:
     """The answer for options by name; an option that is missing or None is not given.
+
+    With ``script`` a file is written that drops the ball in the engine.
 
     Raises
     ------
@@ -116,6 +122,12 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
     else:
         found = describe_for(contact, setup, si.get("gravity"), speed)
     engine = None if setup is None else settings_for(found, setup, speed)
+    if script is not None:
+        if engine is None:
+            raise ParameterError("{script} needs {engine}, such as mujoco")
+        require_writable(script, (".py",))
+        text = drop_script(engine, contact.radius, found.case.table.gravity)
+        script.write_text(text, encoding="utf-8")
     if engine is not None and isinstance(found, Assessment):
         found = replace(found, time_step=_step_of(engine))
     error = si.get("restitution_error", ERROR)

@@ -7,6 +7,9 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.cli.design import answer_design, design_document
+from bouncing_ball_contacts.cli.design_answer import DesignAnswer
+from bouncing_ball_contacts.cli.design_text import design_lines
 from bouncing_ball_contacts.contact.quantities import Speed, quantities
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.units import doubts, in_si
@@ -43,6 +46,10 @@ def fit(
     resolution: str | None = None,
     speed: str | None = None,
     frequency: str | None = None,
+    leave_out: str | None = None,
+    engine: str | None = None,
+    time_step: str | None = None,
+    script: Path | None = None,
 ) -> dict[str, Any]:
     """The laws fitted to a file, ranked, with verdicts, as values for JSON.
 
@@ -66,6 +73,14 @@ def fit(
         Impact speed of the contact for "design"; by default the middle of the measured speeds.
     frequency
         Frequency of a table, in place of the speed: that of its 1-T orbit.
+    leave_out
+        Line of the file that is left out, or several, such as 4,7.
+    engine
+        Physics engine for which the contact is written; the answer then begins with the recipe.
+    time_step
+        The engine's time step, if it is given; without a contact time the contact suits it.
+    script
+        File for a script in Python that drops the ball in the engine.
 
     Raises
     ------
@@ -81,7 +96,7 @@ def fit(
         "contact_time_uncertainty": contact_time_uncertainty,
         "resolution": resolution,
     }
-    found = _experiment(file, intervals=intervals, **options)
+    found = _experiment(file, intervals=intervals, leave_out=_lines(leave_out), **options)
     fitted = found.fit()
     judged = judge(fitted)
     best = fitted.best
@@ -92,7 +107,14 @@ def fit(
         v = in_si("speed", speed, quantities(_At)["speed"])
     else:
         v = best.speed
+    recipe = None
+    if engine is not None:
+        recipe = _recipe(best, v, engine, time_step, script)
+    elif time_step is not None or script is not None:
+        name = "time_step" if script is None else "script"
+        raise ParameterError(f"{{{name}}} needs {{engine}}, such as mujoco")
     return {
+        "recipe": recipe,
         "experiment": found.title,
         "points": fitted.points.size,
         "slowest": float(fitted.points.speeds.min()),
@@ -114,7 +136,30 @@ def fit(
     }
 
 
-def _experiment(file: str, *, intervals: bool, **options: str | None) -> Experiment:
+def _recipe(
+    best: LawFit, speed: float, engine: str, time_step: str | None, script: Path | None
+) -> DesignAnswer:
+    """The contact of the law at an impact speed, as it is written for an engine."""
+    if best.mass is None:
+        raise ParameterError("{engine} needs {mass}, such as 20 g")
+    contact = {
+        "mass": best.mass,
+        "contact_time": float(best.duration_at(speed)) if best.has_stiffness else None,
+        "measured_restitution": float(best.restitution_at(speed)),
+    }
+    setup = {"speed": speed, "engine": engine, "time_step": time_step}
+    return answer_design(contact | setup, script)
+
+
+def _lines(text: str | None) -> list[int]:
+    """The numbers of lines."""
+    parts = [] if text is None else text.replace(",", " ").split()
+    if not all(part.isdecimal() for part in parts):
+        raise ParameterError("{leave_out} = {} is not a list of lines, such as 4,7", text)
+    return [int(part) for part in parts]
+
+
+def _experiment(file: str, *, intervals: bool, **options: Any) -> Experiment:
     known = file in experiment_names() and not Path(file).exists()
     if known and not intervals and not any(options.values()):
         return experiment(file)
@@ -172,6 +217,9 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
 
 def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     notes = []
+    if found.left_out:
+        lines = ", ".join(map(str, found.left_out))
+        notes += [f"Left out: line {lines} of the file, and the impacts beside it."]
     if found.is_without_drag:
         notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
     elif found.is_of_flights:
@@ -220,9 +268,18 @@ def _design_of_law(best: LawFit, speed: float) -> str | None:
     return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
+def fit_document(answer: dict[str, Any]) -> dict[str, Any]:
+    """The answer as plain values for JSON."""
+    recipe = answer["recipe"]
+    rest = {name: value for name, value in answer.items() if name != "recipe"}
+    return rest if recipe is None else rest | {"recipe": design_document(recipe)}
+
+
 def fit_lines(answer: dict[str, Any]) -> list[str]:
     """The answer as text: the impacts that were heard, the laws, notes and the next command."""
+    recipe = answer["recipe"]
     found = [
+        *([] if recipe is None else [*design_lines(recipe), ""]),
         f"{answer['experiment']}: {_speeds(answer)} m/s",
         *_errors(answer),
         "",

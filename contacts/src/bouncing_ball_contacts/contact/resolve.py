@@ -85,7 +85,8 @@ def resolve(
     if speed is not None and not table.is_at_rest:
         speed = None
     if not is_stiff:
-        raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
+        instead = "" if written is None else f", or the {{time_step}} of {written}"
+        raise ParameterError(f"no stiffness: give {{stiffness}}, or {{contact_time}}{instead}")
     if kind is None and modulus is None:
         found = _spring_damper(plain, table)
     else:

@@ -7,6 +7,7 @@ samples: 257 instants in a step, over which a depth or a force changes by less t
 """
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -313,3 +314,43 @@ def test_mujocos_recipe_keeps_friction_and_leaves_other_geoms_alone():
         assert of_mujoco(condim=condim)[0] < 0.75 - least
         assert of_mujoco(condim=condim, cone="elliptic")[0] == pytest.approx(0.75, abs=4e-3)
     assert 'cone="elliptic"' in settings.snippet
+
+
+SOLREFS = [
+    ("0.02 0.3", "0.9 0.95 0.001", 2e-3, 0.5),
+    ("0.02 0.1", "0.5 0.9 0.01", 2e-3, 0.3),
+    ("-2e4 -20", "0.95 0.95", 1e-3, 1.0),
+    ("0.003 0.2", "0.9 0.95 0.001", 2e-3, 1.0),
+    ("-5000 -40", "0.2 0.6 0.05", 1e-3, 0.2),
+]
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize(("solref", "solimp", "step", "height"), SOLREFS)
+def test_parameters_with_an_impedance_do_in_a_drop_what_mujoco_does(solref, solimp, step, height):
+    only_if_installed("mujoco")
+    answer = answered(mass=0.5, from_engine="mujoco", solref=solref, solimp=solimp,
+                      time_step=step, speed=math.sqrt(2 * G * height))  # fmt: skip
+    drop = answer.dropped_at_step
+    text = (
+        f'<option timestep="{step!r}"/><default><default class="bounce">'
+        f'<geom condim="1" solref="{solref}" solimp="{solimp}"/></default></default>'
+    )
+    settings = SimpleNamespace(snippet=text, time_step=step, steps=answer.at_step.steps)
+    for start in of_instants(settings, height):
+        count = int(2.4 * math.sqrt(2 * height / G) / step + 5 * settings.steps) + 20
+        heights, _ = RUN["mujoco"](Trial(settings, 0.5, float(start), 0.0, count, gravity=G))
+        places = np.concatenate([[start, start], heights])
+        forces = 0.5 * (np.diff(places, 2) / step**2 + G)
+        forces[0] = 0.0
+        rise, depth, force = first_bounce(heights, forces, height, step)
+        contains(drop.rise, [rise * height / start], 2 * SAMPLE + 2e-3)
+        contains(drop.compression, [depth], SAMPLE + 1e-3)
+        contains(drop.peak_force, [force], 2 * SAMPLE + 2e-3)
+    if not answer.at_step.is_stable:
+        assert drop.depth_at_rest is None
+        return
+    long = int(100 * settings.steps) + 2000
+    heights, _ = RUN["mujoco"](Trial(settings, 0.5, 0.0, 0.0, long, gravity=G))
+    assert -heights[-1] == pytest.approx(drop.depth_at_rest, rel=2e-3)

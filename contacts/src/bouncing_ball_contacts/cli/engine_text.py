@@ -84,11 +84,12 @@ def drop_lines(drop: DropInSteps | None, asked: float | None = None) -> list[str
     ideal = ""
     if asked is not None:
         ideal = f"; {shown(asked**2 * drop.height, 'm', digits=3)} is r = {asked:.4g}"
-    lies = shown(drop.depth_at_rest, "m")
+    lies = ", and does not come to rest"
+    if drop.depth_at_rest is not None:
+        lies = f", and lies {shown(drop.depth_at_rest, 'm')} deep at rest"
     return [
         f"Dropped from {shown(drop.height, 'm', digits=3)} {rises}{ideal}.",
-        f"It sinks in {_ends(drop.compression, 'm')}, under {_ends(drop.peak_force, 'N')}, and "
-        f"lies {lies} deep at rest.",
+        f"It sinks in {_ends(drop.compression, 'm')}, under {_ends(drop.peak_force, 'N')}{lies}.",
     ]
 
 

@@ -345,16 +345,14 @@ def at_own_step(contact: Contact, error: float, speed: float | None = None) -> A
 def drop_of_parameters(
     contact: Contact, at: AtStep | None, gravity: float, speed: float | None
 ) -> DropInSteps | None:
-    """A drop onto a contact by parameters of an engine, at the step of ``at``; None without a step,
-    or where the steps of its law are not known.
+    """A drop onto a contact by parameters of an engine, at the step of ``at``; None without a
+    step.
     """
     engine = contact.engine
     if at is None or engine is None:
         return None
     parameters = {k: x for k, x in contact.engine_parameters.items() if k != _STEP}
     plain = contact.by_stiffness_and_loss()
-    if engine.law(parameters, plain.mass) is not None and not engine.has_steps_of_law:
-        return None
     release = engine.release(contact.release)
     one, found = engine.at_parameters(parameters, plain.mass, at.time_step)
     step = one.step(found, release, at.time_step)
@@ -362,5 +360,12 @@ def drop_of_parameters(
     if at.steps > MOST_STEPS:
         return None
     return drop_in_steps(
-        step, plain.mass, height, gravity, at.steps, at.restitution, half_steps=one.half_steps
+        step,
+        plain.mass,
+        height,
+        gravity,
+        at.steps,
+        at.restitution,
+        half_steps=one.half_steps,
+        is_stable=at.is_stable,
     )

@@ -39,7 +39,8 @@ class DropInSteps:
     """A ball that is dropped in an engine, in SI units; 0 m is the rise of one that does not leave.
 
     ``rise``, ``compression`` and ``peak_force`` are those of the first bounce, and
-    ``depth_at_rest`` is that of the ball that has come to rest. ``restitution`` is the mean of
+    ``depth_at_rest`` is that of the ball that has come to rest, None if the steps of a lasting
+    contact grow, so that none does. ``restitution`` is the mean of
     √(h′/h), and ``error`` its greatest difference from the r that was asked for.
     """
 
@@ -47,7 +48,7 @@ class DropInSteps:
     rise: Range
     compression: Range
     peak_force: Range
-    depth_at_rest: float
+    depth_at_rest: float | None
     restitution: float
     error: float
 
@@ -118,9 +119,10 @@ def drop_in_steps(
     restitution: float,
     *,
     half_steps: bool,
+    is_stable: bool = True,
 ) -> DropInSteps:
     """A drop from a height in m of a ball with a mass in kg, of which a free impact takes so many
-    steps and has the r that was asked for.
+    steps and has the r that was asked for. The steps are stable unless said.
 
     Examples
     --------
@@ -150,7 +152,7 @@ def drop_in_steps(
         rise=Range.of(height * found**2),
         compression=Range.of(deepest),
         peak_force=Range.of(mass * hardest),
-        depth_at_rest=step.depth_at_rest(gravity),
+        depth_at_rest=step.depth_at_rest(gravity) if is_stable else None,
         restitution=float(found.mean()),
         error=float(np.abs(found - restitution).max()),
     )

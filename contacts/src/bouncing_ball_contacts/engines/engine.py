@@ -347,6 +347,7 @@ class Engine(ABC):
             settings.steps,
             restitution,
             half_steps=self.half_steps,
+            is_stable=settings.at_step is None or settings.at_step.is_stable,
         )
 
     def _retuned(
@@ -443,7 +444,9 @@ class Engine(ABC):
     def at_parameters(
         self, parameters: Mapping[str, Any], mass: float | None, time_step: float
     ) -> tuple["Engine", Physical]:
-        """The engine and the contact that it computes with parameters and a time step in s."""
+        """The engine and the contact that it computes with parameters and a time step in s, whose
+        :meth:`step` is that of their law.
+        """
         return self, self.stepped(parameters, mass, time_step)[0]
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:

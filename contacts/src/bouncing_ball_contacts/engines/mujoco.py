@@ -26,6 +26,7 @@ from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import Engine, Physical, at_speeds
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
+from bouncing_ball_contacts.engines.steps import ImpedanceStep
 
 # What is written between numbers and around them elsewhere.
 _BETWEEN = re.compile(r"[\s,;()\[\]]+")
@@ -177,6 +178,14 @@ class MuJoCo(Engine):
             power=power,
         )
 
+    def at_parameters(
+        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
+    ) -> tuple[Engine, Physical]:
+        contact, _ = self.stepped(parameters, mass, time_step)
+        direct = [-contact.stiffness / contact.mass, -contact.damping / contact.mass]
+        law = self.law({**parameters, "solref": direct})
+        return self if law is None else _MuJoCoOfLaw(law), contact
+
     def stepped(
         self, parameters: Mapping[str, Any], mass: float | None, time_step: float
     ) -> tuple[Physical, tuple[str, ...]]:
@@ -233,3 +242,13 @@ class MuJoCo(Engine):
                 "where it is much deeper than that",
             )
         return found
+
+
+class _MuJoCoOfLaw(MuJoCo):
+    """MuJoCo with an impedance of which the load is felt, in SI units."""
+
+    def __init__(self, law: Impedance):
+        self._law = law
+
+    def step(self, contact: Physical, release: Release, time_step: float) -> ImpedanceStep:
+        return ImpedanceStep(self._law, time_step)

@@ -15,6 +15,8 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.scales import rest
+from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated
 
 # A ball that has not left after so many steps, and as many times the duration of a contact, stays.
@@ -165,6 +167,27 @@ class HuntCrossleyStep:
         if self.damping > 0:
             fast = np.minimum(fast, 1 / self.damping)
         return np.where(free < fast, held, free)
+
+
+@dataclass(frozen=True)
+class ImpedanceStep:
+    """A step of MuJoCo with an impedance, with the force at its start: ``v⁺ = free + h f``, f ≥ 0.
+
+    The law is in SI units: its ϖ is the natural frequency in rad/s, and its width is in m.
+    """
+
+    law: Impedance
+    size: float
+
+    def depth_at_rest(self, gravity: float) -> float:
+        # In units of g the weight is 1, and so is the force of the law that carries it.
+        return rest(replace(self.law, width=self.law.width / gravity)) * gravity
+
+    def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        # The load is what changes the velocity without a contact.
+        loaded = self.law.under((before - free) / self.size)
+        force = loaded.force(np.maximum(-place, 0.0), -before)
+        return free + self.size * np.maximum(force, 0.0)
 
 
 @dataclass(frozen=True)

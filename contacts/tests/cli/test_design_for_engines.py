@@ -131,3 +131,11 @@ def test_parameters_at_a_step_say_what_suits_it(said, ask):
     drop = ask(*given, "--time-step", "1 ms")["dropped_at_step"]
     assert found["drop"]["error"] < drop["error"]
     assert f"lies {9.80665e3 / 5e4:.4g} mm deep at rest" in text.replace("196.1 µm", "0.1961 mm")
+
+
+def test_a_range_has_one_unit_where_both_ends_have_it(said):
+    elastic = said("design", "--engine=mujoco", "--mass=1", "--restitution=1", "--time-step=2 ms")
+    assert "Dropped from 1 m it rises 1 m; 1 m is r = 1." in elastic
+    text = said("design", "--engine=mujoco", "--mass=1", "--restitution=0.7", "--time-step=5 ms",
+                "--speed=0.1 m/s")  # fmt: skip
+    assert "; a shorter step allows a stiffer contact." in text

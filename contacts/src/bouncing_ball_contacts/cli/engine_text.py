@@ -69,7 +69,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
 
 def _ends(ends: Range, unit: str) -> str:
     """A range in words; one number if its ends are alike in three digits."""
-    least, most = (shown(end, unit, digits=3) for end in ends)
+    least, most = (shown(float(f"{end:.3g}"), unit) for end in ends)
     if least == most:
         return most
     number, _, of = least.partition(" ")
@@ -129,9 +129,11 @@ def _gravity(engine: EngineSettings) -> list[str]:
     taken = engine.taken_by_gravity
     if taken <= engine.error:
         return []
+    instead = "a stiffer contact loses less"
+    if engine.at_step is not None and not engine.at_step.is_within:
+        instead = "a shorter step allows a stiffer contact"
     return [
-        f"Note: gravity takes {taken:.2g} of r in this drop, and more in slower impacts; a stiffer "
-        "contact loses less."
+        f"Note: gravity takes {taken:.2g} of r in this drop, and more in slower impacts; {instead}."
     ]
 
 

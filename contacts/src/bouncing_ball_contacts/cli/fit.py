@@ -148,7 +148,7 @@ def _recipe(
         "measured_restitution": float(best.restitution_at(speed)),
     }
     setup = {"speed": speed, "engine": engine, "time_step": time_step}
-    return answer_design(contact | setup, script)
+    return answer_design(contact | setup, script)._replace(whole=False)
 
 
 def _lines(text: str | None) -> list[int]:

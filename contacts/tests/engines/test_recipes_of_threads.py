@@ -1,5 +1,6 @@
 """Recipes that users asked for: Hertz in LAMMPS and LIGGGHTS, and PyBullet's contacts."""
 
+import json
 import math
 
 import numpy as np
@@ -152,3 +153,16 @@ def test_pybullets_springs_give_the_erp_and_cfm_of_a_constraint(step):
     assert at.least - 1e-9 <= v <= at.most + 1e-9
     both = ", ".join(f"{name}={value}" for name, value in found.parameters.items())
     assert both in found.snippet
+
+
+def test_json_of_a_recipe_has_no_number_that_is_none(outcome):
+    """Of a law whose steps are not known there is no drop."""
+    given = ("design", "--engine=lammps", "--mass=1", "--radius=5 mm", "--reduced-modulus=1 GPa",
+             "--restitution=0.8", "--speed=1 m/s", "--json")  # fmt: skip
+    _, text, _ = outcome(*given)
+
+    def refuse(constant):
+        raise AssertionError(constant)
+
+    engine = json.loads(text, parse_constant=refuse)["engine"]
+    assert engine["drop"] is None and engine["wanted"] is None

@@ -1,6 +1,5 @@
 """What is written into an engine, and what the engine then does."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -48,7 +47,7 @@ class EngineSettings:
     at_step: AtStep | None = None
     changed: str = ""
     asked: AtStep | None = None
-    wanted: float = math.nan
+    wanted: float | None = None
     drop: DropInSteps | None = None
     taken_by_gravity: float = 0.0
     instant: str = ""

@@ -47,10 +47,10 @@ def mujoco(trial: Trial) -> tuple[np.ndarray, float]:
 {trial.settings.snippet}
 <option gravity="0 0 0"/>
 <worldbody>
-  <geom type="plane" size="1 1 1"/>
+  <geom class="bounce" type="plane" size="1 1 1"/>
   <body pos="0 0 {RADIUS}">
     <joint type="slide" axis="0 0 1"/>
-    <geom type="sphere" size="{RADIUS}" mass="{trial.mass!r}"/>
+    <geom class="bounce" type="sphere" size="{RADIUS}" mass="{trial.mass!r}"/>
   </body>
 </worldbody>
 </mujoco>""")

@@ -81,46 +81,6 @@ rule compute_fig06:
         "../scripts/compute_fig06.py"
 
 
-rule compute_fig10:
-    """Bouncing-off velocity along the frequency ratio."""
-    message:
-        "Computing fig10"
-    input:
-        code=code("compute_fig10.py"),
-    output:
-        "results/figures/fig10.nc",
-    params:
-        artifact=about("fig10"),
-        parameters=config["paper"]["fig10"],
-        release=config["release"],
-    log:
-        "results/logs/compute_fig10.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig10.py"
-
-
-rule compute_fig13:
-    """The Poincaré map of both models along the frequency ratio."""
-    message:
-        "Computing fig13"
-    input:
-        code=code("compute_fig13.py"),
-    output:
-        "results/figures/fig13.nc",
-    params:
-        artifact=about("fig13"),
-        parameters=config["paper"]["fig13"],
-        release=config["release"],
-    log:
-        "results/logs/compute_fig13.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig13.py"
-
-
 rule compute_fig07:
     """One cycle of the spring-damper model."""
     message:
@@ -139,26 +99,6 @@ rule compute_fig07:
         ENVIRONMENT
     script:
         "../scripts/compute_fig07.py"
-
-
-rule compute_fig12:
-    """Time histories of both models."""
-    message:
-        "Computing fig12"
-    input:
-        code=code("compute_fig12.py"),
-    output:
-        "results/figures/fig12.nc",
-    params:
-        artifact=about("fig12"),
-        parameters=config["paper"]["fig12"],
-        release=config["release"],
-    log:
-        "results/logs/compute_fig12.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig12.py"
 
 
 rule compute_fig08:
@@ -203,46 +143,24 @@ rule compute_fig09:
         "../scripts/compute_fig09.py"
 
 
-rule compute_fig15:
-    """Existence and stability of n-T orbits of both models, by continuation."""
+rule compute_fig10:
+    """Bouncing-off velocity along the frequency ratio."""
     message:
-        "Computing fig15"
+        "Computing fig10"
     input:
-        code=code("compute_fig15.py"),
+        code=code("compute_fig10.py"),
     output:
-        "results/figures/fig15.nc",
+        "results/figures/fig10.nc",
     params:
-        artifact=about("fig15"),
-        parameters=config["paper"]["fig15"],
+        artifact=about("fig10"),
+        parameters=config["paper"]["fig10"],
         release=config["release"],
-        continuation=config["continuation"],
     log:
-        "results/logs/compute_fig15.log",
+        "results/logs/compute_fig10.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/compute_fig15.py"
-
-
-rule compute_table1:
-    """The ranges of Table 1, by continuation."""
-    message:
-        "Computing table1"
-    input:
-        code=code("compute_table1.py"),
-    output:
-        "results/figures/table1.nc",
-    params:
-        artifact=about("table1"),
-        parameters=config["paper"]["table1"],
-        release=config["release"],
-        continuation=config["continuation"],
-    log:
-        "results/logs/compute_table1.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_table1.py"
+        "../scripts/compute_fig10.py"
 
 
 rule compute_fig11:
@@ -265,24 +183,44 @@ rule compute_fig11:
         "../scripts/compute_fig11.py"
 
 
-rule compute_fig16:
-    """The threshold of permanent contact of both models, and its error."""
+rule compute_fig12:
+    """Time histories of both models."""
     message:
-        "Computing fig16"
+        "Computing fig12"
     input:
-        code=code("compute_fig16.py"),
+        code=code("compute_fig12.py"),
     output:
-        "results/figures/fig16.nc",
+        "results/figures/fig12.nc",
     params:
-        artifact=about("fig16"),
-        parameters=config["paper"]["fig16"],
+        artifact=about("fig12"),
+        parameters=config["paper"]["fig12"],
         release=config["release"],
     log:
-        "results/logs/compute_fig16.log",
+        "results/logs/compute_fig12.log",
     conda:
         ENVIRONMENT
     script:
-        "../scripts/compute_fig16.py"
+        "../scripts/compute_fig12.py"
+
+
+rule compute_fig13:
+    """The Poincaré map of both models along the frequency ratio."""
+    message:
+        "Computing fig13"
+    input:
+        code=code("compute_fig13.py"),
+    output:
+        "results/figures/fig13.nc",
+    params:
+        artifact=about("fig13"),
+        parameters=config["paper"]["fig13"],
+        release=config["release"],
+    log:
+        "results/logs/compute_fig13.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig13.py"
 
 
 rule compute_fig14:
@@ -303,6 +241,68 @@ rule compute_fig14:
         ENVIRONMENT
     script:
         "../scripts/compute_fig14.py"
+
+
+rule compute_fig15:
+    """Existence and stability of n-T orbits of both models, by continuation."""
+    message:
+        "Computing fig15"
+    input:
+        code=code("compute_fig15.py"),
+    output:
+        "results/figures/fig15.nc",
+    params:
+        artifact=about("fig15"),
+        parameters=config["paper"]["fig15"],
+        release=config["release"],
+        continuation=config["continuation"],
+    log:
+        "results/logs/compute_fig15.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig15.py"
+
+
+rule compute_fig16:
+    """The threshold of permanent contact of both models, and its error."""
+    message:
+        "Computing fig16"
+    input:
+        code=code("compute_fig16.py"),
+    output:
+        "results/figures/fig16.nc",
+    params:
+        artifact=about("fig16"),
+        parameters=config["paper"]["fig16"],
+        release=config["release"],
+    log:
+        "results/logs/compute_fig16.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_fig16.py"
+
+
+rule compute_table1:
+    """The ranges of Table 1, by continuation."""
+    message:
+        "Computing table1"
+    input:
+        code=code("compute_table1.py"),
+    output:
+        "results/figures/table1.nc",
+    params:
+        artifact=about("table1"),
+        parameters=config["paper"]["table1"],
+        release=config["release"],
+        continuation=config["continuation"],
+    log:
+        "results/logs/compute_table1.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/compute_table1.py"
 
 
 rule compute_thresholds:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import pytest
 from asked_contacts import answered
@@ -69,8 +70,8 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     # The default impedance is told what it costs.
     text = said(*FROM, "--mass", "500 g")
     assert "0.95 a contact feels 0.05 of the load" in text
-    # σ_d = σ + 2ζ d r/ω.
-    assert "under a load a this r is r + σ a/v with σ = " in text
+    # The load σ belongs to the corrected model.
+    assert "σ" not in text
     assert "at the surface the spring is 0.9 and the damper 0.95" in text
     solref = ("--from", "mujoco", "--solref", "0.02 0.3", "--solimp", "1e-4 1e-4")
     command = (*BALL, *solref)
@@ -81,10 +82,7 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     assert default["damping_ratio"] == pytest.approx(1)
     assert default["measured_restitution"] == pytest.approx(math.exp(-2))
     assert "0.95 a contact feels 0.05 of the load" in default["notes"][0]
-    # With D = κ = 2/ω, σ = (1 - 3r) 2/ω, and d κ r more with the impedance d.
-    load = 0.04 * (1 - 3 * math.exp(-2))
-    shown = f"σ = {load + 0.95 * 0.04 * math.exp(-2):.4g} s, and {load:.4g} s for a spring"
-    assert shown in default["notes"][1] and "0.1353 where it is much deeper" in default["notes"][3]
+    assert "0.1353 where it is much deeper" in default["notes"][2]
 
 
 def test_with_a_table_it_is_a_design(ask):
@@ -124,9 +122,20 @@ def test_mistakes_are_one_line(refused, arguments, says):
     assert status == 2 and says in line
 
 
-def test_the_stiffest_contact_of_parameters_says_how_deep_the_ball_rests(said, ask):
+def test_parameters_at_a_step_say_what_suits_it(said, ask):
     given = ("design", "--from", "pybullet", "--mass", "1", "--set", "contactStiffness=1e5",
              "--set", "contactDamping=100")  # fmt: skip
     text = said(*given, "--time-step", "1 ms")
-    stiffest = ask(*given, "--time-step", "1 ms")["at_step"]["stiffest"]
-    assert f"in which the ball rests {9.80665e3 / stiffest:.4g} mm deep." in text
+    (suited,) = re.findall(r"What suits this step: (.*)\.", text)
+    found = ask("design", *suited.split())["engine"]
+    drop = ask(*given, "--time-step", "1 ms")["dropped_at_step"]
+    assert found["drop"]["error"] < drop["error"]
+    assert f"lies {9.80665e3 / 5e4:.4g} mm deep at rest" in text.replace("196.1 µm", "0.1961 mm")
+
+
+def test_a_range_has_one_unit_where_both_ends_have_it(said):
+    elastic = said("design", "--engine=mujoco", "--mass=1", "--restitution=1", "--time-step=2 ms")
+    assert "Dropped from 1 m it rises 1 m; 1 m is r = 1." in elastic
+    text = said("design", "--engine=mujoco", "--mass=1", "--restitution=0.7", "--time-step=5 ms",
+                "--speed=0.1 m/s")  # fmt: skip
+    assert "; a shorter step allows a stiffer contact." in text

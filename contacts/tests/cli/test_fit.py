@@ -106,6 +106,14 @@ def test_intervals_show_the_biases_that_were_removed(outcome, heard):
     assert "drag of the air" not in outcome("fit", "croquet")[1]
 
 
+@pytest.mark.parametrize("last", [0.207, 0.311, 0.407])
+def test_the_drag_is_removed_by_mass_and_diameter_and_not_by_rounding(outcome, tmp_path, last):
+    path = tmp_path / "heard.csv"
+    path.write_text(f"0.7031\n0.5917\n0.4981\n{last}\n")
+    text = outcome("fit", str(path), "--intervals")[1]
+    assert "drag of the air was not removed" in text and "e-1" not in text
+
+
 @pytest.mark.parametrize(
     ("arguments", "part"),
     [
@@ -120,3 +128,46 @@ def test_a_mistake_gets_one_line(outcome, arguments, part):
     status, out, err = outcome("fit", *arguments)
     assert (status, out) == (2, "")
     assert part in err and err.count("\n") == 1
+
+
+def test_the_order_of_the_laws_is_said_where_the_first_has_not_the_smallest_error(outcome):
+    for name, is_said in (("membrane_heavy", True), ("croquet", False)):
+        answer = json.loads(outcome("fit", name, "--json")[1])
+        least = min(answer["laws"], key=lambda law: law["rms"])["law"]
+        said = any(f"; {least} has the smallest rms." in note for note in answer["notes"])
+        assert said is is_said is (answer["laws"][0]["law"] != least)
+
+
+def test_a_recording_is_written_for_an_engine_in_one_command(outcome, tmp_path):
+    path = tmp_path / "heard.csv"
+    path.write_text("Event\tInterval (s)\n1\t0,800\n2\t0,640\n3\t0,512\n4\t0,530\n5\t0,262\n")
+    options = ("--intervals", "--engine", "mujoco", "--time-step", "2 ms", "--mass", "46 g")
+    _, _, err = outcome("fit", str(path), *options)
+    assert "line 5, recording 1: 0.53 s after 0.512 s" in err and "--leave-out" in err
+    options = (*options, "--leave-out", "5", "--script", str(tmp_path / "drop.py"))
+    text = outcome("fit", str(path), *options)[1]
+    # First what is pasted and what it does, then the laws.
+    assert text.startswith("For mujoco, at a time step of 2 ms:")
+    # --all of design prints the numbers of the contact, too.
+    assert "natural frequency" not in text
+    assert text.index("Dropped from") < text.index("verdict") < text.index("Left out: line 5 of")
+    answer = json.loads(outcome("fit", str(path), *options, "--json")[1])
+    drop = answer["recipe"]["engine"]["drop"]
+    # The drop has the impact speed at which r is taken, by its own formula.
+    assert drop["height"] == pytest.approx(answer["speed"] ** 2 / (2 * 9.80665), rel=1e-12)
+    assert answer["recipe"]["engine"]["wanted"] == pytest.approx(0.8, rel=1e-3)
+    assert drop["error"] < 0.05 and (tmp_path / "drop.py").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "part"),
+    [
+        (("--engine", "mujoco", "--time-step", "2 ms"), "--engine needs --mass, such as 20 g"),
+        (("--time-step", "2 ms"), "--time-step needs --engine, such as mujoco"),
+        (("--engine", "mujoco", "--mass", "1 g"), "or the --time-step of mujoco"),
+        (("--leave-out", "x"), "--leave-out = x is not a list of lines, such as 4,7"),
+    ],
+)
+def test_what_a_recipe_of_a_recording_needs(outcome, options, part):
+    status, _, err = outcome("fit", "bouncy_ball", *options)
+    assert status == 2 and part in err

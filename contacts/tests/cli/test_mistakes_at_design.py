@@ -27,7 +27,13 @@ MISTAKES = """
 --mass "twenty" --stiffness 1e6 --restitution 0.85
     --mass = 'twenty' does not begin with a number: write it as '20 g'
 --mass "20 g" --stiffness "1e6 N" --restitution 0.85
-    --stiffness = 1e6 N is in newton, not in N/m: write it as '1e6 N/m'
+    --stiffness = 1e6 N is in newton, not in N/m: did you mean '1e6 N/m'?
+--mass "20 g" --stiffness "1e7 N" --restitution 0.85
+    --stiffness = 1e7 N is in newton, not in N/m: did you mean '1e7 N/m'?
+--mass "20 g" --stiffness 1e6 --damping "10 N s"
+    --damping = 10 N s is in newton * second, not in N s/m: did you mean '10 N s/m'?
+--mass "46 g" --measured-restitution 0.82 --engine mujoco
+    no stiffness: give --stiffness, or --contact-time, or the --time-step of mujoco
 --mass "20 g" --stiffness "1 MN/M" --restitution 0.85
     --stiffness = 1 MN/M is in meganewton / molar, not in N/m: did you mean '1 MN/m'?
 --mass "20 g" --stiffness 1e6 --restitution 85
@@ -145,7 +151,7 @@ BALL TABLE --tolerance "1 %%"
 --mass "20 g" --radius "5 mm" --reduced-modulus "1 GPa" --restitution 0.8 TABLE --engine mujoco
     a Hertz contact is not written for mujoco: give --stiffness
 --mass "20 g" --from pybullet --set restitution=0.9
-    restitution of pybullet has no stiffness: if ball and table have it, r = 0.81 at any time step
+    restitution of pybullet has no stiffness: if ball and table have it, r = 0.81 with small steps
 --mass "20 g" --from lammps --set kn=1e5 --set gamma_n=1 --set time_step=1e-3
     lammps has no 'time_step': its parameters are kn and gamma_n, and the step of any engine is
 CROSSLEY --set time_step=1e-3

@@ -106,7 +106,7 @@ def test_gravity_lowers_the_restitution_by_one_percent_at_the_speed_that_is_give
     drop = found.slowed_speed**2 / (2 * G)
     assert math.sqrt(rise(found, 0.02, drop) / drop) == pytest.approx(0.99 * 0.7, rel=1e-7)
     elastic = described(mass=0.02, stiffness=2000.0, restitution=1.0, release=release)
-    assert elastic.slowed_speed is None
+    assert elastic.slowed_speed == 0
 
 
 def test_a_drop_that_no_contact_has_is_refused_in_one_line():
@@ -160,3 +160,41 @@ def test_at_the_speed_at_which_gravity_is_felt_r_is_lowered_by_one_percent_for_a
     speed = np.array([slowed(law, 1e5)])
     share = np.sqrt(2 * rises(law, speed)) / speed / law.signature(speed).restitution
     assert share == pytest.approx(0.99, rel=1e-9)
+
+
+def test_never_and_always_are_two_answers(said):
+    elastic = said("design", "--mass=1", "--stiffness=1e4", "--restitution=1")
+    assert "gravity lowers r by 1 % at            no speed" in elastic
+    # Fast impacts on this law hardly rebound, and slow ones are elastic.
+    damped = said("design", "--mass=1", "--law=hunt-crossley", "--contact-time=1 ms",
+                  "--restitution=0.1", "--speed=1 m/s")  # fmt: skip
+    assert "gravity lowers r by 1 % at            every speed" in damped
+
+
+@pytest.mark.parametrize("zeta", [1.0, 2.0])
+def test_gravity_also_slows_what_is_overdamped(zeta):
+    omega = 100.0
+    found = described(
+        mass=1.0, stiffness=omega**2, damping_ratio=zeta, release="force"
+    ).slowed_speed
+
+    def left(_, y):
+        return omega * y[0] + 2 * zeta * y[1]
+
+    left.terminal = True
+    left.direction = -1
+
+    def contact(gravity):
+        def motion(_, y):
+            return [y[1], gravity - omega * left(_, y)]
+
+        run = solve_ivp(
+            motion, (0.0, 1e3), [0.0, found], events=left, method="DOP853", rtol=1e-12, atol=1e-14
+        )
+        return run.y[:, -1]
+
+    depth, rate = contact(G)
+    _, free = contact(0.0)
+    # The speed is found to 1e-10, and the rise with the integration's error.
+    lowered = math.sqrt(rate * rate - 2 * G * depth) / -free
+    assert lowered == pytest.approx(0.99, abs=1e-6)

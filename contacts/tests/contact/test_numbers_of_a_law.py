@@ -146,7 +146,7 @@ def test_the_numbers_are_those_of_the_law(given):
     assert any("the force of" in note for note in found.notes)
 
     # Dropped at this speed, gravity lowers r by 1 %.
-    if (slow := found.slowed_speed) is None:
+    if not (slow := found.slowed_speed):
         return
     depth, rate = own.contact(0.0, slow, amplitude=0.0).y[:, -1]
     rises = rate * rate / (2 * G) - depth

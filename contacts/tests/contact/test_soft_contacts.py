@@ -6,6 +6,7 @@ from itertools import product
 import pytest
 from asked_contacts import assessed
 
+import bouncing_ball_contacts
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
@@ -55,3 +56,17 @@ def test_a_ball_that_rests_differs_from_one_that_is_thrown_off():
     assert not below.is_decided and "not known" in said_of_motion(below).verdict
     assert above.is_decided and "Λ = 2 is above 1" in said_of_motion(above).verdict
     assert not above.is_good_enough
+
+
+def test_a_ball_that_sinks_in_too_far_is_noted_without_a_radius(said):
+    text = said("design", "--mass=500", "--stiffness=100", "--restitution=0.8")
+    assert "Note: at rest the ball sinks in by 49.03 m: check the stiffness, the mass" in text
+    text = said("design", "--mass=0.5", "--stiffness=100", "--restitution=0.8")
+    assert "sinks in by" not in text
+
+
+def test_a_name_that_the_package_has_not_is_answered_by_one_that_it_has():
+    with pytest.raises(
+        AttributeError, match=r"no attribute 'writecontact'; did you mean write_con"
+    ):
+        _ = bouncing_ball_contacts.writecontact

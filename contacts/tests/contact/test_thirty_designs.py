@@ -219,7 +219,7 @@ def compare(found, dropped, ball):
     ended, time, _, rate, *_ = ball.contact(speed, gravity=0.0)
     assert ended and found.measured_restitution == pytest.approx(-rate / speed, rel=1e-7)
     assert found.contact_time == pytest.approx(time, rel=1e-6)
-    if found.slowed_speed is not None:
+    if found.slowed_speed:
         slow = found.slowed_speed
         free = -ball.contact(slow, gravity=0.0)[3] / slow
         # The speed is found to 1e-10, and the ratio changes by 1 % over a speed of this size.
@@ -336,48 +336,23 @@ def test_a_time_step_that_is_given(name, step, r):
     answer = answered(**given, time_step=step, speed="1 m/s")
     h = answer.engine.time_step
     fractions = np.linspace(1e-6, 1.0, 2001)
-    for settings in (answer.engine, answer.engine.retuned):
-        if settings is None:
-            continue
-        at = settings.at_step
-        k, c = written(name, settings)
-        scheme = "implicit" if name in ("pybullet", "drake") else "semi"
-        pulls = Release(settings.release) is Release.DISPLACEMENT
-        many = in_steps(scheme, 0.5, k, c, h, fractions, pulls=pulls)
-        # Instants 5e-4 apart; r changes by less than 2 over one step.
-        assert at.least == pytest.approx(many.min(), abs=1e-3)
-        assert at.most == pytest.approx(many.max(), abs=1e-3)
-        assert at.mean == pytest.approx(many.mean(), abs=1e-3)
-    if answer.engine.retuned is not None:
-        assert answer.engine.retuned.at_step.mean == pytest.approx(r, abs=1e-6)
-    k, c = written(name, answer.engine)
+    settings = answer.engine
+    at = settings.at_step
+    k, c = written(name, settings)
+    scheme = "implicit" if name in ("pybullet", "drake") else "semi"
+    pulls = Release(settings.release) is Release.DISPLACEMENT
+    many = in_steps(scheme, 0.5, k, c, h, fractions, pulls=pulls)
+    # Instants 5e-4 apart; r changes by less than 2 over one step.
+    assert at.least == pytest.approx(many.min(), abs=1e-3)
+    assert at.most == pytest.approx(many.max(), abs=1e-3)
+    assert at.mean == pytest.approx(many.mean(), abs=1e-3)
     rises = in_steps(
         scheme, 0.5, k, c, h, np.linspace(0.0, 1.0, 301), pulls=pulls, drop=1 / (2 * G)
     )
-    rise = answer.dropped_at_step
-    # 300 places within the last step, and the top between two steps.
-    assert rise.least == pytest.approx(rises.min(), rel=0.01)
-    assert rise.most == pytest.approx(rises.max(), rel=0.01)
-    soft = answer.softer
-    force = linear(soft.contact.stiffness, soft.contact.damping)
-    compare(soft.contact, soft.dropped, Ball(0.5, force, pulls, 1e-8))
-    k, c = written(name, answer.engine.softer)
-    many = in_steps(scheme, 0.5, k, c, h, np.linspace(1e-6, 1.0, 101), pulls=pulls)
-    assert np.abs(many - r).max() <= 1e-3 + 1e-9
-    rises = in_steps(
-        scheme, 0.5, k, c, h, np.linspace(0.0, 1.0, 41), pulls=pulls, drop=1 / (2 * G)
-    )  # fmt: skip
-    of_soft = soft.dropped_at_step
-    # A ball that stays is left below the table.
-    own = max(rises.min(), 0.0), max(rises.max(), 0.0)
-    assert (of_soft.least, of_soft.most) == pytest.approx(own, rel=0.02, abs=1e-6)
-    looser = answer.looser
-    if scheme == "semi":
-        many = in_steps(
-            scheme, 0.5, looser.stiffness, looser.damping, h, np.linspace(1e-6, 1.0, 101),
-            pulls=pulls,
-        )  # fmt: skip
-        assert np.abs(many - r).max() <= 0.01 + 1e-9
+    # 300 places within the last step, and the top between two steps; velocities of half steps fall
+    # by half a step less.
+    near = 0.03 if name in ("lammps", "liggghts", "mercurydpm") else 0.01
+    assert settings.drop.rise == pytest.approx((rises.min(), rises.max()), rel=near)
 
 
 def written(name, settings):

@@ -24,14 +24,9 @@ def rebound(name, settings, mass, drop):
 
 
 def tolerance(settings, drop):
-    """The error of a rebound's height in m that the time step may cause.
-
-    The r of a free impact is within the error, so that r² h is within 2 r h times it; and Euler's
-    flights are wrong by half a step of their speed.
-    """
-    of_contact = 2 * settings.restitution * drop * settings.error
-    of_flight = settings.time_step * math.sqrt(2 * G * drop)
-    return of_contact + of_flight
+    """The error of a rebound's height in m that the answer names, beside rounding in the engine."""
+    error = settings.drop.error
+    return (2 * settings.wanted * error + error**2 + 1e-3) * drop
 
 
 DROPS = [

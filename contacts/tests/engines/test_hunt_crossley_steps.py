@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("short_runs")
 
 GIVEN = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
 ASKED = {"mass": 0.5, "from_engine": "drake", "parameters": GIVEN}
-# With so large an error no other contact is sought, and with this one a softer one is soon found.
+# With so large an error no other contact is sought.
 ALONE = ASKED | {"restitution_error": 0.9}
 ROUGH = {"restitution_error": 0.01}
 
@@ -147,56 +147,33 @@ def dropped(settings, drops):
 
 
 def test_a_law_is_written_for_a_step_with_what_the_engine_then_does():
-    answer = answered(**WRITTEN, time_step="1 ms", restitution_error=0.05)
-    at = answer.engine.at_step
-    k, d = answer.engine.parameters.values()
+    answer = answered(**WRITTEN, time_step="1 ms")
+    engine = answer.engine
+    at = engine.at_step
+    k, d = engine.parameters.values()
     many = impacts(1.0, 1e-3, np.linspace(1e-6, 1.0, 401), d, k / 2)
-    assert not at.is_within
+    assert not at.is_within and engine.changed
     assert at.least == pytest.approx(many.min(), abs=5e-3)
     assert at.most == pytest.approx(many.max(), abs=5e-3)
     assert at.mean == pytest.approx(many.mean(), abs=5e-3)
     drops = 1 / (2 * 9.80665) + 1e-3 * np.linspace(-0.5, 0.5, 101)
-    rises = dropped(answer.engine, drops) / drops / (2 * 9.80665)
+    rises = dropped(engine, drops) / drops / (2 * 9.80665)
     # A hundred heights of the drop, between which the rise has jumps.
-    assert answer.dropped_at_step.least == pytest.approx(rises.min(), rel=0.02)
-    assert answer.dropped_at_step.most == pytest.approx(rises.max(), rel=0.02)
-
-
-def test_the_softer_and_the_retuned_contact_of_a_law_have_its_r_at_the_step():
-    answer = answered(**WRITTEN, time_step="0.2 ms", restitution_error=0.05)
-    settings = answer.engine
-    r = settings.restitution
-    for found in (settings, settings.softer, settings.retuned):
-        k, d = found.parameters.values()
-        many = impacts(1.0, 2e-4, np.linspace(1e-6, 1.0, 41), d, k / 2)
-        assert np.abs(many - r).max() <= max(found.at_step.error, 0.05) + 1e-9
-        assert found.at_step.mean == pytest.approx(many.mean(), abs=5e-3)
-    soft = settings.softer
-    assert soft.at_step.is_within and not settings.at_step.is_within
-    assert settings.retuned.at_step.mean == pytest.approx(r, abs=1e-7)
-    assert soft.parameters["hunt_crossley_dissipation"] == pytest.approx(
-        settings.parameters["hunt_crossley_dissipation"], rel=1e-11
-    )
-    # A contact that is stiffer by more than the search leaves open is not within the error.
-    k, d = soft.parameters.values()
-    many = impacts(1.0, 2e-4, np.linspace(1e-6, 1.0, 41), d, 1.02 * k / 2)
-    assert np.abs(many - r).max() > 0.05
-    assert answer.softer.contact.measured_restitution == pytest.approx(r, rel=1e-9)
-    law = answer.softer.contact.law
-    assert law["stiffness"] == pytest.approx(k / 2, rel=1e-9)
-    assert law["damping"] == pytest.approx(d, rel=1e-9)
-    assert answer.looser is None
+    assert engine.drop.rise == pytest.approx((rises.min(), rises.max()), rel=0.02)
+    assert engine.drop.depth_at_rest == pytest.approx(0.5 * 9.80665 / (k / 2), rel=1e-12)
+    # The contact that was asked for bounces lower.
+    asked = answered(**WRITTEN, time_step="1 ms", restitution_error=0.9).engine
+    assert not asked.changed and asked.drop.error > engine.drop.error
+    assert engine.asked.restitution == pytest.approx(0.75, rel=1e-9)
 
 
 def test_on_a_table_a_law_at_a_step_has_the_r_of_its_orbit(said, refusal):
     shaken = {"frequency": "20 Hz", "acceleration": "0.8 g", "n": 1, "engine": "drake"}
     found = answered(**LAW, **shaken, time_step="1 ms")
     assert found.engine.at_step.speed == found.found.judged.impact_speed
-    assert "takes 3.233 s, more than the table's period of 50 ms" in found.softer.verdict
     options = [f"--{name.replace('_', '-')}={value}" for name, value in WRITTEN.items()]
-    text = said("design", *options, "--time-step=1 ms", "--restitution-error=0.05")
+    text = said("design", *options, "--time-step=1 ms")
     assert "is not resolved in drake: a free impact at 1 m/s has r = 0.4202 to 0.5206" in text
-    assert "hunt-crossley-linear, damping         495.9 ms/m" in text
     with refusal(ModelError, "for drake with"):
         answered(mass="4 g", radius="5 mm", reduced_modulus="50 GPa", restitution=0.9,
                  engine="lammps", time_step="1 ms", speed="1 m/s")  # fmt: skip
@@ -225,12 +202,10 @@ def test_drake_itself_has_this_range(step):
 @pytest.mark.parametrize("step", ["0.2 ms", "1 ms"])
 def test_drake_has_the_r_of_a_recipe_for_this_step(step):
     only_if_installed("drake")
-    answer = answered(**WRITTEN, time_step=step, restitution_error=0.05)
-    recipes = [answer.engine, answer.engine.softer, answer.engine.retuned]
-    for settings in filter(None, recipes):
-        h = settings.time_step
-        at = settings.at_step
-        for fraction in (0.02, 0.3, 0.7, 0.98):
-            away, _ = drake(Trial(settings, 0.5, fraction * h, -1.0, 12 + int(3 * at.steps)))
-            r = (away[-1] - away[-2]) / h
-            assert at.least - 1e-5 <= r <= at.most + 1e-5
+    settings = answered(**WRITTEN, time_step=step).engine
+    h = settings.time_step
+    at = settings.at_step
+    for fraction in (0.02, 0.3, 0.7, 0.98):
+        away, _ = drake(Trial(settings, 0.5, fraction * h, -1.0, 12 + int(3 * at.steps)))
+        r = (away[-1] - away[-2]) / h
+        assert at.least - 1e-5 <= r <= at.most + 1e-5

@@ -63,7 +63,8 @@ def test_a_step_that_is_given_has_the_range_of_r_that_is_said(name):
     at = found.at_step
     assert not at.is_within
     for fraction in (0.1, 0.5, 0.9):
-        _, speeds = NEWER[name](Trial(found, MASS, fraction * 4e-4, -1.0, 40))
+        steps = 12 + int(3 * found.steps)
+        _, speeds = NEWER[name](Trial(found, MASS, fraction * 4e-4, -1.0, steps))
         assert at.least - ROUNDING <= speeds[-1] <= at.most + ROUNDING
 
 
@@ -87,3 +88,32 @@ def test_newtons_mujoco_solver_needs_condim_1_without_friction():
 def test_a_contact_without_damping_is_refused(name, refusal):
     with refusal(ModelError, f"{name} has no contact without damping"):
         ENGINES[name].settings(ENGINES["generic"].read({"stiffness": 1.0, "damping": 0.0}, 1.0))
+
+
+@pytest.mark.parametrize("name", NEWER)
+def test_a_drop_at_a_given_step_has_the_depth_and_the_force_of_the_recipe(name):
+    only_if_installed(name)
+    height = 0.3
+    step = 2e-3
+    given = {"mass": MASS, "restitution": 0.75, "time_step": step}
+    engine = RECIPES.get(name, name)
+    found = answered(**given, engine=engine, speed=math.sqrt(2 * G * height)).engine
+    drop = found.drop
+    count = int(2.3 * math.sqrt(2 * height / G) / step + 4 * found.steps) + 20
+    for part in (-0.4, 0.1):
+        start = height + part * step * math.sqrt(2 * G * height)
+        heights, speeds = NEWER[name](Trial(found, MASS, start, 0.0, count, gravity=G))
+        inside = int(np.argmax(np.asarray(heights) < 0))
+        left = inside + int(np.argmax(np.asarray(heights)[inside:] >= 0))
+        forces = MASS * (np.diff(speeds) / step + G)
+        # Samples of an instant in 256, and single precision.
+        rise = max(heights[left:]) * height / start
+        assert drop.rise.least * 0.99 <= rise <= drop.rise.most * 1.01
+        for value, ends in (
+            (-min(heights[inside:left]), drop.compression),
+            (max(forces[:left]), drop.peak_force),
+        ):
+            assert ends.least * 0.99 <= value <= ends.most * 1.01
+    long = int(60 * found.steps) + 300
+    heights, _ = NEWER[name](Trial(found, MASS, 0.0, 0.0, long, gravity=G))
+    assert -heights[-1] == pytest.approx(drop.depth_at_rest, rel=0.01)

@@ -57,9 +57,11 @@ def test_a_drop_on_a_hunt_crossley_contact_in_small_steps_rises_as_the_work_of_i
     # A stiff contact hardly feels gravity: (1 - rD) exp(D (1 + r)) = 1 + D at its impact speed.
     speed, damping, omega, g = 2.0, 0.25, 2e4, 9.81
     step = HuntCrossleyStep(omega**2, damping, 1e-7)
-    rise = drop_in_steps(step, speed, g, 2 * math.pi / omega)
+    drop = drop_in_steps(
+        step, 1.0, speed**2 / (2 * g), g, math.pi / omega / 1e-7, 0.6, half_steps=False
+    )
     d = damping * speed
-    for height in (rise.least, rise.most):
+    for height in drop.rise:
         r = math.sqrt(2 * g * height) / speed
         # Errors of first order in ωΔt = 2e-3, and of the weight over the force, g/(ωV).
         assert (1 - r * d) * math.exp(d * (1 + r)) == pytest.approx(1 + d, abs=2e-3)

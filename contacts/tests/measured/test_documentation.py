@@ -42,7 +42,7 @@ def test_the_commands_of_the_page_answer(files, outcome):
     commands = [
         line for block in BLOCKS for line in block.splitlines() if "bouncing-ball fit" in line
     ]
-    assert len(commands) == 3
+    assert len(commands) == 4
     for line in commands:
         status, out, err = outcome(*shlex.split(line)[1:])
         assert (status, err) == (0, ""), line

@@ -168,7 +168,8 @@ HOSTILE = {
     "speed,restitution,duration_uncertainty\n1,0.8,0.1\n": "needs a column duration",
     "# resolution: 1 ms\n" + HEAD + "1,0.8\n": "a resolution needs intervals or times",
     "# contact time uncertainty: 1 ms\n" + HEAD + "1,0.8\n": "needs the contact time",
-    "interval\n0,8\n": "line 2: 2 values for one column",
+    "interval\n0,8\n": "there are fewer than two intervals",
+    "interval\n0,8\n0.4\n": "line 2: 2 values for one column",
     HEAD + "1.0,nan\n": "line 2: restitution = 'nan' does not begin with a number",
     HEAD + "1.0,1.2\n": "line 2: restitution = 1.2 is not a number in (0, 1]",
     HEAD + "1.0,85\n": "line 2: restitution = 85 is not a number in (0, 1]",
@@ -176,8 +177,9 @@ HOSTILE = {
     HEAD + "1.0\n": "line 2: 1 values for 2 columns",
     HEAD + "0,50,0,857\n": "line 2: 4 values for 2 columns; numbers have a decimal point",
     HEAD + '"0,50","0,857"\n': "line 2: speed = 0,50 has a comma: write '0.50'",
-    HEAD + "0,8;0,9\n": "line 2: 3 values for 2 columns",
-    HEAD + "0.8;0.9\n": "line 2: 1 values for 2 columns",
+    "0.8\n0.4\n": "line 1: numbers without a heading: is it a file of intervals",
+    "# a remark\ninterval\n0.5\n0.3\n0.4\n": "line 5, recording 1: 0.4 s after 0.3 s, where each",
+    "recording,interval\n1,0.5\n1,0.3\n2,0.4\n2,0.6\n": "line 5, recording 2: 0.6 s after 0.4 s",
     HEAD + "1.0,\n": "line 2: restitution = ",
     HEAD + "-1.0,0.8\n": "line 2: speed = -1",
     HEAD + "1 m/s,0.8 m\n": "line 2: restitution = 0.8 m",
@@ -188,6 +190,45 @@ HOSTILE = {
     "# weight: 3 N\n" + HEAD: "line 1: unknown key 'weight': one of title",
     "# mass: 3 s\n" + HEAD: "line 1: mass = 3 s is in second, not in kg",
 }
+
+
+WRITTEN = {
+    "a telephone's event times": '"Event","Event time (s)"\n1,0.0\n2,0.8\n3,1.2\n4,1.4\n',
+    "tabs and decimal commas": "Event\tInterval (s)\n1\t0,8\n2\t0,4\n3\t0,2\n",
+    "semicolons and a mark at the end": "Interval (ms);\n800,0;\n400;\n200,0;\n",
+    "capitals and units in parentheses": "INTERVAL (ms)\n800\n400\n200\n",
+    "decimal commas alone": "0,8\n0,4\n0,2\n",
+    "bare numbers": "0.8\n0.4\n0.2\n",
+    "quotation marks": '"Time interval (s)"\n"0.8"\n"0.4"\n"0.2"\n',
+}
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_files_of_instruments_are_read(tmp_path, name):
+    found = read(write(tmp_path, WRITTEN[name]), intervals=True)
+    assert found.restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+    assert found.heard.speeds == pytest.approx([9.80665 * 0.4, 9.80665 * 0.2], rel=1e-12)
+
+
+def test_heights_of_a_spreadsheet_are_read(tmp_path):
+    text = "No.;Drop height (cm);Rebound height (cm)\n1;100,0;25,0\n2;50;12,5\n"
+    assert read(write(tmp_path, text)).restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+
+
+def test_a_bad_bounce_is_left_out_with_the_impacts_beside_it(tmp_path, refusal):
+    path = write(tmp_path, "interval\n0.8\n0.4\n0.5\n0.1\n0.05\n0.02\n")
+    with refusal(ModelError, "line 4, recording 1: 0.5 s after 0.4 s"):
+        read(path)
+    found = read(path, leave_out=[4])
+    assert found.restitutions == pytest.approx([0.5, 0.5, 0.4], rel=1e-12)
+    assert found.left_out == (4,)
+    # Between times, no flight has both ends.
+    path = write(tmp_path, "time\n0\n0.8\n1.2\n1.25\n1.4\n1.5\n1.55\n")
+    assert read(path, leave_out=[5]).restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+    with refusal(ModelError, "has no line 40 with numbers to leave out"):
+        read(path, leave_out=[40])
+    heights = write(tmp_path, "drop_height,rebound_height\n1,0.25\n1,0.9\n")
+    assert read(heights, leave_out=[3]).restitutions == pytest.approx([0.5], rel=1e-12)
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+import scipy
 
 from bouncing_ball_contacts.measured.curves import curve_named
 from bouncing_ball_contacts.measured.experiment import experiment
@@ -198,3 +199,55 @@ def test_hunt_and_crossleys_law_deviates_from_most_experiments():
         assert found["hunt-crossley"].verdict is Compatibility.DEVIATES
     assert verdicts["croquet"]["restitution"].verdict is Compatibility.DEVIATES
     assert verdicts["bouncy_ball"]["restitution"].verdict is Compatibility.COMPATIBLE
+
+
+def test_the_interval_of_a_rejected_law_is_widened_by_the_scatter():
+    """The numbers of the interval by hand: Student's, with the scatter about a constant."""
+    speeds = np.geomspace(0.5, 6.0, 12)
+    e = 0.9 - 0.06 * np.log(speeds)
+    fit = fit_contact(speeds, e, uncertainties=1e-3)
+    judged = judge(fit)["tsuji"]
+    assert judged.verdict is Compatibility.INCOMPATIBLE
+    narrow = fit.law("tsuji").interval
+    away = scipy.stats.t.ppf(0.975, 11) * e.std(ddof=1) / np.sqrt(12)
+    assert judged.interval == pytest.approx((e.mean() - away, e.mean() + away), rel=1e-9)
+    assert narrow == pytest.approx(
+        (e.mean() - 1.959964e-3 / np.sqrt(12), e.mean() + 1.959964e-3 / np.sqrt(12)), rel=1e-6
+    )
+    # A law that is not rejected keeps the interval of the given uncertainties.
+    same = np.full(12, 0.8) + 1e-3 * np.resize([1, -1], 12)
+    kept = fit_contact(speeds, same, uncertainties=1e-3)
+    assert judge(kept)["tsuji"].interval == kept.law("tsuji").interval
+
+
+@pytest.mark.parametrize(("share", "is_rejected"), [(0.6, False), (0.4, True)])
+def test_a_law_is_rejected_below_half_of_the_level(share, is_rejected):
+    """Bonferroni: errors at 0.6 and 0.4 of the level 0.01, of which one test alone rejects both."""
+    speeds = np.array([1.0, 2.0, 3.0])
+    pattern = np.array([1.0, -2.0, 1.0])
+    curve = curve_named("tsuji")
+
+    def least(size):
+        points = MeasuredPoints(speeds, 0.8 + size * pattern, 1e-6 * np.eye(3))
+        return left_out(curve, points).probability(*noise(points))
+
+    size = scipy.optimize.brentq(lambda x: least(x) - share * 0.01, 1e-5, 1e-2, xtol=1e-12)
+    fit = fit_contact(speeds, 0.8 + size * pattern, uncertainties=1e-3, laws=["tsuji"])
+    judged = judge(fit)["tsuji"]
+    assert judged.left_out == pytest.approx(share * 0.01, rel=1e-6)
+    # The other test does not decide.
+    assert not judged.extrapolated < 0.01
+    assert (judged.verdict is Compatibility.INCOMPATIBLE) is is_rejected
+
+
+@pytest.mark.parametrize(("count", "known"), [(5, True), (5, False), (9, True), (9, False)])
+def test_the_criterion_is_akaikes_with_the_correction_for_few_points(count, known):
+    """2K - 2 ln L + 2K(K + 1)/(n - K - 1) (Hurvich and Tsai), up to constants of the points."""
+    speeds = np.geomspace(1.0, 4.0, count)
+    e = 0.8 + 0.01 * np.resize([1, -1, 2], count)
+    fit = fit_contact(speeds, e, uncertainties=0.01 if known else None, laws=["tsuji"]).laws[0]
+    square = ((e - e.mean()) ** 2).sum()
+    parameters = 1 if known else 2
+    deviance = square / 1e-4 if known else count * np.log(square / count)
+    correction = 2 * parameters * (parameters + 1) / (count - parameters - 1)
+    assert fit.criterion == pytest.approx(deviance + 2 * parameters + correction, rel=1e-12)

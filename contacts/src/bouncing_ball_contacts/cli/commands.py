@@ -25,6 +25,7 @@ def _fit() -> Program:
         add_options=lambda parser: add_parameters(parser, fit.fit),
         answer=lambda file, **options: fit.fit(file, **options),
         lines=fit.fit_lines,
+        document=fit.fit_document,
     )
 
 
@@ -71,6 +72,7 @@ COMMANDS = {
             "fit croquet",
             'fit croquet --frequency "50 Hz"',
             'fit plastic_ball --contact-time "1 ms" --speed "1.5 m/s"',
+            'fit bouncy_ball --mass "20 g" --engine mujoco --time-step "2 ms"',
         ),
         program=_fit,
         has_symbols=False,

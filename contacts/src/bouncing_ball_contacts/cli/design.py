@@ -21,6 +21,7 @@ from bouncing_ball_contacts.contact.assess import Assessment, LargestTimeStep, a
 from bouncing_ball_contacts.contact.choose import choose
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import Description, describe_contact
+from bouncing_ball_contacts.contact.diagnose import diagnosis
 from bouncing_ball_contacts.contact.drops import drop_at_rest
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
@@ -31,11 +32,10 @@ from bouncing_ball_contacts.contact.write import (
     at_given_step,
     at_own_step,
     describe_for,
-    dropped_at_step,
-    looser,
+    drop_of_parameters,
     settings_for,
-    softer_contact,
 )
+from bouncing_ball_contacts.engines.drop_scripts import drop_script
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 
 # Parameters of which each implies that there is a table.
@@ -58,6 +58,7 @@ _OPTIONS = (
 def add_options(parser: Parser) -> None:
     """Add the options of :func:`design`."""
     add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
+    add_file(parser, "script", "File for a script in Python that drops the ball in the engine.")
     each = "By default each family has one line, unless n is given."
     parser.add_argument(
         option("all_families"),
@@ -69,7 +70,9 @@ def add_options(parser: Parser) -> None:
         add_optional(parser, kind, names)
 
 
-def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnswer:
+def design(
+    *, plot: Path | None, script: Path | None, all_families: bool, **given: Any
+) -> DesignAnswer:
     """The answer about a contact; with ``plot`` the page to print is written as well.
 
     Raises
@@ -81,14 +84,16 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnsw
         If no model has the orbit.
     """
     require_writable(plot, PICTURES)
-    found = answer_design(given)
+    found = answer_design(given, script)
     if plot is not None:
         _draw(found, plot)
     return found._replace(whole=all_families or given.get("n") is not None)
 
 
-def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
+def answer_design(given: Mapping[str, Any], script: Path | None = None) -> DesignAnswer:
     """The answer for options by name; an option that is missing or None is not given.
+
+    With ``script`` a file is written that drops the ball in the engine.
 
     Raises
     ------
@@ -116,19 +121,23 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         found = describe_contact(contact, si.get("gravity"), speed)
     else:
         found = describe_for(contact, setup, si.get("gravity"), speed)
-    engine = None if setup is None else settings_for(found, setup)
+    engine = None if setup is None else settings_for(found, setup, speed)
+    if script is not None:
+        if engine is None:
+            raise ParameterError("{script} needs {engine}, such as mujoco")
+        require_writable(script, (".py",))
+        text = drop_script(engine, contact.radius, found.case.table.gravity)
+        script.write_text(text, encoding="utf-8")
     if engine is not None and isinstance(found, Assessment):
         found = replace(found, time_step=_step_of(engine))
     error = si.get("restitution_error", ERROR)
-    if error != ERROR and setup is None and contact.from_engine is None:
+    if "restitution_error" in si and setup is None and contact.from_engine is None:
         raise ParameterError(
             "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
             "as generic"
         )
-    softer = None
     if engine is not None:
-        at_step = engine.at_step
-        softer = softer_contact(found.case, engine, question, speed)
+        at_step = engine.asked or engine.at_step
     elif "time_step" in si:
         at_step = at_given_step(contact, si["time_step"], error, _impact_speed(found, speed))
     else:
@@ -140,9 +149,12 @@ def answer_design(given: Mapping[str, Any]) -> DesignAnswer:
         engine=engine,
         at_step=at_step,
         question=read,
-        dropped_at_step=dropped_at_step(found.case, engine, speed),
-        softer=softer,
-        looser=looser(found.case, at_step),
+        dropped_at_step=(
+            None
+            if engine is not None
+            else drop_of_parameters(contact, at_step, found.case.table.gravity, speed)
+        ),
+        diagnosis=diagnosis(contact, None if engine is not None else at_step),
         doubts=doubts(given, KINDS),
     )
 
@@ -207,10 +219,11 @@ def design_document(given: DesignAnswer) -> dict[str, Any]:
     """The answer as plain values for JSON, with the options."""
     found = rows.document(given.found)
     # What was not asked for has no key.
-    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer", "looser"):
+    for name in ("dropped", "engine", "at_step", "dropped_at_step"):
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)
-    if given.doubts:
-        found["doubts"] = list(given.doubts)
+    for name in ("doubts", "diagnosis"):
+        if sentences := getattr(given, name):
+            found[name] = list(sentences)
     return found | {"question": given.question}

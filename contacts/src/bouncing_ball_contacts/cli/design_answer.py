@@ -9,8 +9,7 @@ from bouncing_ball_contacts.contact.drops import Dropped, drop_at_rest
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table
-from bouncing_ball_contacts.contact.write import Looser, Softer
-from bouncing_ball_contacts.engines.drop_in_steps import ReboundHeights
+from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps
 from bouncing_ball_contacts.engines.engine import EngineSettings
 from bouncing_ball_contacts.engines.given_step import AtStep
 
@@ -28,11 +27,11 @@ class DesignAnswer(NamedTuple):
     """The contact with all that was asked about it, and the options with quantities in SI units.
 
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
-    ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them, and so are the
-    rises of a drop at the engine's time step, and the softer contact that this step resolves if it
-    does not resolve the one asked for, also for a larger error. ``doubts`` are sentences on numbers
-    that may have been meant in another unit. ``whole`` tells whether all numbers of
-    each family are printed.
+    ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them.
+    ``dropped_at_step`` is a drop onto the parameters of an engine at a time step, and ``diagnosis``
+    says what keeps them from a bounce. ``doubts`` are
+    sentences on numbers that may have been meant in another unit. ``whole`` tells whether all
+    numbers are printed, those of the contact in an engine and those of each family.
     """
 
     found: Assessment | Description
@@ -41,7 +40,6 @@ class DesignAnswer(NamedTuple):
     at_step: AtStep | None
     question: dict[str, Any]
     whole: bool = True
-    dropped_at_step: ReboundHeights | None = None
-    softer: Softer | None = None
-    looser: Looser | None = None
+    dropped_at_step: DropInSteps | None = None
+    diagnosis: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()

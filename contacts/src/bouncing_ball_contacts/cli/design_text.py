@@ -172,17 +172,23 @@ def design_lines(given: DesignAnswer) -> list[str]:
 
 
 def _description(given: DesignAnswer, found: Description) -> list[str]:
-    """The contact without a table."""
-    return [
-        _echo(given.question),
-        *(f"Note: {doubt}." for doubt in given.doubts),
+    """The contact without a table; for an engine what is pasted first."""
+    numbers = [
         *(line(*row) for row in contact_numbers(given)),
         line("release", found.release),
         *law_lines(found),
-        *(f"Note: {note}." for note in found.notes),
-        *_drop_remarks(given),
-        *_of_parameters(given.at_step),
+    ]
+    doubts = [f"Note: {doubt}." for doubt in given.doubts]
+    notes = [*(f"Note: {note}." for note in found.notes), *_drop_remarks(given)]
+    if given.engine is None:
+        stepped = [*_of_parameters(given.at_step), *engine_lines(given)]
+        return [_echo(given.question), *doubts, *numbers, *notes, *stepped]
+    return [
         *engine_lines(given),
+        *doubts,
+        *notes,
+        _echo(given.question),
+        *(["", "Without time steps:", *numbers] if given.whole else []),
     ]
 
 
@@ -201,6 +207,32 @@ def _of_parameters(at: AtStep | None) -> list[str]:
 
 def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
     """The contact on a table, with the verdict first."""
+    judged = [
+        found.headline,
+        found.verdict,
+        f"Reason: {found.reason}.",
+    ]
+    about = [
+        _echo(given.question),
+        found.ends.sentence,
+        *(f"Note: {doubt}." for doubt in given.doubts),
+        *(f"Note: {note}." for note in found.notes),
+        *_drop_remarks(given),
+        *_at_small_steps(given.at_step),
+    ]
+    if given.engine is None:
+        return [*judged, *about, *engine_lines(given), "", *_numbers(given, found)]
+    return [
+        *engine_lines(given),
+        "",
+        *judged,
+        *about,
+        *(["", *_numbers(given, found)] if given.whole else []),
+    ]
+
+
+def _numbers(given: DesignAnswer, found: Assessment) -> list[str]:
+    """The numbers of the contact, the ϖ that the tolerance needs, and the families."""
     need = found.needed
     always = ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
@@ -214,17 +246,6 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
     by_law = _ratio(need.by_law, need.status)
     by_engine = given.engine is not None
     return [
-        found.headline,
-        found.verdict,
-        f"Reason: {found.reason}.",
-        _echo(given.question),
-        found.ends.sentence,
-        *(f"Note: {doubt}." for doubt in given.doubts),
-        *(f"Note: {note}." for note in found.notes),
-        *_drop_remarks(given),
-        *_at_small_steps(given.at_step),
-        *engine_lines(given),
-        "",
         *(line(*row) for row in contact_numbers(given) if not by_engine or row[0] != _STEP),
         *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
         *law_lines(found),

@@ -2,12 +2,12 @@
 
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.options import option
-from bouncing_ball_contacts.contact import rows
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
+from bouncing_ball_contacts.contact.drops import Dropped
 from bouncing_ball_contacts.contact.texts import shown
-from bouncing_ball_contacts.contact.write import Looser
-from bouncing_ball_contacts.engines.drop_in_steps import ReboundHeights
+from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps, Range
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.engines.physical import Physical
@@ -36,38 +36,138 @@ def law_lines(found: Assessment | Description) -> list[str]:
 
 
 def engine_lines(given: DesignAnswer) -> list[str]:
-    """The settings of an engine, if one is named, and what it does at the time step given."""
+    """What is written into an engine, if one is named, and what it does; or what parameters of an
+    engine do at a time step.
+    """
     at = given.at_step
     engine = given.engine
     if engine is None:
+        why = [f"Note: {text}." for text in given.diagnosis]
         if at is None:
-            return []
-        return [*_step_lines(at), *_alternatives_at(given, at), *_looser(given.looser)]
-    speed = given.found.slowed_speed
-    slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
+            return why
+        alternatives = [] if why else _alternatives(given, at)
+        return [*_step_lines(at), *drop_lines(given.dropped_at_step), *why, *alternatives]
     expected = [
-        ("depth at rest", given.found.case.static_deflection, "m"),
         ("orbit, greatest height", engine.max_height, "m"),
         ("orbit, duration of contact", engine.contact_duration, "s"),
         ("orbit, penetration", engine.penetration, "m"),
     ]
-    met = (
-        f"r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
-        f"of {engine.scheme} in a contact"
-    )
-    if at is not None and not at.is_within:
-        met = f"r = {at.span} at this step, {at.mean:.4g} in the mean"
     return [
-        *([] if at is None else _step_lines(at)),
-        "",
-        f"For {engine.name}, with the {engine.release} release ({met}):",
+        f"For {engine.name}, at a time step of {shown(engine.time_step, 's')}:",
         *_pasted(engine),
-        line("time step", shown(engine.time_step, "s")),
+        *drop_lines(engine.drop, engine.wanted),
+        *([] if engine.drop is not None else _without_steps(given.dropped)),
+        *_errors(engine),
+        *_gravity(engine),
+        *_changed(engine),
+        *_instant(engine),
+        *_never_run(engine),
         *_many(engine),
         *(line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
-        *_rise(given.dropped_at_step),
-        *_alternatives(given, engine),
     ]
+
+
+def _ends(ends: Range, unit: str) -> str:
+    """A range in words; one number if its ends are alike in three digits."""
+    least, most = (shown(float(f"{end:.3g}"), unit) for end in ends)
+    if least == most:
+        return most
+    number, _, of = least.partition(" ")
+    return f"{number if most.endswith(f' {of}') else least} to {most}"
+
+
+def drop_lines(drop: DropInSteps | None, asked: float | None = None) -> list[str]:
+    """What a ball does that is dropped in an engine, and lies at rest."""
+    if drop is None:
+        return []
+    rises = f"it rises {_ends(drop.rise, 'm')}" if drop.rise.most > 0 else "it does not rebound"
+    ideal = ""
+    if asked is not None:
+        ideal = f"; {shown(asked**2 * drop.height, 'm', digits=3)} is r = {asked:.4g}"
+    lies = ", and does not come to rest"
+    if drop.depth_at_rest is not None:
+        lies = f", and lies {shown(drop.depth_at_rest, 'm')} deep at rest"
+    return [
+        f"Dropped from {shown(drop.height, 'm', digits=3)} {rises}{ideal}.",
+        f"It sinks in {_ends(drop.compression, 'm')}, under {_ends(drop.peak_force, 'N')}{lies}.",
+    ]
+
+
+def _without_steps(drop: Dropped | None) -> list[str]:
+    """A drop onto a contact of which steps are not known, or too many."""
+    if drop is None:
+        return []
+    return [
+        f"With small steps, dropped from {shown(drop.drop_height, 'm', digits=3)} it rises "
+        f"{shown(drop.rebound_height, 'm', digits=3)}, sinks in "
+        f"{shown(drop.greatest_compression, 'm', digits=3)}, under "
+        f"{shown(drop.peak_force, 'N', digits=3)}."
+    ]
+
+
+def _errors(engine: EngineSettings) -> list[str]:
+    """The error of the drop, and that of a free impact."""
+    if engine.drop is None:
+        return [_free(engine)]
+    found = f"√(h′/h) is within {engine.drop.error:.2g} of r"
+    return [f"{found}; {_free(engine)}"]
+
+
+def _free(engine: EngineSettings) -> str:
+    at = engine.at_step
+    if at is None:
+        return (
+            f"r = {engine.restitution:.4g} without gravity is met within {engine.error:g}, in "
+            f"{engine.steps} steps of {engine.scheme} in a contact."
+        )
+    speed = "" if at.speed is None else f" at {at.speed:.4g} m/s"
+    return f"without gravity r is {at.span}{speed}, in {at.steps:.3g} steps in a contact."
+
+
+def _gravity(engine: EngineSettings) -> list[str]:
+    """A note on what gravity takes, if it is more than the error that is allowed."""
+    taken = engine.taken_by_gravity
+    if taken <= engine.error:
+        return []
+    instead = "a stiffer contact loses less"
+    if engine.at_step is not None and not engine.at_step.is_within:
+        instead = "a shorter step allows a stiffer contact"
+    return [
+        f"Note: gravity takes {taken:.2g} of r in this drop, and more in slower impacts; {instead}."
+    ]
+
+
+def _changed(engine: EngineSettings) -> list[str]:
+    """What of the contact asked for is not written, and why."""
+    at = engine.asked
+    if at is None:
+        return []
+    what = f"{engine.changed} were" if " and " in engine.changed else f"{engine.changed} was"
+    now = ""
+    if at.speed is None:
+        _, k, c = engine.contact
+        now = f", to {shown(k, 'N/m')} and {shown(c, 'N s/m')}"
+    return [
+        f"Note: the {what} changed{now}, because the given contact, of {at.steps:.4g} steps, is "
+        f"{at.verdict}.",
+        *(f"Note: {remark}." for remark in at.remarks),
+    ]
+
+
+def _instant(engine: EngineSettings) -> list[str]:
+    """The number r of an engine, if it comes closer than a contact."""
+    drop = engine.instant_drop
+    if drop is None:
+        return []
+    return [
+        f"Better: {engine.instant}. It rises {_ends(drop.rise, 'm')}, within {drop.error:.2g} of r."
+    ]
+
+
+def _never_run(engine: EngineSettings) -> list[str]:
+    if engine_named(engine.name).was_run:
+        return []
+    return [f"Note: this text was never run, because no wheel of {engine.name} was found."]
 
 
 # More time steps in a contact than simulations have.
@@ -87,13 +187,6 @@ def _pasted(engine: EngineSettings) -> list[str]:
     return ["", *(f"    {line}".rstrip() for line in engine.snippet.splitlines()), ""]
 
 
-def _rise(found: ReboundHeights | None) -> list[str]:
-    if found is None:
-        return []
-    ends = [shown(height, "m") for height in (found.least, found.most)]
-    return [line("the drop rises at this step to", " to ".join(dict.fromkeys(ends)))]
-
-
 def _step_lines(at: AtStep) -> list[str]:
     return [
         "",
@@ -103,94 +196,34 @@ def _step_lines(at: AtStep) -> list[str]:
     ]
 
 
-def _retuned(at: AtStep) -> str:
+def _alternatives(given: DesignAnswer, at: AtStep) -> list[str]:
+    """What else a step allows, for parameters that were given."""
+    if at.is_within:
+        return []
     if at.retuned is None:
-        return f"No damping of this stiffness has a mean r of {at.restitution:.4g} at this step."
-    return (
-        f"With a damping of {shown(at.retuned, at.unit_of_damping)} in place of the given one the "
-        f"mean r is {at.restitution:.4g} at this step"
+        tuned = f"No damping of this stiffness has a mean r of {at.restitution:.4g} at this step."
+    else:
+        tuned = (
+            f"With a damping of {shown(at.retuned, at.unit_of_damping)} in place of the given one "
+            f"the mean r is {at.restitution:.4g} at this step{_retuned_as(given, at)}."
+        )
+    suited = (
+        f"{option('engine')} {at.engine} {option('mass')} {given.found.mass:g} "
+        f"{option('restitution')} {at.restitution:.4g} {option('time_step')} {at.time_step:g}"
     )
-
-
-def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
-    """What else a given step allows, for parameters that were given."""
-    tuned = [] if at.is_within else [f"{_retuned(at).rstrip('.')}{_retuned_as(given, at)}."]
-    if at.stiffest is None:
-        return tuned
-    damping = shown(at.stiffest_damping, at.unit_of_damping)
-    case = given.found.case
-    deep = ""
-    if case.is_linear or at.speed is not None:
-        # A linear spring carries the whole weight.
-        rest = shown(case.mass * case.table.gravity / at.stiffest, "m")
-        deep = f", in which the ball rests {rest} deep"
-    return [
-        *tuned,
-        f"The stiffest contact with the same r within {at.allowed:g} has "
-        f"{shown(at.stiffest, 'N/m')}, with a damping of {damping} and "
-        f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
-        f"steps){_written_as(given, at, at.stiffest, at.stiffest_damping)}{deep}.",
-    ]
+    return [tuned] if at.speed is not None else [tuned, f"What suits this step: {suited}."]
 
 
 def _retuned_as(given: DesignAnswer, at: AtStep) -> str:
-    """The parameters with the retuned damping, of the stiffness that was asked for."""
+    """The parameters with the retuned damping, of an engine whose steps damp."""
     case = given.found.case
     engine = case.given.engine
-    if engine is None or at.retuned is None:
-        return ""
-    parameters = dict(case.given.engine_parameters)
-    parameters.pop("time_step", None)
-    asked = engine.read(parameters, case.mass)
-    return _written_as(given, at, asked.stiffness, at.retuned)
-
-
-def _written_as(given: DesignAnswer, at: AtStep, stiffness: float, damping: float | None) -> str:
-    """The parameters of a contact in an engine whose steps damp it, which are less than that."""
-    case = given.found.case
-    engine = case.given.engine
-    if engine is None or damping is None or engine.scheme is not Scheme.COMPENSATED:
+    if engine is None or at.retuned is None or engine.scheme is not Scheme.COMPENSATED:
         return ""
     if at.speed is not None:
         return ""
-    contact = Physical(case.mass, stiffness, damping)
+    stiffness = engine.stiffness_at_rest(case.given.engine_parameters, case.mass)
+    contact = Physical(case.mass, stiffness, at.retuned)
     values = engine.parameters(engine.for_step(contact, at.time_step))
     said = " and ".join(f"{name} = {value:.6g}" for name, value in values.items())
     return f", written as {said}"
-
-
-def _looser(found: Looser | None) -> list[str]:
-    """The stiffest contact for a larger error."""
-    if found is None:
-        return []
-    damping = shown(found.damping, found.unit_of_damping)
-    return [
-        f"Within {found.error:g} of r it may have {shown(found.stiffness, 'N/m')}, with a damping "
-        f"of {damping}: {option('restitution_error')} {found.error:g}."
-    ]
-
-
-def _alternatives(given: DesignAnswer, engine: EngineSettings) -> list[str]:
-    """The retuned and the softer contact, if the given step does not resolve the one asked for."""
-    at = engine.at_step
-    other = given.softer
-    if at is None or other is None or engine.softer is None:
-        return [] if at is None else ["", *_alternatives_at(given, at)]
-    found = ["", _retuned(at)]
-    if engine.retuned is not None and engine.retuned.at_step is not None:
-        found[-1] += f", and any is r = {engine.retuned.at_step.span}:"
-        found += _pasted(engine.retuned)
-    return [
-        *found,
-        *filter(None, [engine.instant]),
-        f"A softer contact has this r within {at.allowed:g} at this step. Its numbers are:",
-        "",
-        *(line(*row) for row in rows.texts(other.contact)),
-        *law_lines(other.contact),
-        *([] if other.dropped is None else (line(*row) for row in rows.texts(other.dropped))),
-        *_rise(other.dropped_at_step),
-        *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),
-        *([other.verdict] if other.verdict else []),
-        *_pasted(engine.softer),
-        *_looser(given.looser),
-    ]

@@ -7,6 +7,9 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_contacts.cli.design import answer_design, design_document
+from bouncing_ball_contacts.cli.design_answer import DesignAnswer
+from bouncing_ball_contacts.cli.design_text import design_lines
 from bouncing_ball_contacts.contact.quantities import Speed, quantities
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.units import doubts, in_si
@@ -43,6 +46,10 @@ def fit(
     resolution: str | None = None,
     speed: str | None = None,
     frequency: str | None = None,
+    leave_out: str | None = None,
+    engine: str | None = None,
+    time_step: str | None = None,
+    script: Path | None = None,
 ) -> dict[str, Any]:
     """The laws fitted to a file, ranked, with verdicts, as values for JSON.
 
@@ -66,6 +73,14 @@ def fit(
         Impact speed of the contact for "design"; by default the middle of the measured speeds.
     frequency
         Frequency of a table, in place of the speed: that of its 1-T orbit.
+    leave_out
+        Line of the file that is left out, or several, such as 4,7.
+    engine
+        Physics engine for which the contact is written; the answer then begins with the recipe.
+    time_step
+        The engine's time step, if it is given; without a contact time the contact suits it.
+    script
+        File for a script in Python that drops the ball in the engine.
 
     Raises
     ------
@@ -81,7 +96,7 @@ def fit(
         "contact_time_uncertainty": contact_time_uncertainty,
         "resolution": resolution,
     }
-    found = _experiment(file, intervals=intervals, **options)
+    found = _experiment(file, intervals=intervals, leave_out=_lines(leave_out), **options)
     fitted = found.fit()
     judged = judge(fitted)
     best = fitted.best
@@ -92,7 +107,14 @@ def fit(
         v = in_si("speed", speed, quantities(_At)["speed"])
     else:
         v = best.speed
+    recipe = None
+    if engine is not None:
+        recipe = _recipe(best, v, engine, time_step, script)
+    elif time_step is not None or script is not None:
+        name = "time_step" if script is None else "script"
+        raise ParameterError(f"{{{name}}} needs {{engine}}, such as mujoco")
     return {
+        "recipe": recipe,
         "experiment": found.title,
         "points": fitted.points.size,
         "slowest": float(fitted.points.speeds.min()),
@@ -103,13 +125,41 @@ def fit(
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
-        "notes": [*fitted.notes, *_notes(found, fitted, v), *_doubts(options | {"speed": speed})],
+        "notes": [
+            *_order(fitted),
+            *fitted.notes,
+            *_notes(found, fitted, v),
+            *_doubts(options | {"speed": speed}),
+        ],
         "design": _design(best, v),
         "design_of_law": _design_of_law(best, v),
     }
 
 
-def _experiment(file: str, *, intervals: bool, **options: str | None) -> Experiment:
+def _recipe(
+    best: LawFit, speed: float, engine: str, time_step: str | None, script: Path | None
+) -> DesignAnswer:
+    """The contact of the law at an impact speed, as it is written for an engine."""
+    if best.mass is None:
+        raise ParameterError("{engine} needs {mass}, such as 20 g")
+    contact = {
+        "mass": best.mass,
+        "contact_time": float(best.duration_at(speed)) if best.has_stiffness else None,
+        "measured_restitution": float(best.restitution_at(speed)),
+    }
+    setup = {"speed": speed, "engine": engine, "time_step": time_step}
+    return answer_design(contact | setup, script)._replace(whole=False)
+
+
+def _lines(text: str | None) -> list[int]:
+    """The numbers of lines."""
+    parts = [] if text is None else text.replace(",", " ").split()
+    if not all(part.isdecimal() for part in parts):
+        raise ParameterError("{leave_out} = {} is not a list of lines, such as 4,7", text)
+    return [int(part) for part in parts]
+
+
+def _experiment(file: str, *, intervals: bool, **options: Any) -> Experiment:
     known = file in experiment_names() and not Path(file).exists()
     if known and not intervals and not any(options.values()):
         return experiment(file)
@@ -150,7 +200,7 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
         "verdict": str(judgement.verdict),
         "errors_needed": _number(judgement.needed),
         "restitution": fitted.restitution,
-        "restitution_interval": [_number(x) for x in fitted.interval],
+        "restitution_interval": [_number(x) for x in judgement.interval],
         "rms": fitted.rms,
         "left_out_rms": _number(fitted.left_out),
         "extrapolation_rms": _number(judgement.extrapolation),
@@ -167,7 +217,10 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
 
 def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     notes = []
-    if found.drag_bias:
+    if found.left_out:
+        lines = ", ".join(map(str, found.left_out))
+        notes += [f"Left out: line {lines} of the file, and the impacts beside it."]
+    if found.is_without_drag:
         notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
     elif found.is_of_flights:
         notes += ["The drag of the air was not removed: give the mass and the diameter."]
@@ -177,6 +230,16 @@ def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     if fitted.best.has_stiffness and fitted.best.mass is None:
         notes += ["Without the mass, stiffness and damping are per kilogram."]
     return notes
+
+
+def _order(fitted: ContactFit) -> list[str]:
+    """What the order of the laws means, if the first has not the smallest error."""
+    first = fitted.laws[0]
+    least = min(fitted.laws, key=lambda each: each.rms)
+    if not first.rms > least.rms:
+        return []
+    by = "Akaike's criterion, in which the error of each point counts by its uncertainty"
+    return [f"The laws are in the order of {by}; {least.law} has the smallest rms."]
 
 
 def _doubts(options: dict[str, str | None]) -> list[str]:
@@ -205,9 +268,18 @@ def _design_of_law(best: LawFit, speed: float) -> str | None:
     return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
+def fit_document(answer: dict[str, Any]) -> dict[str, Any]:
+    """The answer as plain values for JSON."""
+    recipe = answer["recipe"]
+    rest = {name: value for name, value in answer.items() if name != "recipe"}
+    return rest if recipe is None else rest | {"recipe": design_document(recipe)}
+
+
 def fit_lines(answer: dict[str, Any]) -> list[str]:
     """The answer as text: the impacts that were heard, the laws, notes and the next command."""
+    recipe = answer["recipe"]
     found = [
+        *([] if recipe is None else [*design_lines(recipe), ""]),
         f"{answer['experiment']}: {_speeds(answer)} m/s",
         *_errors(answer),
         "",

@@ -109,7 +109,8 @@ class Contact:
     restitution
         Restitution coefficient of a free impact that ends at the table's level,
         r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine, a law or the release "approach"
-        it is r under that release.
+        it is r under that release. Beside the parameters of an engine it is the r that is wanted:
+        the answer says what keeps them from it.
     measured_restitution
         Restitution coefficient of a free impact, without gravity, under the given release.
     drop_height
@@ -187,7 +188,8 @@ class Contact:
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
         if self.from_engine is not None:
             for other in (*STIFF, *LOSSY, "law"):
-                if getattr(self, other) is not None:
+                # The restitution that is wanted of the parameters.
+                if getattr(self, other) is not None and other != "restitution":
                     raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
         if (self.rebound_height is None) != (self.drop_height is None):
             raise ParameterError("{rebound_height} and {drop_height} are needed together")

@@ -14,6 +14,8 @@ from bouncing_ball_contacts.contact.texts import shown
 
 # The share of the radius up to which a sphere is hardly deformed.
 _SHALLOW = 0.1
+# The depth in m above which a ball of any size sinks in too far.
+_DEEPEST = 0.1
 
 
 @dataclass(frozen=True)
@@ -87,8 +89,20 @@ def drop_at_rest(case: ResolvedContact, speed: Speed) -> Dropped:
 
 
 def deep(depth: float, radius: float | None, when: str) -> tuple[str, ...]:
-    """A sentence on a compression that is not small against the radius, if that is known."""
-    if radius is None or depth <= _SHALLOW * radius:
+    """A sentence on a compression that is not small against the radius, or if that is not known
+    deeper than any that is meant.
+
+    Examples
+    --------
+    >>> deep(49.03, None, "at rest")
+    ('at rest the ball sinks in by 49.03 m: check the stiffness, the mass and their units',)
+    """
+    if radius is None:
+        if depth <= _DEEPEST:
+            return ()
+        check = "check the stiffness, the mass and their units"
+        return (f"{when} the ball sinks in by {shown(depth, 'm')}: {check}",)
+    if depth <= _SHALLOW * radius:
         return ()
     share = (
         f"{when} the ball sinks in by {shown(depth, 'm')}, {shown(depth / radius, '%')} of its "

@@ -123,7 +123,8 @@ def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
 
     duration = float(orbit.contact_duration)
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
-    return greatest_loads(law, motion, times)
+    started = law.started(-float(orbit.relative_impact_velocity))
+    return greatest_loads(started, motion, times)
 
 
 def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,9 +10,10 @@ class NumbersOfContact:
     """What any result about a contact says of it, in SI units.
 
     The r of a free impact holds at speeds above ``slowed_speed``: there, on a table at rest,
-    gravity lowers √(h′/h) by 1 %, and at slower impacts by more. It is None without damping, or if
-    gravity does so at no speed. ``law`` has the ``name`` of a contact law and its parameters, whose
-    units are powers of kg, m and s; it is None for a spring and a damper.
+    gravity lowers √(h′/h) by 1 %, and at slower impacts by more. It is 0 if gravity does so at no
+    speed, as without damping, and None if it lowers it by more at every speed. ``law`` has the
+    ``name`` of a contact law and its parameters, whose units are powers of kg, m and s; it is None
+    for a spring and a damper.
     """
 
     case: ResolvedContact
@@ -33,7 +34,12 @@ class NumbersOfContact:
         return str(self.case.equivalent.release)
 
     @property
-    def slowed_speed(self) -> Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]:
+    def slowed_speed(
+        self,
+    ) -> Annotated[
+        float | None,
+        Listed("gravity lowers r by 1 % at", "m/s", none="every speed", zero="no speed"),
+    ]:
         """The impact speed in m/s at which gravity lowers r by 1 %."""
         return self.case.slowed_speed
 

@@ -74,10 +74,12 @@ class EngineSetup:
         Name of the physics engine for which the contact is written, such as mujoco or lammps; the
         contact then ends as in this engine. A wrong name is answered with the list of all.
     restitution_error
-        Largest error of the restitution coefficient that the engine's time step may cause.
+        Largest error of the restitution coefficient that the engine's time step may cause, by
+        default 0.001. With a time step and no stiffness, the contact is the stiffest one within it;
+        if it is not given, the contact is that with the least error in a drop.
     time_step
-        The engine's time step, if it is given. The answer then says what the contact does at this
-        step, and which is the stiffest contact with the same r within the error.
+        The engine's time step, if it is given. If it is too long for the contact, what is written
+        is the contact with the least error in a drop.
 
     Raises
     ------
@@ -91,9 +93,14 @@ class EngineSetup:
     """
 
     engine: str
-    restitution_error: RestitutionError = ERROR
+    restitution_error: RestitutionError = None
     time_step: TimeStep = None
 
     def __post_init__(self) -> None:
         convert(self)
         engine_named(self.engine)
+
+    @property
+    def error(self) -> float:
+        """The largest error of r, given or the default."""
+        return ERROR if self.restitution_error is None else self.restitution_error

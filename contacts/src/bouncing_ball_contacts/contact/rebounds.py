@@ -13,6 +13,7 @@ import scipy
 
 from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.laws.march import march
 from bouncing_ball_beyond.models.laws.panel import Start
@@ -67,7 +68,9 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
     """
     length, rate = (float(x[0]) for x in scales(law, np.array([speed]), np.ones(1)))
     unit = length / rate
-    loaded = under(law, 1.0)
+    # Of some laws the damping depends on the speed with which the contact starts.
+    started = law.started(speed)
+    loaded = under(started, 1.0)
 
     def fall(_: float, state: np.ndarray) -> list[float]:
         p, v = state * [length, rate]
@@ -90,13 +93,13 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
         p, v = run.sol(times) * np.array([[length], [rate]])
         return p, v, np.ones_like(times)
 
-    deepest, heaviest = greatest_loads(law, contact_motion, times)
+    deepest, heaviest = greatest_loads(started, contact_motion, times)
     turned = run.t_events[0].size > 0
     return deepest if turned else max(rest(law), deepest), max(heaviest, 1.0)
 
 
 def greatest_loads(
-    law: ContactLaw,
+    law: ForceLaw,
     motion: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]],
     times: np.ndarray,
 ) -> tuple[float, float]:
@@ -104,7 +107,8 @@ def greatest_loads(
 
     Parameters
     ----------
-    law : ContactLaw
+    law : ForceLaw
+        That of a contact with this start (:meth:`~.ForceLaw.started`).
     motion : callable
         Penetration p, its rate p′ and the load a at times, which is 1 on a table at rest.
     times : ndarray
@@ -150,10 +154,12 @@ def _restitution(law: ContactLaw, speed: float) -> float:
 # An answer asks for it of the same contact several times.
 @lru_cache(maxsize=64)
 def slowed(law: ContactLaw, fast: float) -> float | None:
-    """The speed at which gravity lowers r by one part in a hundred; None if it does at no speed.
+    """The speed at which gravity lowers r by one part in a hundred: 0 if it does at no speed, and
+    None if it lowers r by more at every speed.
 
-    ``fast`` is a speed at which gravity is not felt. r is that of a free impact of the same speed.
-    Faster impacts have this r more closely, slower ones are below it, unless nothing is lost.
+    ``fast`` is a speed at which gravity is not felt, unless the loss grows with the speed. r is
+    that of a free impact of the same speed. Faster impacts have this r more closely, slower ones
+    are below it, unless nothing is lost.
 
     Examples
     --------
@@ -178,7 +184,7 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     # A loss that grows with the speed stops fast balls.
     tried = (math.log(fast) - math.log(10) * np.arange(_DECADES)).tolist()
     if restitution(tried[0]) > 1 - _ROUNDING:
-        return None
+        return 0.0
     upper = next((x for x in tried if restitution(x) > 0 and surplus(x) >= 0), None)
     if upper is None:
         return None
@@ -187,4 +193,4 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
         if surplus(lower) < 0:
             return math.exp(scipy.optimize.brentq(surplus, lower, upper, xtol=1e-10))
         upper = lower
-    return None
+    return 0.0

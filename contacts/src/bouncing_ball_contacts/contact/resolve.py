@@ -28,6 +28,7 @@ from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball_contacts.contact.contact import STIFF, Contact
+from bouncing_ball_contacts.contact.diagnose import diagnosis
 from bouncing_ball_contacts.contact.hertz import hertz, reduced_modulus
 from bouncing_ball_contacts.contact.loss import loss, omega_of_time, same_omega
 from bouncing_ball_contacts.contact.quantities import given, single
@@ -76,19 +77,37 @@ def resolve(
     0.1
     """
     plain = contact.by_stiffness_and_loss(written)
+    if written is None:
+        _require_rebound(contact, plain)
     kind = law_type(plain)
     is_stiff = single(given(plain), STIFF, "the stiffness of the contact") != ""
     modulus = reduced_modulus(plain)
     if speed is not None and not table.is_at_rest:
         speed = None
     if not is_stiff:
-        raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
+        instead = "" if written is None else f", or the {{time_step}} of {written}"
+        raise ParameterError(f"no stiffness: give {{stiffness}}, or {{contact_time}}{instead}")
     if kind is None and modulus is None:
         found = _spring_damper(plain, table)
     else:
         found = _of_law(plain, table, families, kind, modulus, speed)
     found = replace(found, given=contact, written=written, impact_speed=speed)
     return _with_law_of_engine(found, families)
+
+
+def _require_rebound(contact: Contact, plain: Contact) -> None:
+    """Refuse parameters of an engine in which the damper pulls and holds the ball.
+
+    Raises
+    ------
+    ModelError
+        With the least change after which the ball bounces.
+    """
+    engine = contact.engine
+    if engine is None or engine.needs_speed or plain.rule is not Release.DISPLACEMENT:
+        return
+    if engine.contact(contact.engine_parameters, contact.mass).damping_ratio >= 1:
+        raise ModelError("; ".join(diagnosis(contact, None)))
 
 
 def law_type(contact: Contact) -> type[ContactLaw] | None:

@@ -174,20 +174,26 @@ class ResolvedContact:
 
     @property
     def static_deflection(self) -> float:
-        """mg/k in m; for a contact law the deflection at which its force at rest is the weight."""
+        """mg/k in m; for a contact law the deflection at which its force at rest is the weight.
+
+        The k of an engine's parameters is the one that they have at rest, whatever contact they are
+        at a time step.
+        """
+        engine = self.given.engine
+        if self.is_linear and engine is not None and self.written is None:
+            parameters = self.given.engine_parameters
+            return self.mass * self.table.gravity / engine.stiffness_at_rest(parameters, self.mass)
         if self.is_linear:
             return self.table.gravity / self.omega**2
         return rest(self.law) * self.table.length
 
     @property
     def slowed_speed(self) -> float | None:
-        """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact; None
-        without damping, for ζ ≥ 1, and for a contact law in which it does at no speed.
+        """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact: 0 if
+        it does at no speed, as without damping, and None if it lowers r by more at every speed.
         """
         if self.is_linear:
             zeta = float(self.equivalent.damping_ratio)
-            if not 0 < zeta < 1:
-                return None
             # In units of 1/ω and g/ω² the contact has ϖ = 1.
             found = slowed(SpringDamper(1.0, zeta, self.equivalent.release), _FAST)
             unit = self.table.gravity / self.omega

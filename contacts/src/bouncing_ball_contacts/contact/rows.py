@@ -13,10 +13,15 @@ from bouncing_ball_contacts.contact.texts import shown
 
 
 class Listed(NamedTuple):
-    """How a result is listed: its description, and its unit for :func:`~.texts.shown`."""
+    """How a result is listed: its description, and its unit for :func:`~.texts.shown`.
+
+    ``none`` and ``zero`` are what is printed for None and, if it is not empty, for 0.
+    """
 
     words: str
     unit: str = ""
+    none: str = "none"
+    zero: str = ""
 
 
 class Entry(NamedTuple):
@@ -30,6 +35,8 @@ class Entry(NamedTuple):
     words: str
     unit: str
     value: Any
+    none: str = "none"
+    zero: str = ""
 
     @property
     def text(self) -> str:
@@ -38,6 +45,10 @@ class Entry(NamedTuple):
             return "yes" if self.value else "no"
         if isinstance(self.value, str):
             return self.value
+        if self.value is None:
+            return self.none
+        if self.value == 0 and self.zero:
+            return self.zero
         return shown(self.value, self.unit)
 
 
@@ -49,7 +60,7 @@ def rows(result: Any) -> list[Entry]:
     Examples
     --------
     >>> from bouncing_ball_contacts.contact.assess import LargestTimeStep
-    >>> [tuple(row) for row in rows(LargestTimeStep(2e-6, "a rule"))]
+    >>> [tuple(row)[:4] for row in rows(LargestTimeStep(2e-6, "a rule"))]
     [(('largest',), 'largest time step', 's', 2e-06), (('rule',), '', '', 'a rule')]
     """
     found: list[Entry] = []
@@ -66,8 +77,8 @@ def rows(result: Any) -> list[Entry]:
         elif is_dataclass(value):
             found += [row._replace(key=(name, *row.key)) for row in rows(value)]
         else:
-            words, unit = listed[0] if listed else ("", "")
-            found.append(Entry((name,), words, unit, value))
+            how = listed[0] if listed else Listed("")
+            found.append(Entry((name,), how.words, how.unit, value, how.none, how.zero))
     return found
 
 

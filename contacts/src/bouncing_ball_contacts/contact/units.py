@@ -47,6 +47,12 @@ _SOFTEST = 1e4
 _PERCENT = 5
 # Units that mean something else than what a user of SI units means, by the SI unit of a parameter.
 _FALSE_FRIENDS = {"kg": {"gr": "g", "gm": "g"}, "N/m": {"Nm": "N/m", "N m": "N/m", "N*m": "N/m"}}
+# Units that are a part of the unit of a parameter.
+_PARTS = {
+    "N/m": {"N": "N/m", "kN": "kN/m", "MN": "MN/m"},
+    "N*s/m": {"N s": "N s/m", "Ns": "N s/m", "N*s": "N s/m", "kN s": "kN s/m"},
+    "m/s^2": {"m/s": "m/s^2"},
+}
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -191,7 +197,7 @@ def _not_one_number(value: str, rest: str) -> str:
 
 def _spelling(unit: str, kind: SIParameter) -> str:
     """The unit that was meant, if a common one has the same letters; otherwise an empty text."""
-    if unit in (friends := _FALSE_FRIENDS.get(kind.name, {})):
+    if unit in (friends := _FALSE_FRIENDS.get(kind.name, {}) | _PARTS.get(kind.name, {})):
         return friends[unit]
     typed = _BETWEEN.sub("", unit).casefold()
     for spelling in _SPELLINGS.get(kind.name, ()):

@@ -1,33 +1,42 @@
 """The third question: what does one write into an engine for a contact?
 
-The time step follows from the contact, or is given. A given step is too long for stiff contacts.
-The settings are those of the contact that was asked for, with the r that it has at this step.
-Beside them are those with a retuned damping, and those of a softer contact with its own numbers.
+The time step follows from the contact, or is given. A given step is too long for stiff contacts:
+what is written is then the contact whose rebound in a drop is nearest to the r that was asked for,
+with another damping or another stiffness. Without a stiffness it is the contact with the least
+error, or the stiffest one within an error that is given.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from bouncing_ball.errors import ModelError, ParameterError, suggesting
-from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
+import numpy as np
+
+from bouncing_ball.errors import ParameterError, suggesting
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.assess import Assessment, assess
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import LONGEST, Description, description_of
-from bouncing_ball_contacts.contact.drops import Dropped, drop_at_rest
-from bouncing_ball_contacts.contact.loss import of_loss
-from bouncing_ball_contacts.contact.quantities import check_kinds
+from bouncing_ball_contacts.contact.hertz import MATERIALS
+from bouncing_ball_contacts.contact.loss import loss, of_loss
+from bouncing_ball_contacts.contact.quantities import check_kinds, given
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
+from bouncing_ball_contacts.contact.rebounds import rises
 from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import Table, TableMotion
-from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.engines.choice import engine_named
-from bouncing_ball_contacts.engines.drop_in_steps import MOST_STEPS, ReboundHeights, drop_in_steps
+from bouncing_ball_contacts.engines.drop_in_steps import MOST_STEPS, DropInSteps, drop_in_steps
 from bouncing_ball_contacts.engines.engine import Engine, EngineSettings
 from bouncing_ball_contacts.engines.given_step import AtStep, stiffest_contact
-from bouncing_ball_contacts.engines.hunt_crossley_steps import fewest_steps_of_law
+from bouncing_ball_contacts.engines.physical import Physical
 
+HEIGHT = 1.0
+"""The height in m of the drop by which a contact is judged if no speed and no height is given."""
+# The steps of the contact from which the search for another one begins.
+_BEGIN = 20.0
+_AS_GOOD = 1.1
 _STEP = "time_step"
 _OF_A_LAW = (
     "{time_step} is given for a spring and a damper, or for drake with {law} hunt-crossley: "
@@ -48,7 +57,8 @@ def write_contact(
     ----------
     contact : Contact
         Its restitution is the measured one, under the release of the engine. With a time step it
-        needs no stiffness: the answer is then the stiffest contact that this step resolves.
+        needs no stiffness: the answer is then the contact with the least error in a drop from 1 m,
+        or the stiffest one within the error of a free impact that is given.
     setup : EngineSetup
         The engine and, if it is given, its time step.
     table : Table, optional
@@ -71,13 +81,11 @@ def write_contact(
     >>> found.parameters["solref"][0], round(found.restitution, 6), found.release
     (-100000.0, 0.75, 'force')
 
-    A step of a millisecond is too long for it, but the mean r can be restored:
+    A step of a millisecond is too long for it, and a softer contact is written:
 
     >>> found = write_contact(contact, EngineSetup(engine="mujoco", time_step="1 ms"))
-    >>> found.at_step.is_within, found.parameters["solref"][0]
-    (False, -100000.0)
-    >>> round(found.retuned.at_step.mean, 6), f"{found.at_step.stiffest:.3g} N/m"
-    (0.75, '74.6 N/m')
+    >>> found.changed, found.contact.stiffness < 5e4, found.drop.error < 0.02
+    ('stiffness', True, True)
     """
     asked = Question() if question is None else question
     # Without a table its place is held by its class.
@@ -96,41 +104,84 @@ def describe_for(
     gravity: float | None = None,
     speed: float | None = None,
 ) -> Description:
-    """The numbers of a contact as it ends in the engine, or without a stiffness those of the
-    stiffest one that the time step of the engine resolves.
+    """The numbers of a contact as it ends in the engine, or without a stiffness those of the one
+    that suits the time step of the engine.
 
     Raises
     ------
     ModelError
         If parameters do not suffice or contradict each other, or no contact has its r within the
-        error at this step.
+        error that is given at this step.
     """
     at_rest = TableMotion.at_rest(gravity)
     step = setup.time_step
     if contact.is_stiff or step is None:
         return description_of(resolve(contact, at_rest, written=setup.engine, speed=speed))
-    plain = contact.by_stiffness_and_loss(setup.engine)
-    scheme = engine_named(setup.engine).scheme
-    allowed = setup.restitution_error
+    if setup.restitution_error is None:
+        stiffness = _suited_stiffness(contact, setup.engine, step, at_rest.gravity, speed)
+    else:
+        stiffness = _stiffest(contact, setup.engine, step, at_rest.gravity, setup.error)
+    stiff = replace(contact, stiffness=stiffness)
+    case = resolve(stiff, at_rest, written=setup.engine, speed=speed)
+    return description_of(replace(case, given=contact))
+
+
+def _suited_stiffness(
+    contact: Contact, name: str, step: float, gravity: float, speed: float | None
+) -> float:
+    """The stiffness in N/m of the contact whose rebound in a drop is nearest to its r."""
+    plain = contact.by_stiffness_and_loss(name)
+    engine = engine_named(name)
+    release = plain.rule
+    # The r of a drop test is taken without gravity here, and fitted to the stiffness afterwards.
+    zeta = loss(plain)
+    of_step = SpringDamper.of_duration(step, zeta, release)
+    omega = float(of_step.frequency_ratio) / _BEGIN
+    linear = Physical(plain.mass, plain.mass * omega**2, 2 * zeta * plain.mass * omega)
+    at = engine.at_step(linear, release, step, 1.0)
+    height = _height(contact, gravity, speed)
+    return engine.suited(linear, release, at, at.restitution, height, gravity)[1].contact.stiffness
+
+
+def _stiffest(contact: Contact, name: str, step: float, gravity: float, error: float) -> float:
+    """The stiffness in N/m of the stiffest contact whose free impacts have its r within an error.
+
+    Raises
+    ------
+    ModelError
+        If there is none.
+    """
+    plain = contact.by_stiffness_and_loss(name)
+    scheme = engine_named(name).scheme
 
     def stiffness(zeta: float) -> tuple[float, float]:
-        found, steps = stiffest_contact(scheme, plain.mass, zeta, plain.rule, step, allowed)
+        found, steps = stiffest_contact(scheme, plain.mass, zeta, plain.rule, step, error)
         if steps * step > LONGEST:
             raise ParameterError(
                 f"no contact shorter than {LONGEST:g} s has its r within {{restitution_error}} "
-                f"{allowed:g} at {{time_step}} {step:g} s: allow a larger error"
+                f"{error:g} at {{time_step}} {step:g} s: allow a larger error"
             )
         return found.angular_frequency, found.stiffness
 
-    stiff = replace(contact, stiffness=of_loss(plain, at_rest.gravity, stiffness))
-    return description_of(resolve(stiff, at_rest, written=setup.engine))
+    return of_loss(plain, gravity, stiffness)
 
 
-def settings_for(found: Assessment | Description, setup: EngineSetup) -> EngineSettings:
-    """The settings for a contact, and on a table the orbit that the engine will show.
+def _height(contact: Contact, gravity: float, speed: float | None) -> float:
+    """The height in m of the drop in question, from its impact speed in m/s if that is given."""
+    if speed is not None:
+        return speed**2 / (2 * gravity)
+    return HEIGHT if contact.drop_height is None else contact.drop_height
 
-    At a given time step they have the r of a law at the impact speed of this orbit, or else at that
-    at which the law has the r of the contact.
+
+def settings_for(
+    found: Assessment | Description, setup: EngineSetup, speed: float | None = None
+) -> EngineSettings:
+    """The settings for a contact, what a drop onto it does in the engine, and on a table the orbit
+    that the engine will show.
+
+    ``speed`` is the impact speed of the drop in m/s, by default that of the orbit on a table. At a
+    given time step the settings have the r of a law at this speed, or else at that at which the law
+    has the r of the contact.
 
     Raises
     ------
@@ -145,10 +196,16 @@ def settings_for(found: Assessment | Description, setup: EngineSetup) -> EngineS
     if given_step and not case.is_spring_damper and not engine.has_steps_of_law:
         raise ParameterError(_OF_A_LAW)
     release = str(case.equivalent.release)
-    error = setup.restitution_error
-    settings = engine.settings(case.physical, release, error, setup.time_step)
+    settings = engine.settings(case.physical, release, setup.error, setup.time_step)
+    if case.is_spring_damper or engine.has_steps_of_law:
+        if speed is None and judged is not None:
+            speed = judged.impact_speed
+        height = _height(case.given, case.table.gravity, speed)
+        settings = _dropped(engine, settings, case, height)
     # At a step that is too long the contact has another r, and so another orbit.
     if judged is None or (settings.at_step is not None and not settings.at_step.is_within):
+        return settings
+    if settings.changed:
         return settings
     return replace(
         settings,
@@ -158,6 +215,76 @@ def settings_for(found: Assessment | Description, setup: EngineSetup) -> EngineS
     )
 
 
+def _dropped(
+    engine: Engine, asked: EngineSettings, case: ResolvedContact, height: float
+) -> EngineSettings:
+    """The settings with their drop, or at a step that is too long those with the least error."""
+    gravity = case.table.gravity
+    at = asked.at_step
+    r = asked.restitution if at is None else at.restitution
+    measured = case.given
+    if measured.rebound_height is not None:
+        r = math.sqrt(measured.rebound_height / measured.drop_height)
+    tried = [("", engine, asked)]
+    if at is not None and not at.is_within and case.given.is_stiff:
+        release = Release(asked.release)
+        suited = engine.suited(asked.contact, release, at, r, height, gravity)
+        candidates = {
+            "damping": engine.retuned(asked.contact, release, at),
+            "stiffness": suited,
+            "stiffness and damping": suited[0].retuned(
+                suited[1].contact, release, suited[1].at_step or at
+            ),
+        }
+        tried += [(what, *found) for what, found in candidates.items() if found is not None]
+    drops = [one.drop(settings, height, gravity, r) for _, one, settings in tried]
+    errors = np.array([math.inf if drop is None else drop.error for drop in drops])
+    # The fewest changes that are about as good as the best ones.
+    best = int(np.argmax(errors <= _AS_GOOD * errors.min()))
+    changed, engine, settings = tried[best]
+    settings = replace(
+        settings,
+        changed=changed,
+        asked=at if changed else None,
+        wanted=r,
+        drop=drops[best],
+        taken_by_gravity=_taken_by_gravity(case, engine, settings, height),
+    )
+    return _with_instant(engine, settings, r, height, gravity)
+
+
+def _taken_by_gravity(
+    case: ResolvedContact, engine: Engine, settings: EngineSettings, height: float
+) -> float:
+    """How much less √(h′/h) is than the r of a free impact, in a drop without steps."""
+    unit = case.table
+    law: ContactLaw | None = None
+    if not case.is_spring_damper:
+        law = engine.law(settings.parameters, case.mass, unit.time, unit.length)
+    if law is None:
+        ratio = settings.contact.angular_frequency * unit.time
+        zeta = settings.contact.damping_ratio
+        law = SpringDamper(ratio, zeta, Release(settings.release))
+    speed = np.array([math.sqrt(2 * height / unit.length)])
+    free = float(law.signature(speed[0]).restitution)
+    return free - float(np.sqrt(2 * rises(law, speed))[0] / speed[0])
+
+
+def _with_instant(
+    engine: Engine, settings: EngineSettings, r: float, height: float, gravity: float
+) -> EngineSettings:
+    """The settings, with the number r of the engine beside them if it comes closer."""
+    step = engine.instant(r, settings.time_step)
+    if step is None or settings.at_step is None or settings.drop is None:
+        return settings
+    mass = settings.contact.mass
+    half = engine.half_steps
+    drop = drop_in_steps(step, mass, height, gravity, 1.0, r, half_steps=half)
+    if drop.error >= settings.drop.error:
+        return settings
+    return replace(settings, instant=engine.instant_in_words(r), instant_drop=drop)
+
+
 def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> Engine:
     """The engine with this name, for the law of a contact and for impacts with a speed in m/s."""
     engine = engine_named(name)
@@ -165,89 +292,10 @@ def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> 
     if law is None:
         return engine
     at = case.law_speed if speed is None else speed
-    return engine.with_law({**law, "radius": case.given.radius, "speed": at})
-
-
-@dataclass(frozen=True)
-class Softer:
-    """The stiffest contact with the same ζ that a given time step resolves, with its own numbers.
-
-    It is the answer about the contact whose settings are ``EngineSettings.softer``, and keeps the
-    error of r that was allowed, unlike :class:`Looser`. ``dropped`` is a drop with the speed that
-    was asked about, and ``dropped_at_step`` the least and the greatest rise at this step.
-    ``verdict`` is that on a vibrating table, otherwise empty.
-    """
-
-    contact: Description
-    dropped: Dropped | None = None
-    dropped_at_step: ReboundHeights | None = None
-    verdict: str = ""
-
-
-def softer_contact(
-    case: ResolvedContact, settings: EngineSettings, question: Question, speed: float | None
-) -> Softer | None:
-    """The softer contact of settings for a given time step; None if the step resolves the contact.
-
-    ``speed`` is the impact speed of a drop in m/s.
-    """
-    if settings.softer is None or settings.softer.at_step is None:
-        return None
-    at = settings.softer.at_step
-    if not case.is_spring_damper:
-        own = _longer(case, at.steps * at.time_step)
-    else:
-        ball = at.stiffest_spring(case.mass)
-        if ball is None:
-            return None
-        ratio = ball.angular_frequency * case.table.time
-        spring = SpringDamper(ratio, ball.damping_ratio, case.equivalent.release)
-        plain = Contact(mass=case.mass, stiffness=ball.stiffness, damping=ball.damping)
-        own = replace(case, plain=plain, law=spring, equivalent=spring)
-    return Softer(
-        contact=description_of(own),
-        dropped=None if speed is None else drop_at_rest(own, speed),
-        dropped_at_step=dropped_at_step(own, settings.softer, speed),
-        verdict="" if case.table.is_at_rest else _verdict(own, question),
-    )
-
-
-def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
-    """The contact whose impacts take so many seconds, of a law of which steps are known: that of a
-    linear spring, so that r is the same at each speed whatever its stiffness is.
-    """
-    law = case.law
-    factor = contact_time / (
-        float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
-    )
-    slower = replace(case.equivalent, frequency_ratio=case.equivalent.frequency_ratio / factor)
-    return replace(case, law=law.stiffened(1 / factor**2), equivalent=slower)
-
-
-def _verdict(case: ResolvedContact, question: Question) -> str:
-    """The headline and the verdict on a contact, or the reason why there are none."""
-    period = 2 * math.pi * case.table.time
-    if not case.is_spring_damper and case.contact_time > period:
-        long = f"an impact takes {shown(case.contact_time, 's')}, more than the table's period"
-        return f"It is not judged: {long} of {shown(period, 's')}."
-    try:
-        found = assess(case, question)
-    except ModelError as error:
-        return f"It is not judged: {error}."
-    return f"{found.headline} {found.verdict}"
-
-
-def dropped_at_step(
-    case: ResolvedContact, settings: EngineSettings | None, speed: float | None
-) -> ReboundHeights | None:
-    """The rises of balls that are dropped, in an engine with a time step that is given."""
-    if speed is None or settings is None or settings.at_step is None:
-        return None
-    if settings.at_step.steps > MOST_STEPS:
-        return None
-    release = case.equivalent.release
-    step = _engine_of(case, settings.name).step(case.physical, release, settings.time_step)
-    return drop_in_steps(step, speed, case.table.gravity, case.physical.contact_time(release))
+    data = given(case.given)
+    materials = tuple(data[name] for name in MATERIALS) if MATERIALS[0] in data else None
+    known = {"radius": case.given.radius, "speed": at, "materials": materials}
+    return engine.with_law({**law, **known})
 
 
 def at_given_step(
@@ -294,56 +342,30 @@ def at_own_step(contact: Contact, error: float, speed: float | None = None) -> A
     return replace(found, is_of_parameters=True)
 
 
-LOOSE = 0.01
-"""An error of r with which a contact may be stiffer by one or two orders than with 0.001."""
-
-
-@dataclass(frozen=True)
-class Looser:
-    """The stiffest contact whose r is within a larger error at a given time step, in SI units.
-
-    It is stiffer than that of :class:`Softer`, which keeps the error that was allowed.
+def drop_of_parameters(
+    contact: Contact, at: AtStep | None, gravity: float, speed: float | None
+) -> DropInSteps | None:
+    """A drop onto a contact by parameters of an engine, at the step of ``at``; None without a
+    step.
     """
-
-    error: float
-    stiffness: float
-    damping: float
-    unit_of_damping: str = "N s/m"
-
-
-def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
-    """The contact with a larger error; None if the step resolves the given one, or for that error.
-
-    Examples
-    --------
-    >>> from bouncing_ball_contacts.contact.resolve import resolve
-    >>> contact = Contact(mass=1.0, stiffness=1e6, restitution=0.75)
-    >>> case = resolve(contact, TableMotion.at_rest(), written="generic")
-    >>> setup = EngineSetup(engine="generic", time_step="2 ms")
-    >>> at = settings_for(description_of(case), setup).at_step
-    >>> looser(case, at).stiffness > 20 * at.stiffest
-    True
-    """
-    if at is None or at.is_within or at.allowed >= LOOSE:
+    engine = contact.engine
+    if at is None or engine is None:
         return None
-    if at.speed is not None:
-        return _looser_of_law(at, at.speed)
-    exact = at.stiffest_spring(case.mass)
-    if exact is None:
+    parameters = {k: x for k, x in contact.engine_parameters.items() if k != _STEP}
+    plain = contact.by_stiffness_and_loss()
+    release = engine.release(contact.release)
+    one, found = engine.at_parameters(parameters, plain.mass, at.time_step)
+    step = one.step(found, release, at.time_step)
+    height = _height(contact, gravity, speed)
+    if at.steps > MOST_STEPS:
         return None
-    scheme = engine_named(at.engine).scheme
-    release = case.equivalent.release
-    found, _ = stiffest_contact(
-        scheme, case.mass, exact.damping_ratio, release, at.time_step, LOOSE
+    return drop_in_steps(
+        step,
+        plain.mass,
+        height,
+        gravity,
+        at.steps,
+        at.restitution,
+        half_steps=one.half_steps,
+        is_stable=at.is_stable,
     )
-    return Looser(LOOSE, found.stiffness, found.damping)
-
-
-def _looser_of_law(at: AtStep, speed: float) -> Looser | None:
-    """The contact with a larger error and the damping of Hunt and Crossley."""
-    if at.stiffest is None or at.stiffest_steps is None or at.stiffest_damping is None:
-        return None
-    # The number of steps depends on the damping and the speed alone.
-    law = LinearHuntCrossley(at.stiffest, at.stiffest_damping)
-    stiffer = at.stiffest * (at.stiffest_steps / fewest_steps_of_law(law, speed, LOOSE)) ** 2
-    return Looser(LOOSE, stiffer, at.stiffest_damping, at.unit_of_damping)

@@ -128,7 +128,14 @@ class HuntCrossleyDrake(Drake):
         m, _, _ = self._two(parameters, mass)
         if speed is None:
             raise missing_speed()
-        return at_step_of_law(self.law(parameters, m), m, speed, time_step, error)
+        return at_step_of_law(self.law(parameters, m), speed, time_step, error)
+
+    def at_parameters(
+        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
+    ) -> tuple[Engine, Physical]:
+        contact = self.read(parameters, mass)
+        _, double, dissipation = self._two(parameters, mass)
+        return HuntCrossleyDrake({"stiffness": double / 2, "damping": dissipation}), contact
 
     def step(self, contact: Physical, release: Release, time_step: float) -> HuntCrossleyStep:
         law = self._of_mass(contact.mass)
@@ -144,7 +151,7 @@ class HuntCrossleyDrake(Drake):
     ) -> AtStep:
         law = self._of_mass(contact.mass)
         speed = self._law_in_si["speed"]
-        return at_step_of_law(law, contact.mass, speed, time_step, error, self._asked)
+        return at_step_of_law(law, speed, time_step, error, self._asked)
 
     def _of_mass(self, mass: float) -> LinearHuntCrossley:
         """The law that is written, with the stiffness per unit of mass."""
@@ -155,15 +162,15 @@ class HuntCrossleyDrake(Drake):
     ) -> tuple[Engine, Physical]:
         return HuntCrossleyDrake({**self._law_in_si, "damping": damping}, restitution), contact
 
-    def _softer(self, contact: Physical, at: AtStep) -> tuple[Engine, Physical] | None:
-        if at.stiffest is None or at.stiffest_contact_time is None:
-            return None
-        law = {**self._law_in_si, "stiffness": twelve_digits(at.stiffest)}
-        # The linear contact with the same r lasts longer by the same factor.
-        longer = at.stiffest_contact_time / (at.steps * at.time_step)
+    def stiffness(self, contact: Physical) -> float:
+        return self._law_in_si["stiffness"]
+
+    def with_stiffness(self, contact: Physical, stiffness: float) -> tuple[Engine, Physical]:
+        # r is the same at each speed, whatever the stiffness is.
+        factor = stiffness / self._law_in_si["stiffness"]
         m, k, c = contact
-        soft = Physical(m, twelve_digits(k / longer**2), twelve_digits(c / longer))
-        return HuntCrossleyDrake(law), soft
+        linear = Physical(m, twelve_digits(k * factor), twelve_digits(c * math.sqrt(factor)))
+        return HuntCrossleyDrake({**self._law_in_si, "stiffness": stiffness}), linear
 
     def parameters(self, contact: Physical) -> EngineParameters:
         values = (

@@ -14,8 +14,15 @@ import numpy as np
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_contacts.engines.drop_in_steps import (
+    MOST_STEPS,
+    DropInSteps,
+    drop_in_steps,
+    restitutions_in_steps,
+)
 from bouncing_ball_contacts.engines.given_step import AtStep, at_step
 from bouncing_ball_contacts.engines.impacts import steps_for
+from bouncing_ball_contacts.engines.least_error import stiffness_of_least_error
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated, represented
 from bouncing_ball_contacts.engines.settings import EngineParameters, EngineSettings
@@ -68,6 +75,10 @@ class Engine(ABC):
     text: ClassVar[str] = ""
     has_steps_of_law: ClassVar[bool] = False
     """Whether it is known what the engine's law does at a time step that is given."""
+    half_steps: ClassVar[bool] = False
+    """Whether velocities are those of half steps, so that free flights are exact."""
+    was_run: ClassVar[bool] = True
+    """Whether the text to paste was run in the engine."""
     needs_speed: ClassVar[bool] = False
     """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
 
@@ -186,12 +197,24 @@ class Engine(ABC):
         limit = "k, c and r are those in the limit of small time steps, which damp less"
         return (f"{limit}; with the parameter time_step, in s, they are those of this step",)
 
-    def instant(self, restitution: float) -> str:
-        """How the engine has an r at any time step, in impacts that are instants; empty if unknown.
-
-        Such impacts have no stiffness, and no depth at rest.
+    def instant(self, restitution: float, time_step: float) -> Step | None:
+        """The step of impacts that are instants, for engines in which r is a number beside those of
+        the contact; None without such a number.
         """
+        return None
+
+    def instant_in_words(self, restitution: float) -> str:
+        """How such an impact is set; empty without one."""
         return ""
+
+    def stiffness_at_rest(self, parameters: Mapping[str, Any], mass: float | None) -> float:
+        """The stiffness in N/m that carries a ball at rest.
+
+        Steps that are implicit do not damp a ball at rest, so that it is that of the parameters,
+        whatever contact they are at a step.
+        """
+        values = {name: value for name, value in parameters.items() if name != "time_step"}
+        return self.read(values, mass).stiffness
 
     def release(self, asked: str | None = None) -> Release:
         """The release with this name, or the engine's default.
@@ -231,8 +254,7 @@ class Engine(ABC):
     ) -> EngineSettings:
         """The settings for a contact, with a time step that changes r by at most ``error``.
 
-        With a ``time_step`` in s they are for this step, whatever r the contact then has; the
-        result also has a retuned and a softer contact if the step does not resolve this one.
+        With a ``time_step`` in s they are for this step, whatever r the contact then has.
 
         Raises
         ------
@@ -246,8 +268,6 @@ class Engine(ABC):
         >>> found = MuJoCo().settings(Physical(1.0, 1e6, 200.0), error=0.01, time_step=2e-4)
         >>> found.at_step.is_within, found.time_step, found.parameters["solref"]
         (False, 0.0002, [-1000000.0, -200.0])
-        >>> found.retuned.parameters["solref"][0], found.softer.parameters["solref"][0] > -1e6
-        (-1000000.0, True)
         """
         rule = self.release(release)
         contact = Physical(*map(twelve_digits, contact))
@@ -255,18 +275,79 @@ class Engine(ABC):
             steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
             step = twelve_digits(contact.contact_time(rule) / steps)
             return self._settings(contact, rule, error, step, steps)
-        at = self.at_step(contact, rule, time_step, error)
-        found = self._at(contact, rule, at)
-        if at.is_within:
-            return found
-        tuned = None
-        if at.retuned is not None:
-            tuned = self._retuned(contact, twelve_digits(at.retuned), at.restitution)
-        return replace(
-            found,
-            instant=self.instant(at.restitution),
-            retuned=self._at_same_step(tuned, rule, at, contact),
-            softer=self._at_same_step(self._softer(contact, at), rule, at),
+        return self._at(contact, rule, self.at_step(contact, rule, time_step, error))
+
+    def retuned(
+        self, contact: Physical, release: Release, at: AtStep
+    ) -> tuple["Engine", EngineSettings] | None:
+        """The engine and the settings of a contact with the damping that restores the mean r at the
+        step of ``at``; None if no damping does.
+        """
+        if at.retuned is None:
+            return None
+        engine, tuned = self._retuned(contact, twelve_digits(at.retuned), at.restitution)
+        again = engine.at_step(tuned, release, at.time_step, at.allowed, contact)
+        return engine, engine._at(tuned, release, again)
+
+    def suited(
+        self,
+        contact: Physical,
+        release: Release,
+        at: AtStep,
+        restitution: float,
+        height: float,
+        gravity: float,
+    ) -> tuple["Engine", EngineSettings]:
+        """The engine and the settings of the contact with the free r of ``at`` and another
+        stiffness, with which √(h′/h) of a drop is nearest to a restitution at the step of ``at``.
+        """
+
+        def found(stiffness: float, steps: float) -> np.ndarray:
+            engine, other = self.with_stiffness(contact, stiffness)
+            step = engine.step(other, release, at.time_step)
+            return restitutions_in_steps(step, height, gravity, steps, half_steps=self.half_steps)
+
+        one = self.stiffness(contact) * at.steps**2
+        best = stiffness_of_least_error(found, restitution, one)
+        engine, other = self.with_stiffness(contact, best)
+        again = engine.at_step(other, release, at.time_step, at.allowed)
+        return engine, engine._at(other, release, again)
+
+    def stiffness(self, contact: Physical) -> float:
+        """The stiffness in N/m that is written for a contact, without what compensates a step."""
+        return contact.stiffness
+
+    def with_stiffness(self, contact: Physical, stiffness: float) -> tuple["Engine", Physical]:
+        """The engine and the contact with a stiffness in N/m and the same r.
+
+        Examples
+        --------
+        >>> from bouncing_ball_contacts.engines.mujoco import MuJoCo
+        >>> MuJoCo().with_stiffness(Physical(1.0, 100.0, 2.0), 400.0)
+        (MuJoCo(), Physical(mass=1.0, stiffness=400.0, damping=4.0))
+        """
+        m, k, c = contact
+        return self, Physical(m, stiffness, twelve_digits(c * math.sqrt(stiffness / k)))
+
+    def drop(
+        self, settings: EngineSettings, height: float, gravity: float, restitution: float
+    ) -> DropInSteps | None:
+        """A drop with settings of this engine; None if a contact takes too many steps.
+
+        ``restitution`` is the r that was asked for.
+        """
+        if settings.steps > MOST_STEPS:
+            return None
+        step = self.step(settings.contact, Release(settings.release), settings.time_step)
+        return drop_in_steps(
+            step,
+            settings.contact.mass,
+            height,
+            gravity,
+            settings.steps,
+            restitution,
+            half_steps=self.half_steps,
+            is_stable=settings.at_step is None or settings.at_step.is_stable,
         )
 
     def _retuned(
@@ -274,25 +355,6 @@ class Engine(ABC):
     ) -> tuple["Engine", Physical]:
         """The engine and the contact with the damping that restores the mean r at a step."""
         return self, contact._replace(damping=damping)
-
-    def _softer(self, contact: Physical, at: AtStep) -> tuple["Engine", Physical] | None:
-        """The engine and the stiffest contact that the step resolves; None if none was found."""
-        exact = at.stiffest_spring(contact.mass)
-        return None if exact is None else (self, Physical(*map(twelve_digits, exact)))
-
-    @staticmethod
-    def _at_same_step(
-        other: tuple["Engine", Physical] | None,
-        release: Release,
-        at: AtStep,
-        asked: Physical | None = None,
-    ) -> EngineSettings | None:
-        """The settings of another contact at the step of ``at``; None without such a contact."""
-        if other is None:
-            return None
-        engine, contact = other
-        again = engine.at_step(contact, release, at.time_step, at.allowed, asked)
-        return engine._at(contact, release, again)
 
     def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
         """The settings of a contact at a time step that is given."""
@@ -311,6 +373,7 @@ class Engine(ABC):
         by_rule = {str(one): r for one, r in self.restitutions(contact, release).items()}
         return EngineSettings(
             name=self.name,
+            contact=contact,
             parameters=self.parameters(self.for_step(contact, step)),
             time_step=step,
             release=str(release),
@@ -377,6 +440,14 @@ class Engine(ABC):
         if self.scheme is not Scheme.COMPENSATED:
             return self.read(parameters, mass), ()
         return self.contact({**parameters, "time_step": time_step}, mass), ()
+
+    def at_parameters(
+        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
+    ) -> tuple["Engine", Physical]:
+        """The engine and the contact that it computes with parameters and a time step in s, whose
+        :meth:`step` is that of their law.
+        """
+        return self, self.stepped(parameters, mass, time_step)[0]
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
         """The mass in kg, after a check of it and of the names of all parameters."""

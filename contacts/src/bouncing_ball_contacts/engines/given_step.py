@@ -65,16 +65,13 @@ class AtStep:
     ``restitution`` is the r of the contact with small steps. In the engine a free impact has an r
     between ``least`` and ``most``, which depends on where in a step the contact begins, and
     ``error`` is the largest difference from ``restitution``; ``is_within`` tells whether it is
-    ``allowed``. ``mean`` is the mean r over all these instants. A ball that does not leave has
-    r = 0. The contact takes so many ``steps``; it is unstable if the steps of a lasting contact
-    grow. With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``;
-    it is None if no damping achieves that, or if the contact is within the error as it is. The
-    ``stiffest`` contact with the same r is within the error allowed; these are its numbers, and
-    ``EngineSettings.softer`` its settings. ``remarks`` are sentences on how
-    the engine changes the contact at this step, and ``is_of_parameters`` tells whether parameters
-    that contain the step were given. If r depends on the impact ``speed`` in m/s, all this holds at
-    this speed, the dampings are those of Hunt and Crossley in s/m, and a stiffest contact is sought
-    only if the contact is not within the error.
+    ``allowed``. ``mean`` is the mean r over all these instants. A ball that does not leave has r =
+    0. The contact takes so many ``steps``; it is unstable if the steps of a lasting contact grow.
+    With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``; it is
+    None if no damping achieves that, or if the contact is within the error as it is. ``remarks``
+    are sentences on how the engine changes the contact at this step, and ``is_of_parameters`` tells
+    whether parameters that contain the step were given. If r depends on the impact ``speed`` in
+    m/s, all this holds at this speed, and the damping is that of Hunt and Crossley in s/m.
     """
 
     engine: str
@@ -87,10 +84,6 @@ class AtStep:
     error: float
     allowed: float
     is_within: bool
-    stiffest: float | None = None
-    stiffest_damping: float | None = None
-    stiffest_contact_time: float | None = None
-    stiffest_steps: float | None = None
     mean: float = math.nan
     retuned: float | None = None
     remarks: tuple[str, ...] = ()
@@ -129,7 +122,7 @@ class AtStep:
 
     @property
     def unit_of_damping(self) -> str:
-        """The unit of the dampings ``retuned`` and ``stiffest_damping``."""
+        """The unit of the damping ``retuned``."""
         return "N s/m" if self.speed is None else "s/m"
 
     @property
@@ -138,14 +131,6 @@ class AtStep:
         least = f"{self.least:.4g}"
         most = f"{self.most:.4g}"
         return least if least == most else f"{least} to {most}"
-
-    def stiffest_spring(self, mass: float) -> Physical | None:
-        """The stiffest spring and damper with the same r for a mass in kg; None if none was sought,
-        or if it has the damping of Hunt and Crossley.
-        """
-        if self.speed is not None or self.stiffest is None or self.stiffest_damping is None:
-            return None
-        return Physical(mass, self.stiffest, self.stiffest_damping)
 
     @property
     def verdict(self) -> str:
@@ -363,13 +348,6 @@ def at_step(
     ratio = None
     if not found.is_within:
         ratio = retuned(scheme, tuned.damping_ratio, release, omega * time_step, r)
-    same = wanted.damping_ratio
-    most, fewest = stiffest_contact(scheme, contact.mass, same, release, time_step, error)
-    return replace(
-        found,
-        stiffest=most.stiffness,
-        stiffest_damping=most.damping,
-        stiffest_contact_time=fewest * time_step,
-        stiffest_steps=fewest,
-        retuned=None if ratio is None else 2 * ratio * contact.mass * omega,
-    )
+    if ratio is None:
+        return found
+    return replace(found, retuned=2 * ratio * contact.mass * omega)

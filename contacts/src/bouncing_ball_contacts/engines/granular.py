@@ -35,6 +35,7 @@ class Lammps(Proportional):
     names = ("kn", "gamma_n")
     releases = (Release.DISPLACEMENT, Release.FORCE)
     scheme = Scheme.SEMI_IMPLICIT
+    half_steps = True
     laws: ClassVar[dict[str, str]] = LAWS
 
     def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
@@ -55,6 +56,7 @@ class Liggghts(Lammps):
     """
 
     name = "liggghts"
+    was_run = False
     names = ("kn", "gamman")
 
     def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
@@ -72,6 +74,8 @@ class MercuryDPM(Proportional):
     """
 
     name = "mercurydpm"
+    was_run = False
     names = ("stiffness", "dissipation")
     releases = (Release.DISPLACEMENT,)
     scheme = Scheme.SEMI_IMPLICIT
+    half_steps = True

@@ -6,8 +6,10 @@ and find C from r themselves: its r is the same at every speed
 
 * *LAMMPS*: ``wall/gran granular hertz K r … damping coeff_restitution``, where K = k/√R = (4/3) E*
   belongs to the sphere. Its ``damping tsuji`` computes C by another formula, and r is larger.
-* *LIGGGHTS*: ``model hertz`` with E, ν and r of the one type of atom that ball and wall have, so
-  that E* = E/(2(1 - ν²)).
+* *LIGGGHTS*: ``model hertz`` with E and ν of the types of the ball and of the wall, and r of their
+  pair, ``1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂``. Tangential forces depend on them by more than E*, so
+  that the materials that were given are written. If only E* was given, both have ν = 0.3 and
+  E = 2(1 - ν²) E*.
 """
 
 import math
@@ -22,7 +24,7 @@ from bouncing_ball_contacts.engines.scheme import Scheme
 
 LAWS = {"tsuji": "tsuji"}
 """The law of both engines, by the name that users may give."""
-# Of the many E and ν that have the same E*, those with a Poisson's ratio of solids.
+# Of the many E and ν that have the same E*, those of two alike bodies of a usual solid.
 _POISSON = 0.3
 
 
@@ -31,6 +33,7 @@ class _HertzWall(Proportional):
 
     releases = (Release.DISPLACEMENT,)
     scheme = Scheme.SEMI_IMPLICIT
+    half_steps = True
 
     def __init__(self, law_in_si: Mapping[str, Any]):
         self._radius = law_in_si["radius"]
@@ -73,18 +76,31 @@ class HertzLammps(_HertzWall):
 class HertzLiggghts(_HertzWall):
     """``model hertz`` of LIGGGHTS.
 
+    The SI parameters may have the ``materials`` of ball and wall: E and ν of each.
+
     Examples
     --------
     >>> law = {"stiffness": 2e6, "radius": 0.25}
     >>> HertzLiggghts(law).parameters(Physical(mass=1.0, stiffness=1e6, damping=0.0))
-    {'youngsModulus': 5460000.0, 'poissonsRatio': 0.3, 'coefficientRestitution': 1.0}
+    {'youngsModulus': [5460000.0, 5460000.0], 'poissonsRatio': [0.3, 0.3], \
+'coefficientRestitution': 1.0}
     """
 
     name = "liggghts"
+    was_run = False
     names = ("youngsModulus", "poissonsRatio", "coefficientRestitution")
     text: ClassVar[str] = "liggghts-hertz"
 
+    def __init__(self, law_in_si: Mapping[str, Any]):
+        super().__init__(law_in_si)
+        alike = (2 * (1 - _POISSON**2) * self._modulus, _POISSON)
+        self._materials = law_in_si.get("materials") or (*alike, *alike)
+
     def parameters(self, contact: Physical) -> EngineParameters:
-        young = 2 * (1 - _POISSON**2) * self._modulus
-        values = young, _POISSON, contact.restitution(Release.DISPLACEMENT)
-        return dict(zip(self.names, map(twelve_digits, values), strict=True))
+        ball, ball_ratio, wall, wall_ratio = map(twelve_digits, self._materials)
+        values: tuple[float | list[float], ...] = (
+            [ball, wall],
+            [ball_ratio, wall_ratio],
+            twelve_digits(contact.restitution(Release.DISPLACEMENT)),
+        )
+        return dict(zip(self.names, values, strict=True))

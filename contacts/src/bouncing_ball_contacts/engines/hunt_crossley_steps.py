@@ -1,9 +1,7 @@
 """A free impact on Drake's contact with Hunt and Crossley's damping, at a time step that is given.
 
-In units of the impact speed V and of 1/ω, ω = √(k/m), it depends on h = ωΔt and D = dV. For a given
-d and V the duration T of a contact in units of 1/ω is fixed, so that a contact that needs N steps
-has ω = T/(N Δt): with the smallest N for which r is within an error it is the stiffest one with
-this r. The steps are implicit ones, whose error falls about as 1/N.
+In units of the impact speed V and of 1/ω, ω = √(k/m), it depends on h = ωΔt and D = dV. The steps
+are implicit ones, whose error falls about as 1/N with the number N of steps in a contact.
 """
 
 import math
@@ -15,7 +13,6 @@ import scipy
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_contacts.engines.given_step import AtStep, Spread, spread
-from bouncing_ball_contacts.engines.impacts import FEWEST
 from bouncing_ball_contacts.engines.steps import HuntCrossleyStep, patience, until_outside
 
 # Between two jumps r is smooth, and is known to this part of itself.
@@ -24,9 +21,6 @@ _SMOOTH = 1e-6
 _MOST_STEPS = 20_000
 _FEWEST_STEPS = 1e-3
 _FINE = 1e-9
-# How closely the number of steps of the stiffest contact is found, and the steps of that search.
-_CLOSE = 1e-6
-_TRIED = 40
 
 
 def spread_of_damping(damping: float, step: float, most: int) -> Spread:
@@ -49,52 +43,8 @@ def spread_of_damping(damping: float, step: float, most: int) -> Spread:
     return spread(impacts, _SMOOTH)
 
 
-def fewest_steps_of_law(law: LinearHuntCrossley, speed: float, error: float) -> float:
-    """The smallest number of steps in a contact for which its r at a speed is within an error;
-    infinite if it is more than are followed.
-
-    Examples
-    --------
-    Without damping the contact is the linear one:
-
-    >>> from bouncing_ball_contacts.engines.impacts import fewest_steps
-    >>> from bouncing_ball_contacts.engines.scheme import Scheme
-    >>> from bouncing_ball_beyond.models.damping import Release
-    >>> linear = fewest_steps(Scheme.IMPLICIT, 0.0, Release.FORCE, 0.1)
-    >>> bool(abs(fewest_steps_of_law(LinearHuntCrossley(3.0, 0.0), 2.0, 0.1) / linear - 1) < 1e-2)
-    True
-    """
-    impact = law.signature(speed)
-    angle = float(impact.duration) * math.sqrt(float(law.stiffness))
-    exact = float(impact.restitution)
-
-    def off(steps: float) -> float:
-        damping = float(law.damping) * speed
-        return spread_of_damping(damping, angle / steps, patience(steps)).error(exact)
-
-    bad = FEWEST / 2
-    good = math.inf
-    steps = float(FEWEST)
-    for _ in range(_TRIED):
-        found = off(steps)
-        if found <= error:
-            good = steps
-        else:
-            bad = steps
-        if good <= FEWEST or (math.isfinite(good) and good - bad <= _CLOSE * good):
-            return good
-        # The error falls about as 1/N, which the next number is beyond by a little.
-        guess = steps * found / error * (1 + _CLOSE / 2 * math.copysign(1, found - error))
-        inside = bad * (1 + _CLOSE / 4) < guess < good * (1 - _CLOSE / 4)
-        steps = guess if inside else math.sqrt(bad * min(good, 4 * bad))
-        if steps > _MOST_STEPS:
-            return math.inf
-    return good
-
-
 def at_step_of_law(
     law: LinearHuntCrossley,
-    mass: float,
     speed: float,
     time_step: float,
     error: float,
@@ -112,7 +62,7 @@ def at_step_of_law(
 
     Examples
     --------
-    >>> found = at_step_of_law(LinearHuntCrossley(2e5, 0.5), 0.5, 1.0, 1e-3, 0.001)
+    >>> found = at_step_of_law(LinearHuntCrossley(2e5, 0.5), 1.0, 1e-3, 0.001)
     >>> found.is_within, found.least < found.most < found.restitution
     (False, True)
     """
@@ -139,21 +89,9 @@ def at_step_of_law(
 
     of_law = AtStep.of("drake", time_step, steps, wanted, found(damping), error)
     tuned = None
-    fewest = math.inf
-    if not of_law.is_within and asked is None:
-        fewest = fewest_steps_of_law(law, speed, error)
-        if surplus(0.0) >= 0:
-            tuned = float(scipy.optimize.brentq(surplus, 0.0, damping, xtol=_FINE))
-    is_known = math.isfinite(fewest)
-    return replace(
-        of_law,
-        stiffest=mass * float(law.stiffness) * (steps / fewest) ** 2 if is_known else None,
-        stiffest_damping=float(law.damping) if is_known else None,
-        stiffest_contact_time=fewest * time_step if is_known else None,
-        stiffest_steps=fewest if is_known else None,
-        retuned=None if tuned is None else tuned / speed,
-        speed=speed,
-    )
+    if not of_law.is_within and asked is None and surplus(0.0) >= 0:
+        tuned = float(scipy.optimize.brentq(surplus, 0.0, damping, xtol=_FINE))
+    return replace(of_law, retuned=None if tuned is None else tuned / speed, speed=speed)
 
 
 def missing_speed() -> ParameterError:

@@ -26,6 +26,7 @@ from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import Engine, Physical, at_speeds
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
+from bouncing_ball_contacts.engines.steps import ImpedanceStep
 
 # What is written between numbers and around them elsewhere.
 _BETWEEN = re.compile(r"[\s,;()\[\]]+")
@@ -177,6 +178,14 @@ class MuJoCo(Engine):
             power=power,
         )
 
+    def at_parameters(
+        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
+    ) -> tuple[Engine, Physical]:
+        contact, _ = self.stepped(parameters, mass, time_step)
+        direct = [-contact.stiffness / contact.mass, -contact.damping / contact.mass]
+        law = self.law({**parameters, "solref": direct})
+        return self if law is None else _MuJoCoOfLaw(law), contact
+
     def stepped(
         self, parameters: Mapping[str, Any], mass: float | None, time_step: float
     ) -> tuple[Physical, tuple[str, ...]]:
@@ -217,14 +226,11 @@ class MuJoCo(Engine):
         law = self.law(parameters)
         if law is None:
             return ()
-        # The impedance is constant at depths greater than the width; d = 0 is a spring and damper.
-        deep = Impedance(law.frequency_ratio, law.damping_ratio, law.share).signature(1.0)
+        # Deep in, where the impedance is constant, a free impact is that of a spring and damper.
         spring = Impedance(law.frequency_ratio, law.damping_ratio, 0.0).signature(1.0)
-        found = (
+        found: tuple[str, ...] = (
             f"with the impedance {law.share:g} a contact feels {1 - law.share:.2g} of the load "
             '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
-            f"under a load a this r is r + σ a/v with σ = {deep.load:.4g} s, and "
-            f"{spring.load:.4g} s for a spring and a damper",
         )
         if law.has_kink:
             share = law.at_surface / law.share
@@ -236,3 +242,13 @@ class MuJoCo(Engine):
                 "where it is much deeper than that",
             )
         return found
+
+
+class _MuJoCoOfLaw(MuJoCo):
+    """MuJoCo with an impedance of which the load is felt, in SI units."""
+
+    def __init__(self, law: Impedance):
+        self._law = law
+
+    def step(self, contact: Physical, release: Release, time_step: float) -> ImpedanceStep:
+        return ImpedanceStep(self._law, time_step)

@@ -14,6 +14,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import Engine, EngineParameters, Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
+from bouncing_ball_contacts.engines.steps import InstantStep, Step
 
 
 class Proportional(Engine):
@@ -77,7 +78,9 @@ class PyBullet(Proportional):
     sizes: the damper then acts from the surface on, so that r is ``exp(-ζωh)`` times the value
     without such contacts. The text to paste allows none, and no slop.
 
-    ``restitution`` is another kind of contact: an instant with the product of both bodies' values.
+    ``restitution`` is another kind of contact: an instant with the product r of both bodies'
+    values, of the speed that a ball inside has after gravity: in a step Δt it rebounds with
+    ``r (v + gΔt)``, so that slow impacts bounce too high.
     With contacts ahead the ball is stopped at the surface instead, so that r is 0; below
     ``restitutionVelocityThreshold`` it is 0 as well; and ``contactERP`` adds up to its own value
     to r, as it pushes the ball out of the table.
@@ -102,18 +105,19 @@ class PyBullet(Proportional):
             both = float(parameters["restitution"]) ** 2
             raise ModelError(
                 "restitution of pybullet has no stiffness: if ball and table have it, "
-                f"r = {both:.4g} at any time step, with contactProcessingThreshold=0, contactERP=0 "
-                "and "
+                f"r = {both:.4g} with small steps, and {both:.4g} (1 + gΔt/v) at a step Δt and an "
+                "impact speed v, with contactProcessingThreshold=0, contactERP=0 and "
                 "restitutionVelocityThreshold=0, and 0 without the first of these"
             )
         return self
 
-    def instant(self, restitution: float) -> str:
-        each = f"restitution={math.sqrt(restitution):.6g}"
+    def instant(self, restitution: float, time_step: float) -> Step | None:
+        return InstantStep(restitution, time_step)
+
+    def instant_in_words(self, restitution: float) -> str:
         return (
-            f"Without a spring, {each} of ball and table alike has r = {restitution:.4g} at any "
-            "time step, with contactProcessingThreshold=0, contactERP=0 and "
-            "restitutionVelocityThreshold=0."
+            f"restitution={math.sqrt(restitution):.6g} of ball and table alike, without a spring, "
+            "with contactProcessingThreshold=0, contactERP=0 and restitutionVelocityThreshold=0"
         )
 
     def factors(self, mass: float) -> tuple[float, float]:

@@ -6,6 +6,7 @@ acts, if the ball is at x < 0 before the step, and moves the ball with the veloc
 are per unit of mass, in units of any time and length.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol, Self
@@ -14,6 +15,8 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.scales import rest
+from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated
 
 # A ball that has not left after so many steps, and as many times the duration of a contact, stays.
@@ -26,6 +29,10 @@ class Step(Protocol):
 
     @property
     def size(self) -> float: ...
+
+    def depth_at_rest(self, gravity: float) -> float:
+        """The penetration at which the contact carries a ball at rest."""
+        ...
 
     def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
         """v⁺ of balls at x < 0 with the velocity v ``before``, and ``free`` v - gh without contact.
@@ -71,6 +78,10 @@ class LinearStep:
         if scheme is Scheme.COMPENSATED:
             stiffness, damping = compensated(stiffness, damping, size)
         return cls(scheme, stiffness, damping, release, size)
+
+    def depth_at_rest(self, gravity: float) -> float:
+        """g/k of the k of the step, which carries the ball alone, also where k compensates h."""
+        return gravity / self.stiffness
 
     @property
     def is_implicit(self) -> bool:
@@ -140,6 +151,9 @@ class HuntCrossleyStep:
     damping: float
     size: float
 
+    def depth_at_rest(self, gravity: float) -> float:
+        return gravity / self.stiffness
+
     def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
         p = np.maximum(-place, 0.0)
         pull = self.size * self.stiffness
@@ -153,6 +167,47 @@ class HuntCrossleyStep:
         if self.damping > 0:
             fast = np.minimum(fast, 1 / self.damping)
         return np.where(free < fast, held, free)
+
+
+@dataclass(frozen=True)
+class ImpedanceStep:
+    """A step of MuJoCo with an impedance, with the force at its start: ``v⁺ = free + h f``, f ≥ 0.
+
+    The law is in SI units: its ϖ is the natural frequency in rad/s, and its width is in m.
+    """
+
+    law: Impedance
+    size: float
+
+    def depth_at_rest(self, gravity: float) -> float:
+        # In units of g the weight is 1, and so is the force of the law that carries it.
+        return rest(replace(self.law, width=self.law.width / gravity)) * gravity
+
+    def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        # The load is what changes the velocity without a contact.
+        loaded = self.law.under((before - free) / self.size)
+        force = loaded.force(np.maximum(-place, 0.0), -before)
+        return free + self.size * np.maximum(force, 0.0)
+
+
+@dataclass(frozen=True)
+class InstantStep:
+    """A step of PyBullet with ``restitution``: a ball inside that approaches leaves at once, with
+    r times the speed that it has after gravity, ``v⁺ = -r (v - gh)``.
+
+    Source: Bullet's sequential impulse solver, read with the engine itself: heights of drops agree
+    to rounding.
+    """
+
+    restitution: float
+    size: float
+
+    def depth_at_rest(self, gravity: float) -> float:
+        """0: the ball lies at the surface."""
+        return 0.0
+
+    def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
+        return np.where(free < 0, -self.restitution * free, free)
 
 
 def patience(steps: float) -> int:
@@ -174,13 +229,28 @@ def until_outside(
     >>> bool(0 <= x[0] < 0.001), round(float(v[0]), 5)
     (True, 1.0)
     """
+    last = place, velocity
+    for x, v, _ in steps_inside(step, place, velocity, most, gravity):
+        last = x, v
+    return last
+
+
+def steps_inside(
+    step: Step, place: np.ndarray, velocity: np.ndarray, most: int, gravity: float = 0.0
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """x, v and the force per unit of mass of each step, while a ball is inside; at most so many.
+
+    A ball that has left stays where it is.
+    """
     x = place
     v = velocity
     for _ in range(most):
         inside = x < 0
         if not inside.any():
-            break
-        after = step.velocity(x, v, v - step.size * gravity)
+            return
+        free = v - step.size * gravity
+        after = step.velocity(x, v, free)
+        force = np.where(inside, after - free, 0.0) / step.size
         v = np.where(inside, after, v)
         x = np.where(inside, x + step.size * v, x)
-    return x, v
+        yield x, v, force

@@ -15,6 +15,11 @@ the mass and the diameter of the ball are known, the drag of the air is removed 
 intervals (:mod:`bouncing_ball_contacts.measured.flights`). The files of the package are in SI
 units.
 
+Files that instruments write are read as well. Columns may be separated by tabs or by semicolons,
+and numbers may then have decimal commas; a single column of numbers may have them, too. Headings
+may be those of telephone apps, such as ``Interval (s)`` and ``Event time (s)``, and a column that
+counts the events is passed over.
+
 Where a file has no uncertainties their size follows from the scatter of the points. Errors of
 restitution coefficients that stand in the file are then taken as equal. Those that follow from
 heights or intervals are not: the same error of all heights, of a reading or of an uneven floor, is
@@ -23,9 +28,10 @@ an error of e that falls as 1/v² (:func:`bouncing_ball_contacts.measured.flight
 
 import csv
 import math
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -67,6 +73,32 @@ QUANTITIES = {
 """The numbers at the head of a file."""
 TEXTS = ("title", "ball", "measured by", "published", "source", "read", "note")
 """The texts at the head of a file; each may stand on several lines."""
+# Headings of instruments, in lower case, and columns that only count.
+_ALIASES = {
+    "event time": "time",
+    "impact time": "time",
+    "times": "time",
+    "t": "time",
+    "intervals": "interval",
+    "time interval": "interval",
+    "drop": "drop_height",
+    "rebound": "rebound_height",
+}
+_COUNTS = {
+    "event",
+    "events",
+    "bounce",
+    "impact",
+    "index",
+    "no",
+    "no.",
+    "nr",
+    "number",
+    "n",
+    "#",
+    "",
+}
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 _WAYS = ({"speed", "restitution"}, {"drop_height", "rebound_height"}, {"interval"}, {"time"})
 _FURTHER = {"uncertainty", "duration", "duration_uncertainty"}
 _OF_INTERVALS = {"recording"}
@@ -96,10 +128,14 @@ class Experiment:
     drag_bias : float
         The largest change of a restitution coefficient by the removal of the drag; 0 if it was not
         removed.
+    is_without_drag : bool
+        Whether it was removed, for which the mass and the diameter are known.
     is_of_flights : bool
         Whether the speeds follow from heights or times of flights, on which the drag acts.
     heard : Heard or None
         The impacts of a bouncing ball with the biases that were removed.
+    left_out : tuple of int
+        The lines of the file that were left out.
     """
 
     name: str
@@ -113,8 +149,10 @@ class Experiment:
     mass: float | None = None
     diameter: float | None = None
     drag_bias: float = 0.0
+    is_without_drag: bool = False
     is_of_flights: bool = False
     heard: Heard | None = field(default=None, repr=False)
+    left_out: tuple[int, ...] = ()
 
     @property
     def title(self) -> str:
@@ -175,7 +213,8 @@ def read(file: str | Path, **options: Any) -> Experiment:
         Numbers in place of those at the head of the file, with ``_`` for a space: ``mass``,
         ``diameter``, ``contact_time``, ``contact_time_uncertainty`` and ``resolution``.
         ``intervals=True`` reads the intervals of one bouncing ball, for which a line with the names
-        of the columns is not needed.
+        of the columns is not needed. ``leave_out`` has the numbers of lines that are left out: no
+        impact beside such an interval or time is used.
 
     Raises
     ------
@@ -186,15 +225,25 @@ def read(file: str | Path, **options: Any) -> Experiment:
         raise ModelError("the name of the file is empty")
     path = Path(file)
     intervals = options.pop("intervals", False)
+    leave_out = tuple(options.pop("leave_out", ()))
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not a text in UTF-8"
         raise ModelError(f"{path} cannot be read: {why}") from None
     head, rows = _parts(path, lines)
-    if intervals and rows and _is_number(rows[0][1].split(",")[0]):
+    rows = _with_points(rows)
+    if rows and _is_number(rows[0][1].split(",")[0]):
+        if not intervals:
+            raise ParameterError(
+                f"{path}, line {rows[0][0]}: numbers without a heading: is it a file of "
+                "{intervals}, or is a line such as 'speed [m/s],restitution' missing?"
+            )
         rows = [(0, "interval [s]"), *rows]
-    columns = _columns(path, rows)
+    columns, at = _columns(path, rows)
+    for line in leave_out:
+        if line not in at:
+            raise ModelError(f"{path} has no line {line} with numbers to leave out")
     if intervals and not columns.keys() & {"interval", "time"}:
         raise ModelError(f"{path} has no column interval or time")
     numbers = {key: value for key, value in head.items() if key in QUANTITIES}
@@ -205,9 +254,39 @@ def read(file: str | Path, **options: Any) -> Experiment:
     _require_their_use(path, numbers, columns)
     texts = {key: value for key, value in head.items() if key in TEXTS}
     try:
-        return _experiment(path.stem, texts, numbers, columns)
+        return _experiment(path.stem, texts, numbers, columns, _Lines(at, leave_out))
+    except ParameterError as error:
+        text, *values = error.args
+        raise ParameterError(f"{path}: {text}", *values) from None
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None
+
+
+class _Lines(NamedTuple):
+    """The lines of the rows of numbers, and those that are left out."""
+
+    numbers: list[int]
+    left_out: tuple[int, ...]
+
+
+def _with_points(rows: list[tuple[int, str]]) -> list[tuple[int, str]]:
+    """Rows with commas between the columns and points in numbers, whatever an instrument writes."""
+    text = "\n".join(line for _, line in rows)
+    mark = next((mark for mark in "\t;" if mark in text), None)
+    if mark is not None:
+        # A mark at the end of a line is no further column.
+        parts = ((at, line.strip(mark).split(mark)) for at, line in rows)
+        return [(at, ",".join(_point(cell) for cell in cells)) for at, cells in parts]
+    numbers = [line.strip() for _, line in rows if not any(map(str.isalpha, line))]
+    if numbers and all(map(_DECIMAL_COMMA.fullmatch, numbers)):
+        return [(at, _point(line)) for at, line in rows]
+    return rows
+
+
+def _point(cell: str) -> str:
+    """A number with a decimal point in place of a comma; other texts as they are."""
+    text = cell.strip().strip('"')
+    return text.replace(",", ".") if _DECIMAL_COMMA.match(text) else text
 
 
 def _require_their_use(
@@ -270,12 +349,14 @@ def _quantity(path: Path, at: int, name: str, value: str, kind: SIParameter) -> 
         raise ModelError(f"{path}, line {at}: {error}") from None
 
 
-def _columns(path: Path, rows: list[tuple[int, str]]) -> dict[str, np.ndarray]:
-    """The columns of a file in SI units, by name."""
+def _columns(path: Path, rows: list[tuple[int, str]]) -> tuple[dict[str, np.ndarray], list[int]]:
+    """The columns of a file in SI units, by name, and the lines of their rows."""
     if not rows:
         raise ModelError(f"{path} has no line with the names of the columns")
     at, line = rows[0]
-    titles = [_title(path, at, each) for each in next(csv.reader([line]))]
+    headings = next(csv.reader([line]))
+    counts = len(headings) > 1 and headings[0].strip().casefold() in _COUNTS
+    titles = [_title(path, at, each) for each in headings[counts:]]
     wanted = [name for name, _ in titles]
     if len(set(wanted)) < len(wanted) or set(wanted) - _FURTHER - _OF_INTERVALS not in _WAYS:
         ways = "; or ".join(" and ".join(sorted(way, reverse=True)) for way in _WAYS)
@@ -290,24 +371,26 @@ def _columns(path: Path, rows: list[tuple[int, str]]) -> dict[str, np.ndarray]:
         raise ModelError(f"{path}, line {at}: duration_uncertainty needs a column duration")
     found: dict[str, list[float]] = {name: [] for name in wanted}
     for at, line in rows[1:]:
-        cells = next(csv.reader([line]))
+        cells = next(csv.reader([line]))[counts:]
         if len(cells) != len(titles):
             columns = "one column" if len(titles) == 1 else f"{len(titles)} columns"
             raise ModelError(
                 f"{path}, line {at}: {len(cells)} values for {columns}; numbers have a decimal "
-                "point and no comma"
+                "point and no comma, unless columns are separated by tabs or semicolons"
             )
         for (name, factor), cell in zip(titles, cells, strict=True):
             found[name].append(_cell(path, at, name, cell, factor))
     if not found[wanted[0]]:
         raise ModelError(f"{path} has no line of numbers")
-    return {name: np.array(values) for name, values in found.items()}
+    return {name: np.array(values) for name, values in found.items()}, [at for at, _ in rows[1:]]
 
 
 def _title(path: Path, at: int, text: str) -> tuple[str, float]:
     """The name of a column and the SI value of its unit."""
-    name, _, unit = text.strip().removesuffix("]").partition("[")
-    name = name.strip()
+    brackets = text.strip().translate(str.maketrans("()", "[]"))
+    name, _, unit = brackets.removesuffix("]").partition("[")
+    name = name.strip().casefold()
+    name = _ALIASES.get(name, name.replace(" ", "_"))
     if name not in COLUMNS:
         raise ModelError(f"{path}, line {at}: unknown column {name!r}: one of {', '.join(COLUMNS)}")
     if not unit:
@@ -333,28 +416,68 @@ def _cell(path: Path, at: int, name: str, cell: str, factor: float) -> float:
     return value
 
 
-def _recordings(columns: dict[str, np.ndarray]) -> list[np.ndarray]:
-    """The intervals of each recording, in the order of the file."""
+class _Recording(NamedTuple):
+    """Successive intervals, the lines of their ends, and the number of the recording."""
+
+    intervals: np.ndarray
+    lines: list[int]
+    number: int
+
+
+def _recordings(columns: dict[str, np.ndarray], lines: _Lines) -> list[_Recording]:
+    """The intervals of each recording, in the order of the file; one that has a line that is left
+    out is two recordings.
+    """
     name = "interval" if "interval" in columns else "time"
     values = columns[name]
-    if "recording" not in columns:
-        return [values if name == "interval" else np.diff(values)]
-    numbers = columns["recording"]
+    numbers = columns.get("recording", np.ones(values.size))
     found = []
     for each in dict.fromkeys(numbers):
-        part = values[numbers == each]
-        intervals = part if name == "interval" else np.diff(part)
-        if intervals.size < 2:
+        rows = np.flatnonzero(numbers == each)
+        left_out = [k for k, row in enumerate(rows) if lines.numbers[row] in lines.left_out]
+        parts = [part for part in np.split(rows, left_out) if part.size]
+        kept = [part[lines.numbers[part[0]] in lines.left_out :] for part in parts]
+        usable = [_recording(name, values, part, lines, int(each)) for part in kept]
+        long = [one for one in usable if one.intervals.size > 1]
+        if not long:
+            which = f"recording {each:g} has" if "recording" in columns else "there are"
             raise ModelError(
-                f"recording {each:g} has fewer than two intervals, which the impact between them "
-                "needs"
+                f"{which} fewer than two intervals, which the impact between them needs"
             )
-        found.append(intervals)
+        found += long
     return found
 
 
+def _recording(
+    name: str, values: np.ndarray, rows: np.ndarray, lines: _Lines, number: int
+) -> _Recording:
+    """The intervals of rows of the file.
+
+    Raises
+    ------
+    ModelError
+        If an interval is longer than the one before it, as no flight after an impact is.
+    """
+    part = values[rows]
+    of_time = name == "time"
+    intervals = np.diff(part) if of_time else part
+    ends = [lines.numbers[row] for row in (rows[1:] if of_time else rows)]
+    for k in range(1, intervals.size):
+        if intervals[k] > intervals[k - 1]:
+            raise ParameterError(
+                f"line {ends[k]}, recording {number}: {intervals[k]:g} s after "
+                f"{intervals[k - 1]:g} s, where each bounce is shorter than the one before: "
+                "correct the line, or leave it out by {leave_out}"
+            )
+    return _Recording(intervals, ends, number)
+
+
 def _experiment(
-    name: str, texts: dict[str, str], numbers: dict[str, float], columns: dict[str, np.ndarray]
+    name: str,
+    texts: dict[str, str],
+    numbers: dict[str, float],
+    columns: dict[str, np.ndarray],
+    lines: _Lines,
 ) -> Experiment:
     mass = numbers.get("mass")
     diameter = numbers.get("diameter")
@@ -363,6 +486,9 @@ def _experiment(
         length = drag_length(mass, diameter)
     found: Heard | None = None
     bias = 0.0
+    if "interval" not in columns and "time" not in columns:
+        kept = np.array([line not in lines.left_out for line in lines.numbers])
+        columns = {key: values[kept] for key, values in columns.items()}
     if "speed" in columns:
         speeds = columns["speed"]
         restitutions = columns["restitution"]
@@ -378,18 +504,19 @@ def _experiment(
         found = together(
             [
                 heard(
-                    intervals,
+                    recording.intervals,
                     resolution=numbers.get("resolution"),
                     length=length,
                     contact_time=numbers.get("contact time", 0.0),
                 )
-                for intervals in _recordings(columns)
+                for recording in _recordings(columns, lines)
             ]
         )
         speeds = found.speeds
         restitutions = found.restitutions
         errors = found.covariance
         bias = float(np.max(np.abs(found.drag_bias)))
+    is_without_drag = math.isfinite(length) and "speed" not in columns
     is_of_heights = errors is None and "speed" not in columns
     return Experiment(
         name=name,
@@ -404,7 +531,9 @@ def _experiment(
         ),
         mass=mass,
         diameter=diameter,
-        drag_bias=bias,
+        drag_bias=bias if is_without_drag else 0.0,
+        is_without_drag=is_without_drag,
         is_of_flights="speed" not in columns,
+        left_out=lines.left_out,
         heard=found,
     )

@@ -184,7 +184,7 @@ def heard(
     require(np.isfinite(t) & (t > 0), t, "interval", "a finite time > 0, longer than the contact")
     up, down = flight_speeds(t, length)
     ratio = t[1:] / t[:-1]
-    plain = up[1:] / down[:-1]
+    plain = ratio if math.isinf(length) else up[1:] / down[:-1]
     require(plain <= 1, plain, "ratio of successive intervals", "at most 1, as without a loss")
     sigma = resolution or 0.0
     bias = sigma**2 * (2 / t[:-1] ** 2 + 1 / (t[:-1] * t[1:]))

@@ -124,6 +124,8 @@ class LawFit:
         Root mean square of e - r(v).
     chi_square, p_value : float
         χ² of the fit, and the probability of a greater one; NaN without uncertainties.
+    freedom : int
+        The degrees of freedom ν of the fit.
     criterion : float
         Akaike's criterion with the correction for few points; NaN for fewer than four.
     left_out : float
@@ -146,6 +148,7 @@ class LawFit:
     rms: float
     chi_square: float
     p_value: float
+    freedom: int
     criterion: float
     left_out: float
     contact_time: float = np.nan
@@ -178,6 +181,30 @@ class LawFit:
             return np.full(ratio.shape, np.nan), np.full(ratio.shape, np.nan)
         one, other = (self.curve.restitution(self.theta + s * away, ratio) for s in (-1, 1))
         return np.minimum(one, other), np.maximum(one, other)
+
+    def by_scatter(self) -> "LawFit":
+        """The fit with the intervals by the scatter about the law, for a law that the points
+        reject: those by given uncertainties hold under a law that is right only.
+
+        The standard error is then greater by √(χ²/ν), with ν degrees of freedom, and the quantile
+        is Student's. Without given uncertainties it is the fit itself.
+
+        Examples
+        --------
+        >>> from bouncing_ball_contacts.measured.curves import curve_named
+        >>> e = np.array([0.9, 0.8, 0.85])
+        >>> tsuji = curve_named("tsuji")
+        >>> known = fit_law(tsuji, MeasuredPoints(np.arange(1.0, 4.0), e, 1e-8 * np.eye(3)))
+        >>> scatter = fit_law(tsuji, MeasuredPoints(np.arange(1.0, 4.0), e))
+        >>> np.allclose(known.by_scatter().interval, scatter.interval, rtol=1e-12)
+        True
+        """
+        if not np.isfinite(self.chi_square) or not self.freedom:
+            return self
+        error = self.theta_error * float(np.sqrt(self.chi_square / self.freedom))
+        wide = replace(self, theta_error=error, quantile=float(quantile_of(False, self.freedom)))
+        low, high = wide.band(self.speed)
+        return replace(wide, interval=(float(low), float(high)))
 
     def duration_at(self, speed: ArrayLike) -> np.ndarray:
         """The contact time in s at impact speeds in m/s.
@@ -331,6 +358,7 @@ def fit_law(curve: LawCurve, points: MeasuredPoints) -> LawFit:
         rms=float(np.sqrt(np.mean(plain**2))),
         chi_square=square if is_known else np.nan,
         p_value=float(scipy.stats.chi2.sf(square, freedom)) if is_known and freedom else np.nan,
+        freedom=freedom,
         criterion=_criterion(square, points.size, is_known),
         left_out=_left_out(plain, slope, points),
     )

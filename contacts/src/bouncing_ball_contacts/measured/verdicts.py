@@ -58,6 +58,9 @@ class JudgedLaw:
     needed : float
         The least size of the errors of the points, root mean square of their standard deviations,
         with which the law would not be rejected.
+    interval : tuple of float
+        95 % interval of r(v₀); of a law that is incompatible by the scatter about it
+        (:meth:`.law_fit.LawFit.by_scatter`).
     """
 
     verdict: Compatibility
@@ -65,6 +68,7 @@ class JudgedLaw:
     extrapolated: float
     extrapolation: float
     needed: float
+    interval: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -259,16 +263,20 @@ def judge(fit: ContactFit) -> dict[str, JudgedLaw]:
     }
     rejected = {name for name, both in found.items() if np.nanmin([*both, np.inf]) < REJECTED / 2}
     size = float(np.sqrt(np.mean(points.deviations**2)))
-    return {
-        name: JudgedLaw(
-            verdict=_verdict(points, name in rejected, bool(rejected), found[name]),
-            left_out=found[name][0],
-            extrapolated=found[name][1],
+    judged = {}
+    for each in fit.laws:
+        one, other = tests[each.law]
+        verdict = _verdict(points, each.law in rejected, bool(rejected), found[each.law])
+        is_wrong = verdict is Compatibility.INCOMPATIBLE
+        judged[each.law] = JudgedLaw(
+            verdict=verdict,
+            left_out=found[each.law][0],
+            extrapolated=found[each.law][1],
             extrapolation=other.size,
             needed=size * float(np.fmax(one.passed_by, other.passed_by)),
+            interval=(each.by_scatter() if is_wrong else each).interval,
         )
-        for name, (one, other) in tests.items()
-    }
+    return judged
 
 
 def _verdict(

@@ -1,0 +1,85 @@
+"""What keeps the parameters of an engine from a bounce, and whether the change named helps."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from asked_contacts import answered
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.engines.choice import engine_named
+
+DRAKE = {"point_contact_stiffness": 1e6, "relaxation_time": 0.1, "time_step": 1e-3}
+
+
+def least(k, c, mass, release_by_force, steps=200_000):
+    """r of a free impact by semi-implicit steps, whose error is of the order of their size."""
+    omega = math.sqrt(k / mass)
+    h = 1e-4 / omega
+    x, v = -h / 2, -1.0
+    for _ in range(steps):
+        push = -(k * x + c * v) / mass
+        if (push <= 0 if release_by_force else x >= 0) and v > 0:
+            return v
+        v += h * push
+        x += h * v
+    return 0.0
+
+
+def test_an_overdamped_contact_does_not_bounce_and_the_change_makes_it(said):
+    answer = answered(mass=1.0, from_engine="drake", parameters=DRAKE)
+    (text,) = answer.diagnosis
+    # ζ = c/(2√(km)) with c = τ k of the springs in series.
+    k = DRAKE["point_contact_stiffness"] / 2
+    zeta = 2 * k * DRAKE["relaxation_time"] / (2 * math.sqrt(k))
+    assert text.startswith(f"it does not bounce, because ζ = {zeta:.4g} leaves r = ")
+    (time,) = re.findall(r"with relaxation_time = (\S+), of the same stiffness, r is 0.5", text)
+    assert least(k, 2 * k * float(time), 1.0, True) == pytest.approx(0.5, abs=2e-3)
+    options = [f"--set={name}={value}" for name, value in DRAKE.items()]
+    shown = said("design", "--from=drake", "--mass=1", *options)
+    # No number of a contact that there is not.
+    assert "e+" not in shown.split("\n", 1)[1] and f"Note: {text}." in shown
+
+
+@pytest.mark.parametrize("solref", ["0.02 1", "-1e4 -400"])
+def test_a_restitution_is_wanted_of_the_parameters(solref):
+    answer = answered(mass=2.0, from_engine="mujoco", solref=solref, solimp="1e-4 1e-4",
+                      restitution=0.8)  # fmt: skip
+    (text,) = answer.diagnosis
+    (stiff, lossy) = map(float, re.findall(r"solref = '(\S+) (\S+)'", text)[0])
+    assert least(-2 * stiff, -2 * lossy, 2.0, True) == pytest.approx(0.8, abs=2e-3)
+    # The parameters that are named need no change.
+    again = answered(mass=2.0, from_engine="mujoco", solref=f"{stiff} {lossy}",
+                     solimp="1e-4 1e-4", restitution=0.8)  # fmt: skip
+    assert again.diagnosis == ()
+
+
+def test_a_damper_that_pulls_holds_the_ball_in_one_line(refusal):
+    given = {"mass": 1.0, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 1000.0}}
+    with refusal(
+        ModelError, "it does not bounce, because ζ = 1.581 leaves r = 0 at most; with gam"
+    ):
+        answered(**given, restitution=0.7)
+    try:
+        answered(**given, restitution=0.7)
+    except ModelError as error:
+        (loss,) = re.findall(r"gamma_n = (\S+),", str(error))
+    assert least(1e5, float(loss), 1.0, False) == pytest.approx(0.7, abs=2e-3)
+
+
+def test_a_step_that_is_too_long_is_named():
+    given = {"contactStiffness": 1e5, "contactDamping": 5.0}
+    answer = answered(mass=1.0, from_engine="pybullet", parameters=given, restitution=0.9331,
+                      time_step=1 / 240)  # fmt: skip
+    (text,) = answer.diagnosis
+    (step,) = map(float, re.findall(r"from \d+ on, at (\S+) s, r is within 0.01", text))
+    fine = answered(mass=1.0, from_engine="pybullet", parameters=given, time_step=step).at_step
+    assert fine.error <= 0.0101 < answer.at_step.error
+    assert np.isfinite(fine.mean) and "a contact takes 3.32 steps" in text
+
+
+@pytest.mark.parametrize("name", ["isaac", "PhysX", "unity"])
+def test_engines_of_physx_lead_to_what_is_known(name, refusal):
+    with refusal(ModelError, "a drop of 0.2 m: docs/bounces.md has its bounces"):
+        engine_named(name)

@@ -34,7 +34,7 @@ class StepControl:
     max_angle : float
         Largest angle in radians between the tangents of neighbouring points.
     creep : float
-        A branch whose last 16 steps lead no farther than this ends; by default it goes on.
+        A branch whose last 16 steps lead no farther than this ends: its points accumulate.
     ahead : int
         The largest number of points that are predicted from one state.
     """
@@ -44,7 +44,7 @@ class StepControl:
     largest: float = 0.2
     target_iterations: int = 3
     max_angle: float = 0.2
-    creep: float = 0.0
+    creep: float = 1e-6
     ahead: int = 8
 
     def steps(self, first: float, count: int) -> np.ndarray:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from bouncing_ball.numerics.corrector import NewtonSettings
 from bouncing_ball.numerics.steps import StepControl
 
-STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
+STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps of a branch, over the phases, the velocities and arsinh of the parameter. A branch ends
 where its points accumulate, for example where its orbits merge with permanent contact."""
 

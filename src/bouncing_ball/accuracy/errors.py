@@ -39,6 +39,13 @@ class Quantity(StrEnum):
     PERMANENT_CONTACT = "permanent_contact"
 
 
+_BIFURCATIONS = {
+    Quantity.SADDLE_NODE: Bifurcation.SADDLE_NODE,
+    Quantity.PERIOD_DOUBLING: Bifurcation.PERIOD_DOUBLING,
+}
+_OF_ORBIT = {*Quantity} - {*_BIFURCATIONS, Quantity.PERMANENT_CONTACT}
+
+
 def values(
     model: Model, n: ArrayLike, amplitude: ArrayLike, quantities: Sequence[str]
 ) -> np.ndarray:
@@ -63,17 +70,18 @@ def values(
     True
     """
     branch = explicit_branch(model)
-    orbit = branch.orbit(n, amplitude)
-    limits = {Quantity(kind.name.lower()): kind for kind in Bifurcation}
+    # The orbits and the bifurcations are searched for, so that each is found only if it is asked.
+    orbit = branch.orbit(n, amplitude) if _OF_ORBIT.intersection(quantities) else None
     found = []
     for quantity in map(Quantity, quantities):
         if quantity is Quantity.PERMANENT_CONTACT:
             found.append(model.permanent_contact_threshold())
-        elif quantity in limits:
-            found.append(branch.bifurcation(limits[quantity], n).amplitude)
+        elif quantity in _BIFURCATIONS:
+            found.append(branch.bifurcation(_BIFURCATIONS[quantity], n).amplitude)
         else:
             found.append(getattr(orbit, quantity))
-    return np.stack([np.broadcast_to(each, orbit.shape) for each in found])
+    shape = np.broadcast_shapes(model.shape, np.shape(n), np.shape(amplitude))
+    return np.stack([np.broadcast_to(each, shape) for each in found])
 
 
 def relative_errors(

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
     from bouncing_ball_beyond.periodic.law_balls import contact_law as contact_law
     from bouncing_ball_beyond.periodic.orbits.normal_form import normal_form as normal_form
+    from bouncing_ball_beyond.periodic.orbits.paths import ParameterPath as ParameterPath
     from bouncing_ball_beyond.periodic.orbits_of_ball import limits as limits
     from bouncing_ball_beyond.periodic.orbits_of_ball import orbit as orbit
     from bouncing_ball_beyond.periodic.orbits_of_ball import orbits as orbits
@@ -60,6 +61,7 @@ _MODULES = {
     "ContactModel": "models.contact_model",
     "Flores": "models.laws.start_speed",
     "LankaraniNikravesh": "models.laws.start_speed",
+    "ParameterPath": "periodic.orbits.paths",
     "RestitutionModel": "models.rigid",
     "SpringDamper": "models.spring_damper",
     "basins": "motions.motion_of",

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball_beyond.models.instant import Instant, rigid_instant
+from bouncing_ball_beyond.models.laws.force_law import NUMBER, Unit
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 
@@ -30,6 +31,7 @@ class RestitutionModel(Model):
     """r in (0, 1]."""
 
     name: ClassVar[str] = "restitution"
+    units: ClassVar[dict[str, Unit]] = {"restitution": NUMBER}
 
     def __post_init__(self):
         given = check_restitution(self.restitution)

@@ -38,7 +38,7 @@ from bouncing_ball_beyond.periodic.branches.following import (
 )
 from bouncing_ball_beyond.periodic.branches.grazing import lowest_touch
 from bouncing_ball_beyond.periodic.branches.sticking_curve import sticking_curve
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST, Path
 from bouncing_ball_beyond.periodic.orbits.ends import (
     CLOSE,
     Window,
@@ -107,8 +107,8 @@ class CurveProblem:
 def curve_through(
     start: Orbit,
     kind: Special,
-    along: str,
-    across: str,
+    along: str | Path,
+    across: str | Path,
     *,
     along_window: Window | None = None,
     across_window: Window | None = None,
@@ -122,8 +122,8 @@ def curve_through(
     start : Orbit
         A special orbit of the kind, for example one of :attr:`.Followed.special`.
     kind : Special
-    along, across : str
-        The two parameters.
+    along, across : str or Path
+        The two parameters, of which one may be a path.
     along_window, across_window : Window, optional
         The ranges of the two parameters outside which the curve is not followed.
     control : StepControl
@@ -139,7 +139,8 @@ def curve_through(
     """
     equations = start.problem(along, across)
     guess = start.point(equations)
-    windows = _ranges(equations, {along: along_window, across: across_window})
+    given = zip(equations.along, (along_window, across_window), strict=True)
+    windows = _ranges(equations, dict(given))
     if kind is Special.STICKING:
         first, second = windows.values()
         return Followed(equations, sticking_curve(equations, guess, (first, second), most))

@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError
 from bouncing_ball.numerics.arrays import Batch, blocks
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, Path
 from bouncing_ball_beyond.periodic.orbits.legs import (
     Legs,
     lag_of,
@@ -29,6 +28,7 @@ from bouncing_ball_beyond.periodic.orbits.legs import (
     time_to_section,
     without_force,
 )
+from bouncing_ball_beyond.periodic.orbits.paths import balls_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
 if TYPE_CHECKING:
@@ -219,8 +219,9 @@ class OrbitImpacts(Batch):
     @property
     def parameters(self) -> dict[str, Any]:
         """The values of the parameters of the branch from which the orbit comes."""
-        values = Balls(self.model, self.amplitude).values
-        return {name: float(values[name]) for name in self.along}
+        balls, names = balls_along(self.model, self.amplitude, *self.along)
+        values = balls.values
+        return {name: float(values[name]) for name in names}
 
     @property
     def exists(self) -> Any:
@@ -326,21 +327,15 @@ class OrbitImpacts(Batch):
         resumes = np.broadcast_to(self.resumes, whole).ravel()
         return dynamics, without_force(impact, lag_of(dynamics, resumes))
 
-    def problem(self, *along: str) -> OrbitEquations:
-        """The equations of these orbits, with parameters that vary.
+    def problem(self, *along: str | Path) -> OrbitEquations:
+        """The equations of these orbits, with parameters that vary, or a path of parameters.
 
         Raises
         ------
         ParameterError
             If the balls have no such parameter, or if one of them follows from another.
         """
-        balls = Balls(self.model, self.amplitude)
-        for name in along:
-            if name != LAMBDA:
-                balls.range_of(name)
-            for other in self.model.implied({name: balls.values[name]}):
-                if other in along:
-                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
+        balls, names = balls_along(self.model, self.amplitude, *along)
         dynamics, impact = self._start
         whole = (*self.shape, self.impacts)
         durations = np.broadcast_to(self.durations, whole).ravel()
@@ -348,7 +343,7 @@ class OrbitImpacts(Batch):
             balls=balls,
             impacts=self.impacts,
             turns=self.turns,
-            along=along,
+            along=names,
             selects=selects_ends(dynamics, impact, durations),
             resumes=np.broadcast_to(self.resumes, (self.impacts,)),
         )
@@ -361,8 +356,10 @@ class OrbitImpacts(Batch):
             phase = self.phases + time_to_section(dynamics, impact).reshape(whole)
             _, velocity = dynamics.section(impact)
         duration = np.broadcast_to(self.durations, whole)
-        values = Balls(self.model, self.amplitude).values
-        given = {name: values[name] for name in problem.along}
+        given = {}
+        if problem.along:
+            values = Balls(self.model, self.amplitude, problem.balls.path).values
+            given = {name: values[name] for name in problem.along}
         return problem.point(phase, velocity.reshape(whole), duration, **given)
 
     @cached_property

@@ -20,7 +20,6 @@ from bouncing_ball.numerics.arrays import blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.periodic.orbits import stability
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
 from bouncing_ball_beyond.periodic.orbits.highest import about_highest
 from bouncing_ball_beyond.periodic.orbits.impacts import OrbitImpacts
 from bouncing_ball_beyond.periodic.orbits.legs import gap_at_start, time_to_section
@@ -378,7 +377,7 @@ def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Or
     legs = problem.legs(y)
     theta, v = problem.states(y)
     lam = problem.amplitude(y)
-    along = problem.along or (LAMBDA,)
+    along = problem.remembered
     turns = np.broadcast_to(problem.turns, theta.shape)
     if legs.dynamics is None:
         none = np.full(theta.shape, np.nan)

@@ -142,10 +142,10 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     >>> did_you_mean("hunt_crossley", ["hunt-crossley"])
     '; did you mean hunt-crossley?'
     """
-    names = list(known)
+    names = {each.replace("_", "-"): each for each in known}
     typed = str(name).casefold().replace("_", "-")
     close = difflib.get_close_matches(typed, names, n=1, cutoff=_ALIKE)
-    return f"; did you mean {close[0]}?" if close else ""
+    return f"; did you mean {names[close[0]]}?" if close else ""
 
 
 def suggesting(call: _Call) -> _Call:

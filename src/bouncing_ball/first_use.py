@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
+from bouncing_ball.errors import did_you_mean
+
 
 def first_use(
     package: str, modules: Mapping[str, str], known: Mapping[str, Any]
@@ -26,7 +28,8 @@ def first_use(
 
     def get(name: str) -> Any:
         if name not in modules:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            meant = did_you_mean(name, modules)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{meant}")
         return getattr(import_module(f"{package}.{modules[name]}"), name)
 
     def names() -> list[str]:

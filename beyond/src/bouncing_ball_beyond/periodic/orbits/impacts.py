@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch, blocks
+from bouncing_ball_beyond.models.attributes import Suggesting
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
@@ -47,8 +49,28 @@ def _comparable(value: Any) -> Any:
     return value
 
 
+# What the house itself needs of orbits, which is not among the names that an editor completes.
+_INTERNAL = {
+    "check_shape",
+    "clock",
+    "contact_motion",
+    "contact_path",
+    "flat",
+    "flight_path",
+    "in_a_row",
+    "of",
+    "of_dataset",
+    "point",
+    "problem",
+    "resumes",
+    "take",
+    "touches",
+    "turns",
+}
+
+
 @dataclass(frozen=True, repr=False)
-class OrbitImpacts(Batch):
+class OrbitImpacts(Suggesting, Batch):
     """The impacts of orbits with k impacts in m periods of one model: see
     :class:`~bouncing_ball_beyond.periodic.orbits.orbit.Orbit`, whose fields and shapes these are.
     """
@@ -110,6 +132,21 @@ class OrbitImpacts(Batch):
 
     def __hash__(self) -> int:
         return hash(self._values)
+
+    def __bool__(self) -> bool:
+        """Whether there is a single orbit.
+
+        Raises
+        ------
+        ModelError
+            If there are several: ask for ``exists``.
+        """
+        if self.shape:
+            raise ModelError("several orbits are neither true nor false: see their exists")
+        return bool(self.exists)
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in _INTERNAL and name[0] != "_"]
 
     def __getstate__(self) -> dict[str, Any]:
         # Computed quantities are left out: the equations of an orbit hold functions.

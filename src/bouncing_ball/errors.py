@@ -306,5 +306,7 @@ def count(high: int, low: int = 1) -> Range:
 FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
 AMPLITUDE = Range(1e-12, 1e8, "[]", or_zero=True)
 RESTITUTION = Range(0, 1, "(]")
+RIGID_RESTITUTION = Range(0, 1, "[]")
+"""The range of r of impacts that are instants; no contact with a spring and a damper has r = 0."""
 DAMPING_RATIO = Range(0, 1, "[)")
 FAMILY = count(1000)

@@ -356,3 +356,18 @@ def test_a_curve_of_grazings_ends_with_its_reason():
         assert str(reason) == (
             f"the points accumulate next to restitution = {end}, the end of its range"
         )
+
+
+def test_a_curve_ends_where_an_impact_vanishes():
+    """It went on with an impact from below the table, at δ′ up to 2.2, and to r = 0."""
+    ball = bouncing_ball_beyond.rigid(restitution=0.85)
+    found = bouncing_ball_beyond.orbits(ball, impacts=3, periods=3, amplitude=2.0)
+    branches = [bouncing_ball_beyond.follow(one, to=(1.0, 4.0)) for one in found[:2]]
+    ends = []
+    for fold in (one for each in branches for one in each.special_states()):
+        if fold[0] != "saddle-node":
+            continue
+        curve = bouncing_ball_beyond.follow(fold[1], along=("amplitude", "restitution"))
+        assert all(np.all(each.relative_impact_velocity < 0) for each in curve.states())
+        ends += map(str, curve.end_reason.values)
+    assert any("grazing of an impact" in end for end in ends)

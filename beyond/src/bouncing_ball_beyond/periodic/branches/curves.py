@@ -45,6 +45,7 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
     accumulation,
     events_along,
     explained,
+    impact_lost,
     limits_of,
     places_in_words,
     release_lost,
@@ -152,7 +153,8 @@ def curve_through(
         where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
         raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another at {where}")
     with np.errstate(all="ignore"):
-        tested = WithEvents(problem, [release_lost(equations), *limits])
+        ends = [impact_lost(equations), release_lost(equations), *limits]
+        tested = WithEvents(problem, ends)
         (branch,) = continue_all_both_ways(lambda _: tested, [first], control, most)
         if isinstance(branch, ContinuationError):
             raise NoOrbitError(str(branch))

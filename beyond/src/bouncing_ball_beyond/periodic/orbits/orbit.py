@@ -311,6 +311,8 @@ class Orbit(OrbitImpacts):
         """Whether the simulated ball follows the orbit, without an earlier release or landing.
 
         The events of the simulation are certified. The result is False where there is no orbit.
+        Next to an orbit of which a flight or an impact vanishes, the result is that of rounding:
+        there it may change from one point of a branch to the next.
         """
 
         def judged(part: Orbit) -> np.ndarray:

@@ -16,7 +16,7 @@ from random_arguments import Calls, RandomCall, check, numbers, sometimes, undec
 from random_laws import CallsOfBeyond, arguments
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.datasets.arguments import POSITIVE
+from bouncing_ball.datasets.arguments import POSITIVE, START
 from bouncing_ball.errors import ModelError, Range
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.periodic.orbits.special import Special
@@ -95,6 +95,12 @@ def follow(calls: Calls) -> Any:
     return calls.random("follow", start, along=along, ranges=ranges)
 
 
+def orbit_near(calls: Calls) -> Any:
+    count = calls.draw(st.integers(1, 3))
+    guess = {name: [calls.value(START) for _ in range(count)] for name in ("phases", "velocities")}
+    return calls.random("orbit_near", calls.ball(), needed=("amplitude",), **guess)
+
+
 def normal_form(calls: Calls) -> Any:
     return calls.call("normal_form", special(calls, calls.draw(st.sampled_from(SPECIAL))))
 
@@ -106,7 +112,7 @@ def grazing_form(calls: Calls) -> Any:
 CALLS: dict[str, RandomCall] = {
     each.__name__: each
     for each in (
-        orbit, error_thresholds, follow, normal_form, grazing_form,
+        orbit, orbit_near, error_thresholds, follow, normal_form, grazing_form,
     )
 } | {
     name: with_ball(name, *needed)
@@ -130,8 +136,7 @@ def test_every_public_function_is_called():
 
 
 def test_the_ranges_of_numbers_are_declared():
-    # Its range is that of the parameter along which the branch goes.
-    assert undeclared(bb, arguments, CALLS) == {("follow", "to")}
+    assert undeclared(bb, arguments, CALLS) == set()
 
 
 @pytest.mark.parametrize("name", QUICK)

@@ -142,10 +142,10 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     >>> did_you_mean("hunt_crossley", ["hunt-crossley"])
     '; did you mean hunt-crossley?'
     """
-    names = list(known)
+    names = {each.replace("_", "-"): each for each in known}
     typed = str(name).casefold().replace("_", "-")
     close = difflib.get_close_matches(typed, names, n=1, cutoff=_ALIKE)
-    return f"; did you mean {close[0]}?" if close else ""
+    return f"; did you mean {names[close[0]]}?" if close else ""
 
 
 def suggesting(call: _Call) -> _Call:
@@ -306,5 +306,7 @@ def count(high: int, low: int = 1) -> Range:
 FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
 AMPLITUDE = Range(1e-12, 1e8, "[]", or_zero=True)
 RESTITUTION = Range(0, 1, "(]")
+RIGID_RESTITUTION = Range(0, 1, "[]")
+"""The range of r of impacts that are instants; no contact with a spring and a damper has r = 0."""
 DAMPING_RATIO = Range(0, 1, "[)")
 FAMILY = count(1000)

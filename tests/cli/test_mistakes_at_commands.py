@@ -48,9 +48,9 @@ ORBIT --frequency-ratio 9 --release Force
 orbit --amplitude 1g --restitution 0.5
     '1g' is not a number in [1e-12, 1e+08]: give it without a unit
 orbit --amplitude 1 --restitution 85
-    not a number in (0, 1]: did you mean 0.85?
+    not a number in [0, 1]: did you mean 0.85?
 limits --restitution 85%
-    not a number in (0, 1]: did you mean 0.85?
+    not a number in [0, 1]: did you mean 0.85?
 limits --restitution 0.85 --n 1.5
     '1.5' is not a whole number from 1 to 1000
 ORBIT --n 2.0

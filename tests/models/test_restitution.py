@@ -6,6 +6,7 @@ from bounces_in_digits import summed
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bouncing_ball import limits, orbit, rigid, simulate
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.history import impacts_of, motion_at
 from bouncing_ball.models.model import Status
@@ -95,7 +96,37 @@ def test_the_derivative_of_an_impact_and_its_determinant():
     assert model.contraction(0.0) == pytest.approx([0.09, 0.81], rel=4 * EPS)
 
 
-@pytest.mark.parametrize("value", ["x", "0.5", True, None, ["1"], [[0.5], [0.5, 0.6]], 0.0, 1.01])
+@pytest.mark.parametrize("value", ["x", "0.5", True, None, ["1"], [[0.5], [0.5, 0.6]], -0.1, 1.01])
 def test_what_is_no_restitution_coefficient_is_refused_where_the_model_is_made(value, refusal):
-    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in (0, 1]"):
+    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in [0, 1]"):
         RestitutionModel(value)
+
+
+def test_without_restitution_a_ball_stays_on_the_table_after_its_first_impact():
+    """A textbook case. The ball rests until Λ sin τ = 1, and all later flights are the same."""
+    amplitude = 1.5
+    lift = np.arcsin(1 / amplitude)
+    found = simulate(rigid(restitution=0.0), amplitude=amplitude, phase=-0.5, impacts=6)
+    of_table = amplitude * np.cos(found.impact_phase + found.contact_duration)
+    assert found.bounce_velocity.values == pytest.approx(of_table.values, abs=1e-14)
+    leaves = np.mod(found.impact_phase + found.contact_duration, 2 * np.pi)
+    assert leaves.values == pytest.approx(lift, abs=1e-14)
+    assert np.diff(found.time.values)[1:] == pytest.approx(2 * np.pi, abs=1e-14)
+    # On a table at rest it never leaves.
+    still = simulate(rigid(restitution=0.0), amplitude=0.0, impacts=6)
+    assert still.status.item() == "permanent contact"
+
+
+def test_without_restitution_an_orbit_that_never_rests_begins_where_it_lifts_off_at_once():
+    """Λ cos φ = π at the impact (Eq. 6), and Λ sin φ ≥ 1, at least as steep as the fall of a ball.
+
+    The trace is 1 - Λ sin φ and the determinant 0, so that the period doubles at Λ sin φ = 2.
+    """
+    ball = rigid(restitution=0.0)
+    fold, doubling = limits(ball)
+    assert fold.amplitude == np.pi
+    assert doubling.amplitude == pytest.approx(np.hypot(2, np.pi), rel=4 * EPS)
+    first = np.hypot(1, np.pi)
+    below, above = (orbit(ball, amplitude=first + side * 1e-4) for side in (-1, 1))
+    assert not below.admissible and above.admissible and above.stable
+    assert orbit(ball, amplitude=3.72).stable and not orbit(ball, amplitude=3.73).stable

@@ -23,7 +23,10 @@ from bouncing_ball.first_use import first_use
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
     from bouncing_ball_beyond.accuracy.error_thresholds import error_thresholds as error_thresholds
+    from bouncing_ball_beyond.drawing.result import Result as Result
+    from bouncing_ball_beyond.models.ball import Ball as Ball
     from bouncing_ball_beyond.models.contact_model import ContactModel as ContactModel
+    from bouncing_ball_beyond.models.laws.contact_law import ContactLaw as ContactLaw
     from bouncing_ball_beyond.models.laws.start_speed import Flores as Flores
     from bouncing_ball_beyond.models.laws.start_speed import (
         LankaraniNikravesh as LankaraniNikravesh,
@@ -42,12 +45,20 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.motions.over_time import history as history
     from bouncing_ball_beyond.motions.over_time import simulate as simulate
     from bouncing_ball_beyond.periodic.branches.follow import follow as follow
+    from bouncing_ball_beyond.periodic.branches.grazing import GrazingForm as GrazingForm
     from bouncing_ball_beyond.periodic.branches.grazing import grazing_form as grazing_form
+    from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch as FollowedBranch
+    from bouncing_ball_beyond.periodic.branches.labelled import SpecialCurve as SpecialCurve
     from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
     from bouncing_ball_beyond.periodic.law_balls import contact_law as contact_law
+    from bouncing_ball_beyond.periodic.orbits.normal_form import NormalForm as NormalForm
     from bouncing_ball_beyond.periodic.orbits.normal_form import normal_form as normal_form
+    from bouncing_ball_beyond.periodic.orbits.orbit import Orbit as Orbit
+    from bouncing_ball_beyond.periodic.orbits.paths import ParameterPath as ParameterPath
+    from bouncing_ball_beyond.periodic.orbits_of_ball import TwoLimits as TwoLimits
     from bouncing_ball_beyond.periodic.orbits_of_ball import limits as limits
     from bouncing_ball_beyond.periodic.orbits_of_ball import orbit as orbit
+    from bouncing_ball_beyond.periodic.orbits_of_ball import orbit_near as orbit_near
     from bouncing_ball_beyond.periodic.orbits_of_ball import orbits as orbits
     from bouncing_ball_beyond.periodic.orbits_of_ball import permanent_contact as permanent_contact
     from bouncing_ball_beyond.periodic.read_orbits import open as open
@@ -57,11 +68,21 @@ __version__ = "0.1.0"
 
 # The public names and the modules in which they are defined.
 _MODULES = {
+    "Ball": "models.ball",
+    "ContactLaw": "models.laws.contact_law",
     "ContactModel": "models.contact_model",
     "Flores": "models.laws.start_speed",
+    "FollowedBranch": "periodic.branches.labelled",
+    "GrazingForm": "periodic.branches.grazing",
     "LankaraniNikravesh": "models.laws.start_speed",
+    "NormalForm": "periodic.orbits.normal_form",
+    "Orbit": "periodic.orbits.orbit",
+    "ParameterPath": "periodic.orbits.paths",
     "RestitutionModel": "models.rigid",
+    "Result": "drawing.result",
+    "SpecialCurve": "periodic.branches.labelled",
     "SpringDamper": "models.spring_damper",
+    "TwoLimits": "periodic.orbits_of_ball",
     "basins": "motions.motion_of",
     "branch": "periodic.branches_of_ball",
     "contact_law": "periodic.law_balls",
@@ -78,6 +99,7 @@ _MODULES = {
     "open": "periodic.read_orbits",
     "orbit": "periodic.orbits_of_ball",
     "orbit_diagram": "motions.motion_of",
+    "orbit_near": "periodic.orbits_of_ball",
     "orbit_of_motion": "motions.orbit_of_motion",
     "orbits": "periodic.orbits_of_ball",
     "permanent_contact": "periodic.orbits_of_ball",

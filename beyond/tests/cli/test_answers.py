@@ -171,8 +171,8 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
             "law-orbit --amplitude 1g",
             "'1g' is not a number in [1e-12, 1e+08]: give it without a unit",
         ),
-        ("law-orbit --amplitude 1 --restitution 85", "not a number in (0, 1]: did you mean 0.85?"),
-        ("law-orbit --amplitude 1 --restitution 85%", "not a number in (0, 1]: did you mean 0.85?"),
+        ("law-orbit --amplitude 1 --restitution 85", "not a number in [0, 1]: did you mean 0.85?"),
+        ("law-orbit --amplitude 1 --restitution 85%", "not a number in [0, 1]: did you mean 0.85?"),
         ("@ --n 2.0", "'2.0' is not a whole number from 1 to 1000: did you mean 2?"),
         ("contact --measured-restitution 0.1 --release force", "r = 0.1 is not in (e⁻², 1]"),
         (

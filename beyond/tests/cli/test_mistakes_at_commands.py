@@ -13,7 +13,7 @@ MISTAKES = """
 law-limits
     one of the arguments --restitution --damping-ratio --measured-restitution is required
 law-limits --restitution 85%
-    argument --restitution: '85%' is not a number in (0, 1]: did you mean 0.85?
+    argument --restitution: '85%' is not a number in [0, 1]: did you mean 0.85?
 law-limits --restitution 0.85 --n 1.5
     argument --n: '1.5' is not a whole number from 1 to 1000
 law-limits --damping-ratio 0.05
@@ -59,7 +59,7 @@ error-law --amplitude 1 --restitution 0.65 --frequency-ratio 10
 follow --amplitude 1 --restitution 0.85 --to 2 --along frequency-ratio
     --along frequency-ratio needs --frequency-ratio of a contact, from which it starts
 follow --amplitude 1 --restitution 0.85 --to 1.5 --along restitution
-    --to = 1.5 is not a number in (0, 1]
+    --to = 1.5 is not a number in [0, 1]
 curve --amplitude 1 --restitution 0.85 --frequency-ratio 10 --to 1.3 --across amplitude
     --across amplitude is that of --along: give another parameter
 curve --amplitude 1 --restitution 0.85 --to 1.3 --across damping-ratio

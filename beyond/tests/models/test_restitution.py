@@ -106,7 +106,7 @@ def test_an_array_without_balls_gives_arrays_without_balls():
 
 def test_parameters_and_states_out_of_range_are_refused_in_one_line(refusal):
     for (r, *arguments), part in (
-        ((0.0, 1.0, 0.0, 3.0, 2), "(0, 1]"),
+        ((-0.1, 1.0, 0.0, 3.0, 2), "[0, 1]"),
         ((0.5, -1.0, 0.0, 3.0, 2), "amplitude"),
         ((0.5, np.inf, 0.0, 3.0, 2), "amplitude"),
         ((0.5, 1.0, 0.0, 1 + 1e-12, 2), "rises"),

@@ -62,7 +62,7 @@ def test_an_attractor_is_followed_from_where_starts_find_it():
 
 
 def test_shares_are_those_of_balls_one_by_one():
-    found = bb.basins(R, amplitude=1.2, starts=12, velocity_max=8.0)
+    found = bb.basins(R, amplitude=1.2, starts=12, relative_velocity_max=8.0)
     assert float(found.share.sum()) == pytest.approx(1.0)
     phase, speed = np.meshgrid(found.start_phase, found.start_speed)
     velocity = 1.2 * np.cos(phase) - speed
@@ -160,3 +160,35 @@ def test_an_orbit_of_a_ball_by_its_free_impact_has_the_law_at_the_speed_of_the_f
     assert (float(free.restitution), float(free.duration)) == pytest.approx((0.5, 0.2), abs=1e-12)
     motion = bb.motion_of(ball, **start)
     assert (found.impacts, found.periods) == (motion.impacts.item(), motion.periods.item())
+
+
+@pytest.mark.parametrize("call", [bb.simulate, bb.history, bb.motion_of, bb.lyapunov_exponent])
+def test_a_start_is_absolute_or_relative_to_the_table(call, refusal):
+    amplitude, phase, speed = 1.2, 0.3, 2.5
+    given = {"amplitude": amplitude, "phase": phase}
+    absolute = call(R, velocity=amplitude * np.cos(phase) - speed, **given)
+    relative = call(R, relative_velocity=-speed, **given)
+    # The two velocities may differ by a rounding, and so may counts of impacts.
+    for name in {"time", "ball", "kind", "lyapunov_exponent"} & set(absolute.variables):
+        one, other = relative[name].values, absolute[name].values
+        same = np.array_equal if one.dtype.kind == "U" else np.allclose
+        assert same(one, other)
+    several = call(R, relative_velocity=[-speed, -3.0], **given)
+    assert several.sizes["relative_velocity"] == 2
+    with refusal(ModelError, "argument relative_velocity: not allowed with argument velocity"):
+        call(R, velocity=-3.0, relative_velocity=-speed, **given)
+    with refusal(ModelError, "a ball that rises from the table has no impact"):
+        call(R, relative_velocity=speed, **given)
+
+
+def test_the_starts_of_basins_are_those_of_the_motions():
+    found = bb.basins(R, amplitude=1.2, starts=6)
+    for k, j in ((0, 1), (3, 4), (5, 2)):
+        one = bb.motion_of(
+            R,
+            amplitude=1.2,
+            phase=float(found.start_phase[j]),
+            relative_velocity=-float(found.start_speed[k]),
+        )
+        kind = found.motion_kind[int(found.destination[k, j])]
+        assert one.kind.item() == kind.item()

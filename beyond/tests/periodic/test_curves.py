@@ -121,7 +121,7 @@ def test_a_curve_without_ranges_ends_with_a_reason_and_its_points_are_spread(nam
     first, last = found.end_reason.values
     assert str(last) == "amplitude = 0.0001 is reached"
     expected = {
-        "rigid": "restitution = 1e-09 is reached",
+        "rigid": "restitution = 0 is reached",
         "spring-damper": "the orbit is next to a release without speed, where its equations are "
         "not smooth",
     }

@@ -391,7 +391,8 @@ def test_an_end_behind_the_start_says_what_it_is():
     found = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(ball, amplitude=1.0), to=0.1)
     assert found.first("saddle-node").amplitude > 0.1
     assert str(found.end_reason[1].values) == (
-        "amplitude = 1.9 is reached, as far behind the start as the given value is ahead of it"
+        "amplitude = 1.9 is reached, as far behind the start as the given value is ahead of it; "
+        f"amplitude = 0.1 is beyond the saddle-node at {found.first('saddle-node').amplitude:.6g}"
     )
     assert float(found.amplitude[-1]) == pytest.approx(1.9, rel=1e-12)
 
@@ -415,14 +416,17 @@ def test_a_branch_of_one_family_is_described_as_one_that_is_followed():
     np.testing.assert_array_equal(line.get_xydata(), same.get_xydata())
 
 
-def test_the_limits_of_a_family_know_what_they_are(refusal):
+def test_the_limits_of_a_family_know_what_they_are():
     """From a saddle-node the stable side is followed, and from a doubling the doubled branch."""
     fold, doubling = bouncing_ball_beyond.limits(bouncing_ball_beyond.rigid(restitution=0.5))
     assert (fold.kind, doubling.kind) == ("saddle-node", "period doubling")
     side = bouncing_ball_beyond.follow(fold, to=1.5)
     assert side.stable[1:-1].all() and side.special_kind.values.tolist() == []
-    with refusal(NoOrbitError, "is beyond the saddle-node: its orbits exist only for amplitude"):
-        bouncing_ball_beyond.follow(fold, to=0.5)
+    # Below the saddle-node there is no orbit: the same branch is followed, and says so.
+    below = bouncing_ball_beyond.follow(fold, to=0.6)
+    assert below.stable[1:-1].all() and float(below.amplitude[-1]) > fold.amplitude
+    (_, end) = below.end_reason.values
+    assert end.endswith(f"; amplitude = 0.6 is beyond the saddle-node at {fold.amplitude:.6g}")
     assert bouncing_ball_beyond.follow(doubling, to=1.6).attrs["impacts"] == 2
     elastic = bouncing_ball_beyond.limits(
         bouncing_ball_beyond.contact_law("tsuji", stiffness=900.0, damping=0.0)
@@ -500,3 +504,43 @@ def test_next_to_the_end_of_a_range_a_steep_height_is_no_jump():
     # A parameter enters as arsinh, and comes back as sinh.
     assert float(found.restitution[-1]) == pytest.approx(1.0, abs=4 * np.finfo(float).eps)
     assert float(found.phase[-1, 0]) == pytest.approx(np.pi / 2, abs=1e-12)
+
+
+BOTH = [
+    (bouncing_ball_beyond.rigid(restitution=0.85), 1),
+    (bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0), 2),
+]
+
+
+@pytest.mark.parametrize(("ball", "n"), BOTH)
+def test_a_branch_is_followed_both_ways_in_one_call(ball, n):
+    """The two branches from the orbit, one after another."""
+    orbit = bouncing_ball_beyond.orbit(ball, n, amplitude=1.0)
+    low, high = 0.1, 1.4
+    whole = bouncing_ball_beyond.follow(orbit, to=(low, high))
+    fold, doubling = bouncing_ball_beyond.limits(ball, n)
+    places = {kind: each.amplitude for kind, each in whole.special_states()}
+    assert places["saddle-node"] == pytest.approx(fold.amplitude, rel=1e-11)
+    assert places["period doubling"] == pytest.approx(doubling.amplitude, rel=1e-11)
+    assert np.all(np.diff(whole.special_point) >= 0)
+    assert whole.end_reason.values.tolist() == 2 * ["amplitude = 1.4 is reached"]
+    # It begins on the unstable side, behind the saddle-node.
+    assert not whole.stable[0] and float(whole.amplitude[0]) == pytest.approx(1.4, rel=1e-12)
+    up = bouncing_ball_beyond.follow(orbit, to=high)
+    np.testing.assert_array_equal(whole.phase.values[-len(up.point) :], up.phase.values)
+    # From the saddle-node to both sides it is the same branch.
+    of_fold = bouncing_ball_beyond.follow(fold, to=(low, high))
+    for end in (0, -1):
+        assert of_fold.phase[end].values == pytest.approx(whole.phase[end].values, abs=1e-11)
+    assert "saddle-node" in of_fold.special_kind.values
+
+
+def test_both_ways_there_is_no_other_branch(refusal):
+    doubling = bouncing_ball_beyond.limits(BOTH[0][0]).period_doubling
+    with refusal(NoOrbitError, "from a period doubling another branch leaves"):
+        bouncing_ball_beyond.follow(doubling, to=(0.5, 1.5))
+    orbit = bouncing_ball_beyond.orbit(BOTH[0][0], amplitude=1.0)
+    with refusal(ParameterError, "the range 1.1 to 1.2 does not contain amplitude = 1"):
+        bouncing_ball_beyond.follow(orbit, to=(1.1, 1.2))
+    with refusal(ParameterError, "to = -1.0 is not a number in"):
+        bouncing_ball_beyond.follow(orbit, to=(-1.0, 1.2))

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball.periodic.orbit import Bifurcation, Side
@@ -54,15 +55,39 @@ def test_at_the_bifurcations_a_multiplier_is_plus_or_minus_one(n, r):
         assert abs(float(kind.test(*found.trace_and_determinant()))) <= allowed
 
 
-@pytest.mark.parametrize("r", [0.0, 1.01, np.nan])
+def test_without_restitution_orbits_are_followed_to_the_first_that_rests():
+    """r = 0: the 1-T orbit that never rests is that of Λ from √(1 + π²) to √(4 + π²)."""
+    ball = bb.rigid(restitution=0.0)
+    whole = bb.follow(bb.orbit(ball, amplitude=3.5), to=(3.0, 3.9))
+    places = {kind: each.amplitude for kind, each in whole.special_states()}
+    assert places["saddle-node"] == pytest.approx(np.pi, abs=1e-12)
+    assert places["period doubling"] == pytest.approx(np.hypot(2, np.pi), abs=1e-12)
+    lift = np.hypot(1, np.pi)
+    rests = (whole.amplitude < lift - 1e-3) & whole.stable
+    assert not whole.admissible.values[rests].any()
+    for side in (-1, 1):
+        assert bb.orbit(ball, amplitude=lift + side * 1e-6).is_admissible() == (side > 0)
+    twice = bb.follow(whole.first("period doubling"), to=3.8)
+    assert twice.attrs["impacts"] == 2 and twice.stable.all() and twice.admissible.all()
+    # Below, every ball ends on the locked orbit, in the simulation.
+    assert bb.motion_of(ball, amplitude=1.5).in_words.item().startswith("locked")
+    # Along r the branch ends at 0 itself.
+    along = bb.follow(
+        bb.orbit(bb.rigid(restitution=0.1), amplitude=3.5), to=0.0, along="restitution"
+    )
+    assert along.restitution[-1] == 0.0
+    assert along.phase[-1, 0] == pytest.approx(bb.orbit(ball, amplitude=3.5).phase, abs=1e-12)
+
+
+@pytest.mark.parametrize("r", [-0.01, 1.01, np.nan])
 def test_a_restitution_coefficient_outside_its_range_is_refused(r, refusal):
-    with refusal(ModelError, f"r = {r}", "(0, 1]"):
+    with refusal(ModelError, f"r = {r}", "[0, 1]"):
         phase(1, r, 1.0)
 
 
 @pytest.mark.parametrize("value", ["x", "0.5", True, None, ["1"], [[0.5], [0.5, 0.6]]])
 def test_what_is_no_number_is_refused_where_the_model_is_made(value, refusal):
-    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in (0, 1]"):
+    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in [0, 1]"):
         RestitutionModel(value)
     with refusal(ModelError, f"family n = {value!r} is not a positive integer"):
         n_t.orbit(RestitutionModel(0.5), value, 1.0)

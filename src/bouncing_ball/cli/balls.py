@@ -20,6 +20,7 @@ from bouncing_ball.datasets.arguments import (
     IMPACTS,
     POSITIVE,
     RESTITUTION,
+    RIGID_RESTITUTION,
     START,
     TOLERANCE,
     ReleaseName,
@@ -55,7 +56,7 @@ _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_veloci
 def add_loss(parser: Parser) -> None:
     """Add the options for the loss of an impact, of which one is needed."""
     texts = meanings(spring_damper)
-    add_number(parser, "restitution", RESTITUTION, texts["restitution"])
+    add_number(parser, "restitution", RIGID_RESTITUTION, texts["restitution"])
     add_number(parser, "damping_ratio", DAMPING_RATIO, texts["damping_ratio"])
     add_number(parser, "measured_restitution", RESTITUTION, texts["measured_restitution"])
 

@@ -15,6 +15,7 @@ from bouncing_ball.errors import (
     FAMILY,
     FREQUENCY_RATIO,
     RESTITUTION,
+    RIGID_RESTITUTION,
     ParameterError,
     Range,
     count,
@@ -46,6 +47,7 @@ FrequencyRatioAxis = Annotated[Axis, FREQUENCY_RATIO]
 AmplitudeAxis = Annotated[Axis, AMPLITUDE]
 AmplitudeOfOrbitAxis = Annotated[Axis, AMPLITUDE_OF_ORBIT]
 RestitutionAxis = Annotated[Axis, RESTITUTION]
+RigidRestitutionAxis = Annotated[Axis, RIGID_RESTITUTION]
 DampingRatioAxis = Annotated[Axis, DAMPING_RATIO]
 ToleranceAxis = Annotated[Axis, TOLERANCE]
 PositiveAxis = Annotated[Axis, POSITIVE]

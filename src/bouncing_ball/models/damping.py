@@ -18,7 +18,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import RESTITUTION, one_of, require
+from bouncing_ball.errors import RESTITUTION, Range, one_of, require
 from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
 
@@ -119,7 +119,7 @@ def check_damping(value: ArrayLike) -> np.ndarray:
     return zeta
 
 
-def check_restitution(value: ArrayLike) -> np.ndarray:
+def check_restitution(value: ArrayLike, interval: Range = RESTITUTION) -> np.ndarray:
     """The restitution coefficient r as an array.
 
     Raises
@@ -135,9 +135,10 @@ def check_restitution(value: ArrayLike) -> np.ndarray:
     bouncing_ball.errors.ModelError: restitution coefficient r = 'x' is not in (0, 1]
     """
     name = "restitution coefficient r"
-    allowed = f"in {RESTITUTION.interval}"
+    allowed = f"in {interval.interval}"
     r = as_numbers(value, name, allowed)
-    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, allowed)
+    low = r > interval.low if interval.ends[0] == "(" else r >= interval.low
+    require(low & (r <= interval.high), r, name, allowed)
     return r
 
 

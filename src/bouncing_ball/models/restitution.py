@@ -25,8 +25,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.datasets.arguments import RESTITUTION, RestitutionAxis, checked
-from bouncing_ball.errors import suggesting
+from bouncing_ball.datasets.arguments import RigidRestitutionAxis, checked
+from bouncing_ball.errors import RIGID_RESTITUTION, suggesting
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.models.flight import matrix_of, table
 from bouncing_ball.models.model import Departure, Model, Status
@@ -95,12 +95,12 @@ class RestitutionModel(Model):
     Parameters
     ----------
     restitution : float or array
-        r in (0, 1].
+        r in [0, 1].
 
     Raises
     ------
     ModelError
-        If a value of r lies outside (0, 1].
+        If a value of r lies outside [0, 1].
 
     Examples
     --------
@@ -113,7 +113,7 @@ class RestitutionModel(Model):
     name: ClassVar[str] = "restitution"
 
     def __post_init__(self) -> None:
-        r = check_restitution(self.restitution)
+        r = check_restitution(self.restitution, RIGID_RESTITUTION)
         object.__setattr__(self, "restitution", r if r.ndim else float(r))
 
     @property
@@ -181,13 +181,14 @@ class RestitutionModel(Model):
 
 
 @suggesting
-def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
+def rigid(*, restitution: RigidRestitutionAxis) -> RestitutionModel:
     """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
     Parameters
     ----------
     restitution : float or array
-        Restitution coefficient r in (0, 1].
+        Restitution coefficient r in [0, 1]. A ball with r = 0 stays on the table after an impact,
+        unless the table falls away faster than the ball.
 
     Raises
     ------
@@ -199,6 +200,6 @@ def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
     >>> rigid(restitution=0.85)
     RestitutionModel(restitution=0.85)
     """
-    r = checked("restitution", restitution, RESTITUTION)
+    r = checked("restitution", restitution, RIGID_RESTITUTION)
     # An array with a named axis is a row here, and keeps its axis in the results.
     return RestitutionModel(np.ravel(r) if np.ndim(r) else r).labelled({"restitution": r})

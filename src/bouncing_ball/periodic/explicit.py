@@ -65,7 +65,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import RIGID_RESTITUTION, NoOrbitError
 from bouncing_ball.models.damping import check_restitution, damped_frequency
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionModel
@@ -103,7 +103,7 @@ def restitution_saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
     Raises
     ------
     ModelError
-        Unless n is a positive integer and 0 < r ≤ 1.
+        Unless n is a positive integer and 0 ≤ r ≤ 1.
 
     Examples
     --------
@@ -111,7 +111,7 @@ def restitution_saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
     True
     """
     check_index(n)
-    r = check_restitution(restitution)
+    r = check_restitution(restitution, RIGID_RESTITUTION)
     return np.asarray(n) * np.pi * (1 - r) / (1 + r)
 
 
@@ -123,14 +123,14 @@ def period_doubling_lift(
     Raises
     ------
     ModelError
-        Unless 0 < r ≤ 1, or if there is no such map.
+        Unless 0 ≤ r ≤ 1, or if there is no such map.
 
     Examples
     --------
     >>> float(period_doubling_lift(1.0)), float(period_doubling_lift(0.5, ImpactMap.HOLMES))
     (1.0, 1.0)
     """
-    r = check_restitution(restitution)
+    r = check_restitution(restitution, RIGID_RESTITUTION)
     if chosen("impact_map", impact_map, list(ImpactMap)) == ImpactMap.HOLMES:
         return np.ones_like(r)
     return 2 * (1 + r * r) / (1 + r) ** 2
@@ -148,7 +148,7 @@ def restitution_period_doubling(
     Raises
     ------
     ModelError
-        Unless n is a positive integer and 0 < r ≤ 1.
+        Unless n is a positive integer and 0 ≤ r ≤ 1.
 
     Examples
     --------

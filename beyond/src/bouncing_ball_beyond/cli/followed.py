@@ -27,7 +27,8 @@ from bouncing_ball_beyond.periodic.orbits.special import MEANINGS, Special
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)
 _NAME = (
-    "Name of a parameter: amplitude, frequency-ratio, restitution, damping-ratio, or one of a law."
+    "Name of a parameter: amplitude, frequency-ratio, restitution, damping-ratio, or one of a law; "
+    "or frequency, that of the table at a fixed stroke a, over √(g/a)."
 )
 _MOTION = (
     "Phase of the first impact of a simulated ball, which ends on the orbit to be followed; by "

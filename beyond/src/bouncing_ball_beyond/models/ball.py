@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import is_array
+from bouncing_ball_beyond.models.attributes import Suggesting
 
 
-class Ball:
+class Ball(Suggesting):
     """One ball, or several if parameters are arrays, whose impacts obey one model."""
 
     is_known: ClassVar[bool] = True

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, Range
+from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, ModelError, Range
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball_beyond.models.ball import Ball
@@ -132,6 +132,27 @@ class Model(Batch, Ball, ABC):
         """Parameters that follow from others, of which these values are given, as ζ from r."""
         return _implied(self, values)
 
+    def frequency_powers(self) -> dict[str, float]:
+        """The powers of the frequency Ω of the table to which the numbers of a law are proportional
+        if the ball, its contact and gravity stay the same; a pure number has none.
+
+        With the units g/Ω² of lengths and 1/Ω of times, a parameter with the powers l of length and
+        t of time in its unit is proportional to Ω^(2l + t).
+
+        Raises
+        ------
+        ModelError
+            If the law declares no unit of a parameter.
+
+        Examples
+        --------
+        >>> from bouncing_ball_beyond.models.contact_model import ContactModel
+        >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
+        >>> ContactModel(SpringDamper(10.0, 0.1)).frequency_powers()
+        {'frequency_ratio': -1}
+        """
+        return {name: power for name, power in _frequency_powers(self).items() if power}
+
     def varied(self, values: Mapping[str, Any]) -> Self:
         """The model with other values of some parameters; arrays make a row of models.
 
@@ -180,6 +201,26 @@ def _numbers(law: Any) -> dict[str, Any]:
         found |= _numbers(inner)
     found |= _implied(law, found)
     return {name: x if np.ndim(x) else np.asarray(x).item() for name, x in found.items()}
+
+
+def _frequency_powers(law: Any) -> dict[str, float]:
+    """The power of Ω of each number of a law, or of the law inside of a law."""
+    found: dict[str, float] = {}
+    units = getattr(law, "units", {})
+    for field in fields(law):
+        if not _is_number(getattr(law, field.name)):
+            continue
+        if field.name not in units:
+            kind = type(law).__name__
+            raise ModelError(
+                f"{kind} declares no unit of its parameter {field.name}, which tells how it "
+                "follows the frequency"
+            )
+        unit = units[field.name]
+        found[field.name] = 2 * unit.length + unit.time
+    for inner in _inner(law):
+        found |= _frequency_powers(inner)
+    return found
 
 
 def _with_numbers(law: Any, values: Mapping[str, Any]) -> Any:

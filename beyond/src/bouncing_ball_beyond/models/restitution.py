@@ -36,7 +36,7 @@ _SLOW = np.array(np.finfo(float).tiny)
 
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
-    """Impacts and flights of the restitution model; ``law`` holds numbers r in (0, 1], or what
+    """Impacts and flights of the restitution model; ``law`` holds numbers r in [0, 1], or what
     :meth:`rebound` of a subclass needs.
 
     Examples

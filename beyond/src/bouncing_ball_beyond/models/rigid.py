@@ -8,8 +8,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import RIGID_RESTITUTION, Range
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball_beyond.models.instant import Instant, rigid_instant
+from bouncing_ball_beyond.models.laws.force_law import NUMBER, Unit
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 
@@ -27,18 +29,23 @@ class RestitutionModel(Model):
     """
 
     restitution: float | np.ndarray
-    """r in (0, 1]."""
+    """r in [0, 1]."""
 
     name: ClassVar[str] = "restitution"
+    units: ClassVar[dict[str, Unit]] = {"restitution": NUMBER}
 
     def __post_init__(self):
-        given = check_restitution(self.restitution)
+        given = check_restitution(self.restitution, RIGID_RESTITUTION)
         if np.ndim(self.restitution):
             object.__setattr__(self, "restitution", given)
 
     @property
     def label(self) -> str:
         return f"r = {float(self.restitution):g}"
+
+    def range_of(self, name: str) -> Range:
+        """[0, 1] for r."""
+        return RIGID_RESTITUTION if name == "restitution" else super().range_of(name)
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""

@@ -103,7 +103,7 @@ def exponents(
     with np.errstate(invalid="ignore"):
         second = np.where(np.isneginf(largest), largest, whole - largest)
     sums = {"exponent_sum": (CASE, whole), "second_exponent": (CASE, second)}
-    kept = found[["lyapunov_exponent", "lyapunov_error", "kind"]]
+    kept = found[["lyapunov_exponent", "lyapunov_error", "kind", "followed", "in_words"]]
     return describe(kept.assign(sums), VARIABLES)
 
 

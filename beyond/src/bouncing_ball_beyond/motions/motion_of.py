@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from bouncing_ball.datasets.arguments import (
@@ -27,17 +25,18 @@ from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_single_ball
 from bouncing_ball_beyond.motions import grids
 from bouncing_ball_beyond.motions.destination import FOLLOWED, IMPACTS, FollowedImpacts
-from bouncing_ball_beyond.motions.over_time import first_impacts
+from bouncing_ball_beyond.motions.over_time import VELOCITY, first_impacts, simulate
 
 
 @suggesting
-@as_in(history.simulate)
+@as_in(history.simulate, simulate)
 def motion_of(
     ball: Ball,
     *,
     amplitude: AmplitudeAxis,
     phase: StartAxis = 0.0,
-    velocity: StartAxis = -math.pi,
+    velocity: StartAxis = VELOCITY,
+    relative_velocity: StartAxis | None = None,
     impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The motion on which a ball ends, after a first impact as in
@@ -78,7 +77,7 @@ def motion_of(
     >>> found.kind.item(), found.periods.item()
     ('locked', 13)
     """
-    grid, first = first_impacts(ball, amplitude, phase, velocity)
+    grid, first = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
     most = checked_number("impacts", impacts, FOLLOWED)
     found = grids.motions(first.model(ball, grid), *first, most)
     return Result.of(grid.unfold(found), "motion")
@@ -91,7 +90,8 @@ def lyapunov_exponent(
     *,
     amplitude: AmplitudeAxis,
     phase: StartAxis = 0.0,
-    velocity: StartAxis = -math.pi,
+    velocity: StartAxis = VELOCITY,
+    relative_velocity: StartAxis | None = None,
     impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The two Lyapunov exponents of the motion on which a ball ends, per period of the table.
@@ -103,11 +103,13 @@ def lyapunov_exponent(
         of about 95 %. The error is NaN if the ball was followed for less than 25 times the number
         of impacts in which areas contract by e, about 1/(1 - r²): 2500 impacts at r = 0.995 and
         12500 at r = 0.999. The exponent of a nearly elastic ball falls as its speed rises, and may
-        be wrong by half of it then. The ``kind`` is that of the motion. For a periodic motion the
-        exponent follows from the larger multiplier, and is -∞ if the later motion does not depend
-        on earlier impacts. ``exponent_sum`` is the sum of both exponents: the mean of the logarithm
-        of the determinant of the return map, over one repetition, or over as many impacts as the
-        ball was followed for. ``second_exponent`` is the difference of the two. The figure shows
+        be wrong by half of it then. The ``kind`` is that of the motion, and ``in_words`` says for
+        how many impacts the ball was ``followed``: what is called chaotic may be a long transient
+        before a motion that repeats. For a periodic motion the exponent follows from the larger
+        multiplier, and is -∞ if the later motion does not depend on earlier impacts.
+        ``exponent_sum`` is the sum of both exponents: the mean of the logarithm of the determinant
+        of the return map, over one repetition, or over as many impacts as the ball was followed
+        for. ``second_exponent`` is the difference of the two. The figure shows
         the largest exponents with their errors.
 
     Examples
@@ -116,10 +118,10 @@ def lyapunov_exponent(
 
     >>> from bouncing_ball_beyond import rigid
     >>> found = lyapunov_exponent(rigid(restitution=0.85), amplitude=1.0, phase=1.1)
-    >>> abs(round(float(found.lyapunov_exponent) - math.log(0.85), 6))
+    >>> abs(round(float(found.lyapunov_exponent) - np.log(0.85), 6))
     0.0
     """
-    grid, first = first_impacts(ball, amplitude, phase, velocity)
+    grid, first = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
     most = checked_number("impacts", impacts, FOLLOWED)
     model = first.model(ball, grid)
     found = grids.exponents(model, *first, most)
@@ -192,7 +194,7 @@ def basins(
     *,
     amplitude: Amplitude,
     starts: SampleCount = 200,
-    velocity_max: Positive | None = None,
+    relative_velocity_max: Positive | None = None,
     impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The motions on which balls end that start from a grid of first impacts, and their shares.
@@ -205,7 +207,7 @@ def basins(
         Excitation amplitude Λ.
     starts : int
         Number of starts along each axis, the phase of the table and the relative speed.
-    velocity_max : float, optional
+    relative_velocity_max : float, optional
         Largest relative speed of the first impact; balls seldom exceed the default.
     impacts : int
         Number of impacts after which the search for a repetition ends.
@@ -232,8 +234,8 @@ def basins(
     """
     lam = checked_number("amplitude", amplitude, AMPLITUDE)
     fastest = None
-    if velocity_max is not None:
-        fastest = checked_number("velocity_max", velocity_max, POSITIVE)
+    if relative_velocity_max is not None:
+        fastest = checked_number("relative_velocity_max", relative_velocity_max, POSITIVE)
     found = grids.basins(
         a_single_ball(ball),
         lam,

@@ -1,6 +1,5 @@
 """The periodic orbit on which a simulated ball ends."""
 
-import math
 from typing import Annotated
 
 import numpy as np
@@ -23,7 +22,7 @@ from bouncing_ball_beyond.motions.destination import (
     final_motions,
 )
 from bouncing_ball_beyond.motions.motion_of import motion_of
-from bouncing_ball_beyond.motions.over_time import first_impacts
+from bouncing_ball_beyond.motions.over_time import VELOCITY, first_impacts
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
@@ -37,7 +36,8 @@ def orbit_of_motion(
     *,
     amplitude: AmplitudeOfOrbit,
     phase: Annotated[float, START] = 0.0,
-    velocity: Annotated[float, START] = -math.pi,
+    velocity: Annotated[float, START] = VELOCITY,
+    relative_velocity: Annotated[float, START] | None = None,
     impacts: FollowedImpacts = IMPACTS,
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
@@ -51,7 +51,7 @@ def orbit_of_motion(
         A single ball.
     amplitude : float
         Excitation amplitude Λ > 0.
-    phase, velocity : float
+    phase, velocity, relative_velocity : float
         Those of the first impact, as in :func:`bouncing_ball_beyond.motion_of`.
 
     Returns
@@ -83,13 +83,15 @@ def orbit_of_motion(
     """
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     phi = checked_number("phase", phase, START)
-    before = checked_number("velocity", velocity, START)
+    for name, value in (("velocity", velocity), ("relative_velocity", relative_velocity)):
+        if value is not None:
+            checked_number(name, value, START)
     most = checked_number("impacts", impacts, FOLLOWED)
-    grid, first = first_impacts(ball, lam, phi, before)
+    grid, first = first_impacts(ball, lam, phi, velocity, relative_velocity)
     if grid.shape:
         name = next(iter(grid.coords))
         raise ParameterError(f"{{{name}}} must be a single number here")
-    return of_motion(first.model(ball, grid), lam, phi, before, most)
+    return of_motion(first.model(ball, grid), lam, phi, float(first.velocity[0]), most)
 
 
 def of_motion(

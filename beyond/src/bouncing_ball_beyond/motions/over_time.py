@@ -12,18 +12,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from bouncing_ball.datasets.arguments import (
+    AMPLITUDE,
     IMPACTS,
+    START,
     AmplitudeAxis,
     Impacts,
     Periods,
     PositiveAxis,
     SampleCount,
     StartAxis,
+    checked,
     checked_number,
     require_memory,
 )
-from bouncing_ball.errors import ModelError, suggesting
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball.models import history as root
+from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
@@ -45,6 +49,11 @@ _FIRST, _MOST = 4, 65_536
 _LOSSLESS = 1e-10
 
 
+VELOCITY = -math.pi
+"""The default of the absolute velocity before the first impact: that of the 1-T orbit of the
+restitution model."""
+
+
 class FirstImpacts(NamedTuple):
     """First impacts of a row of balls: Λ, the table's phase φ, and z′_i, each of shape (ball,)."""
 
@@ -59,17 +68,38 @@ class FirstImpacts(NamedTuple):
 
 
 def first_impacts(
-    ball: Ball, amplitude: AmplitudeAxis, phase: StartAxis, velocity: StartAxis
+    ball: Ball,
+    amplitude: AmplitudeAxis,
+    phase: StartAxis,
+    velocity: StartAxis,
+    relative_velocity: StartAxis | None = None,
 ) -> tuple[Grid, FirstImpacts]:
     """The grid that Λ, the phases, the velocities and the ball span, and its first impacts.
+
+    The velocities are relative to the table if ``relative_velocity`` is given.
 
     Raises
     ------
     ModelError
-        If an argument is missing, of a wrong type or shape, or out of range.
+        If an argument is missing, of a wrong type or shape, or out of range, or if both velocities
+        are given.
     """
-    grid, starts = root.first_impacts(a_ball(ball).parameters, amplitude, phase, velocity)
-    return grid, FirstImpacts(*starts)
+    parameters = a_ball(ball).parameters
+    if relative_velocity is None:
+        grid, starts = root.first_impacts(parameters, amplitude, phase, velocity)
+        return grid, FirstImpacts(*starts)
+    if velocity is not VELOCITY:
+        raise ParameterError("argument {relative_velocity}: not allowed with argument {velocity}")
+    from bouncing_ball.datasets.labelled import Grid
+
+    grid = Grid(
+        amplitude=checked("amplitude", amplitude, AMPLITUDE),
+        phase=checked("phase", phase, START),
+        relative_velocity=checked("relative_velocity", relative_velocity, START),
+        **parameters,
+    )
+    lam, phi, relative = (grid.row(name) for name in ("amplitude", "phase", "relative_velocity"))
+    return grid, FirstImpacts(lam, phi, table(phi, lam)[0] + relative)
 
 
 @suggesting
@@ -79,7 +109,8 @@ def simulate(
     *,
     amplitude: AmplitudeAxis,
     phase: StartAxis = 0.0,
-    velocity: StartAxis = -math.pi,
+    velocity: StartAxis = VELOCITY,
+    relative_velocity: StartAxis | None = None,
     impacts: Impacts = 100,
 ) -> Result:
     """The sequence of impacts of a ball of any model that begins with a given first impact.
@@ -87,6 +118,9 @@ def simulate(
     Parameters
     ----------
     ball : Ball
+    relative_velocity : float or array, optional
+        δ′ = z′ - w′ ≤ 0 before the first impact, the velocity relative to the table, in place of
+        the absolute velocity.
 
     Examples
     --------
@@ -98,7 +132,7 @@ def simulate(
     """
     from bouncing_ball_beyond.drawing.result import Result
 
-    grid, first = first_impacts(ball, amplitude, phase, velocity)
+    grid, first = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
     count = checked_number("impacts", impacts, IMPACTS)
     require_memory(count * grid.size, "states", "impacts or balls")
     sequence = first.model(ball, grid).simulate(*first, count)
@@ -106,13 +140,14 @@ def simulate(
 
 
 @suggesting
-@as_in(root.history)
+@as_in(root.history, simulate)
 def history(
     ball: Ball,
     *,
     amplitude: AmplitudeAxis,
     phase: StartAxis = 0.0,
-    velocity: StartAxis = -math.pi,
+    velocity: StartAxis = VELOCITY,
+    relative_velocity: StartAxis | None = None,
     periods: Periods = 10.0,
     samples: SampleCount = 200,
 ) -> Result:
@@ -124,7 +159,7 @@ def history(
     """
     from bouncing_ball_beyond.drawing.result import Result
 
-    grid, first = first_impacts(ball, amplitude, phase, velocity)
+    grid, first = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
     time = root.instants(periods, samples, grid.size)
     since = np.broadcast_to(time, (grid.size, time.size))
     found = _at_times(first.model(ball, grid), first, since)

@@ -1,4 +1,6 @@
-"""The n-T orbits of a ball: an orbit, all orbits at an amplitude, and the limits of a family."""
+"""The periodic orbits of a ball: an n-T orbit, all of them at an amplitude, the limits of a family,
+and orbits with several impacts.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
+    START,
     AmplitudeOfOrbit,
     AmplitudeOfOrbitAxis,
     FamilyAxis,
@@ -19,7 +23,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import NoOrbitError, suggesting
+from bouncing_ball.errors import NoOrbitError, ParameterError, count, suggesting
 from bouncing_ball.models import permanent_contact as underdamped
 from bouncing_ball.periodic import calls
 from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Side
@@ -28,11 +32,16 @@ from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball, a_known_ball, a_single_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.rigid import RestitutionModel
+from bouncing_ball_beyond.periodic.k_impacts import found_orbits, orbit_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 if TYPE_CHECKING:
     from bouncing_ball_beyond.drawing.result import Result
+
+
+IMPACTS = count(100)
+"""The range of the number of impacts of an orbit that is sought."""
 
 
 class TwoLimits(NamedTuple):
@@ -94,34 +103,119 @@ release='displacement')
 @suggesting
 @as_in(calls.orbits)
 def orbits(
-    ball: Ball, n: Annotated[int, FAMILY] = 1, *, amplitude: AmplitudeOfOrbit
+    ball: Ball,
+    n: Annotated[int, FAMILY] = 1,
+    *,
+    amplitude: AmplitudeOfOrbit,
+    impacts: Annotated[int, IMPACTS] = 1,
+    periods: Annotated[int, FAMILY] | None = None,
 ) -> list[Orbit]:
-    """All n-T orbits of a ball of any model at one Λ, in order of contact duration.
+    """The periodic orbits of a ball of any model at one Λ with k impacts in m periods.
 
-    They are all of them if a closed form of the branch is known, as for ``spring_damper``. For a
-    contact law they are those on the branch that comes from large Λ.
+    With one impact they are the n-T orbits, in order of contact duration, also those that no ball
+    follows. If a closed form of the branch is known, as for ``rigid``, ``spring_damper`` and the
+    corrected model of a linear contact, these are all of them, except those in which a ball comes
+    to rest on the table. For another law they are those on the branch that comes from large Λ, and
+    others may exist.
+
+    With several impacts they are those that a ball follows, stable and unstable, from the highest
+    to the lowest, as far as Newton's method finds them from a grid of first impacts. Others may
+    exist, above all among orbits with large multipliers. Orbits in which a ball comes to rest on
+    the table are not sought.
 
     Parameters
     ----------
     ball : Ball
         A single ball.
+    impacts : int
+        k, the number of impacts.
+    periods : int, optional
+        m, the number of periods of the table; by default n.
 
     Examples
     --------
     A compliant contact has a second stable orbit, of long contact:
 
-    >>> from bouncing_ball_beyond import spring_damper
+    >>> from bouncing_ball_beyond import rigid, spring_damper
     >>> found = orbits(spring_damper(restitution=0.85, frequency_ratio=2.0), amplitude=0.9)
     >>> [(round(each.contact_duration, 3), each.is_stable()) for each in found]
     [(1.602, True), (2.249, False), (5.182, True)]
+
+    Two orbits with three impacts in three periods, of which one is stable:
+
+    >>> found = orbits(rigid(restitution=0.5), impacts=3, periods=3, amplitude=1.6)
+    >>> [(round(each.max_height, 3), each.is_stable()) for each in found]
+    [(8.209, True), (8.007, False)]
     """
     family = checked_number("n", n, FAMILY)
+    if periods is not None:
+        given = checked_number("periods", periods, FAMILY)
+        if family not in (1, given):
+            raise ParameterError("n and {periods} are the same number: give one of them")
+        family = given
+    k = checked_number("impacts", impacts, IMPACTS)
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    if k > 1:
+        model = a_single_ball(ball)
+        several = found_orbits(model, k, family, lam)
+        if not several:
+            raise NoOrbitError(
+                f"no orbit with {k} impacts in {family} T was found at Λ = {lam:g} for "
+                f"{model.label}, but one may exist"
+            )
+        return several
     model = a_single_ball(a_ball(ball).at_orbit(family, lam))
     found = n_t.orbits(model, family, lam)
     if not found.size:
         raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
     return [found[k] for k in range(found.size)]
+
+
+@suggesting
+@as_in(calls.orbits)
+def orbit_near(
+    ball: Ball, *, amplitude: AmplitudeOfOrbit, phases: ArrayLike, velocities: ArrayLike
+) -> Orbit:
+    """The periodic orbit of a ball of any model near a guess of its impacts.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    phases, velocities : array of k numbers
+        The table's phases φ at the impacts, and the absolute velocities z′ before them. A ball that
+        begins with each of them must bounce; the number of periods follows from its flight.
+
+    Returns
+    -------
+    Orbit
+        An orbit with k impacts that a ball follows.
+
+    Raises
+    ------
+    NoOrbitError
+        If Newton's method finds none from there.
+    ModelError
+        If a parameter is an array, of a wrong type, or out of range, or if there are not as many
+        phases as velocities.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import rigid
+    >>> guess = {"phases": [0.4, 1.2], "velocities": [-2.9, -3.4]}
+    >>> found = orbit_near(rigid(restitution=0.5), amplitude=1.6, **guess)
+    >>> found.periods, found.phase.round(6).tolist()
+    (2, [0.403915, 1.194348])
+    """
+    lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    starts = np.atleast_1d(np.asarray(checked("phases", phases, START), dtype=float))
+    before = np.atleast_1d(np.asarray(checked("velocities", velocities, START), dtype=float))
+    if starts.shape != before.shape:
+        raise ParameterError(
+            f"{{velocities}} has {{}} entries, and there are as many as phases: {starts.size}",
+            str(before.size),
+        )
+    return orbit_from(a_single_ball(ball), lam, starts, before)
 
 
 @suggesting

@@ -38,13 +38,14 @@ from bouncing_ball_beyond.periodic.branches.following import (
 )
 from bouncing_ball_beyond.periodic.branches.grazing import lowest_touch
 from bouncing_ball_beyond.periodic.branches.sticking_curve import sticking_curve
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST, Path
 from bouncing_ball_beyond.periodic.orbits.ends import (
     CLOSE,
     Window,
     accumulation,
     events_along,
     explained,
+    impact_lost,
     limits_of,
     places_in_words,
     release_lost,
@@ -107,8 +108,8 @@ class CurveProblem:
 def curve_through(
     start: Orbit,
     kind: Special,
-    along: str,
-    across: str,
+    along: str | Path,
+    across: str | Path,
     *,
     along_window: Window | None = None,
     across_window: Window | None = None,
@@ -122,8 +123,8 @@ def curve_through(
     start : Orbit
         A special orbit of the kind, for example one of :attr:`.Followed.special`.
     kind : Special
-    along, across : str
-        The two parameters.
+    along, across : str or Path
+        The two parameters, of which one may be a path.
     along_window, across_window : Window, optional
         The ranges of the two parameters outside which the curve is not followed.
     control : StepControl
@@ -139,7 +140,8 @@ def curve_through(
     """
     equations = start.problem(along, across)
     guess = start.point(equations)
-    windows = _ranges(equations, {along: along_window, across: across_window})
+    given = zip(equations.along, (along_window, across_window), strict=True)
+    windows = _ranges(equations, dict(given))
     if kind is Special.STICKING:
         first, second = windows.values()
         return Followed(equations, sticking_curve(equations, guess, (first, second), most))
@@ -151,7 +153,8 @@ def curve_through(
         where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
         raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another at {where}")
     with np.errstate(all="ignore"):
-        tested = WithEvents(problem, [release_lost(equations), *limits])
+        ends = [impact_lost(equations), release_lost(equations), *limits]
+        tested = WithEvents(problem, ends)
         (branch,) = continue_all_both_ways(lambda _: tested, [first], control, most)
         if isinstance(branch, ContinuationError):
             raise NoOrbitError(str(branch))

@@ -20,7 +20,7 @@ from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbit import Bifurcation
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
 from bouncing_ball_beyond.periodic.orbits.ends import (
     AT_BOUND,
     AtMargin,
@@ -229,11 +229,12 @@ def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) 
 
 def branch_from(
     start: Orbit,
-    along: str = LAMBDA,
+    along: str | Path = LAMBDA,
     to: float | None = None,
     *,
     increasing: bool | None = None,
     towards: np.ndarray | None = None,
+    within: Window | None = None,
     control: StepControl = STEPS,
     most: int = 2000,
 ) -> Followed:
@@ -243,8 +244,8 @@ def branch_from(
     ----------
     start : Orbit
         An orbit, or an approximation to one.
-    along : str
-        The parameter.
+    along : str or Path
+        The parameter, or a path of parameters.
     to : float, optional
         The value at which the branch ends. The parameter first moves towards it. Behind a
         saddle-node it moves back, at most as far beyond the start as the value is before it.
@@ -253,6 +254,8 @@ def branch_from(
     towards : ndarray, optional
         The direction at the start as one of the unknowns. At a saddle-node, where the parameter
         stands still, it chooses the side.
+    within : Window, optional
+        The range of the parameter; by default that of :func:`range_ahead`.
     control : StepControl
     most : int
         Number of points after which the branch is left unfinished.
@@ -267,10 +270,11 @@ def branch_from(
     equations = start.problem(along)
     here = point_near(equations, start.point(equations))
     if increasing is None:
-        increasing = to is None or bool(to > equations.values(here)[along])
+        increasing = to is None or bool(to > equations.values(here)[equations.along[0]])
     if towards is None:
         towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
-    within = range_ahead(equations, here, to)
+    if within is None:
+        within = range_ahead(equations, here, to)
     near = min(_NEAR, float(turns_apart(equations, here)) / 2)
     with np.errstate(all="ignore"):
         branch = _up_to_equal_turns(
@@ -323,6 +327,17 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
         points=np.concatenate([branch.points, [point]]),
         tangents=np.concatenate([branch.tangents, branch.tangents[-1:]]),
         end=End(reached.reason),
+    )
+
+
+def through_start(back: Branch, ahead: Branch) -> Branch:
+    """The branch through an orbit, from the branches to its two sides."""
+    return Branch(
+        points=np.concatenate([back.points[:0:-1], ahead.points]),
+        tangents=np.concatenate([-back.tangents[:0:-1], ahead.tangents]),
+        special=back.special[::-1] + ahead.special,
+        start=back.end,
+        end=ahead.end,
     )
 
 

@@ -31,7 +31,9 @@ from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import point_near
+from bouncing_ball_beyond.periodic.orbits.balls import Path
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
+from bouncing_ball_beyond.periodic.orbits.paths import place_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.special import Special, flight_margin
 from bouncing_ball_beyond.periodic.orbits.steps import NEARBY
@@ -168,7 +170,7 @@ def _require_grazing(orbit: Orbit) -> None:
         raise NoOrbitError("the orbit is no grazing of a flight of a branch")
 
 
-def _grazing(orbit: Orbit, along: str) -> Grazing:
+def _grazing(orbit: Orbit, along: str | Path) -> Grazing:
     """The grazing of a flight of an orbit, along a parameter.
 
     Raises
@@ -317,7 +319,13 @@ def with_one_less(orbit: Orbit) -> Orbit:
     return without
 
 
-def first_with_one_more(orbit: Orbit, along: str, to: float | None) -> tuple[Orbit, np.ndarray]:
+def _place(orbit: Orbit, along: str | Path) -> float:
+    return place_along(orbit.model, orbit.amplitude, along)
+
+
+def first_with_one_more(
+    orbit: Orbit, along: str | Path, to: float | None
+) -> tuple[Orbit, np.ndarray]:
     """The first orbit with one impact more, and the direction of the unknowns that leads away from
     the grazing: the additional impact gets faster.
 
@@ -329,12 +337,13 @@ def first_with_one_more(orbit: Orbit, along: str, to: float | None) -> tuple[Orb
     grazing = _grazing(orbit, along)
     first, nearer = _two_with_one_more(grazing)
     at = grazing.parameter
-    above = first.parameters[along] > nearer.parameters[along]
+    (name,) = grazing.problem.along
+    above = _place(first, along) > _place(nearer, along)
     if to is not None and to != at and (to > at) != above:
         where = "above" if above else "below"
         raise NoOrbitError(
             f"to = {to:g} is beyond the grazing: the orbits with {first.impacts} impacts exist "
-            f"next to it only for {along} {where} {at:g}"
+            f"next to it only for {name} {where} {at:g}"
         )
     problem = first.problem(along)
     return first, -np.eye(problem.size + 1)[2 * (grazing.touch.leg + 1) + 1]

@@ -21,7 +21,7 @@ from bouncing_ball_beyond.periodic.branches import observables
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
-from bouncing_ball_beyond.periodic.orbits.saved import KEPT
+from bouncing_ball_beyond.periodic.orbits.saved import KEPT, MOVED
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
 if TYPE_CHECKING:
@@ -142,8 +142,7 @@ class SpecialCurve(_Orbits):
 def _attributes(problem: OrbitEquations) -> dict[str, Any]:
     """The values of the parameters that do not vary, and k and m."""
     values = problem.balls.values
-    varied = {name: values[name] for name in problem.along}
-    changing = varied.keys() | problem.balls.model.implied(varied).keys()
+    changing = {*problem.along}.union(*map(problem.balls.moved_by, problem.along))
     fixed = {name: float(x) for name, x in values.items() if name not in changing}
     return {"impacts": problem.impacts, "periods": int(problem.periods), **fixed}
 
@@ -169,6 +168,9 @@ def labelled(found: Followed, made_by: str, **attributes: str) -> dict[str, Any]
     coords = {name: (name, np.arange(size)) for name, size in axes.items()}
     coords |= {name: data.pop(name) for name in ("special", "end")}
     of_ball = _attributes(found.problem.equations)
+    remembered = found.problem.equations.remembered
+    if remembered != along:
+        attributes[MOVED] = ", ".join(remembered)
     return {
         "data_vars": data,
         "coords": {name: (*x[:2], named[name].attributes()) for name, x in coords.items()},

@@ -16,12 +16,13 @@ from bouncing_ball.periodic import branches
 from bouncing_ball.periodic.branches import OBSERVED
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.branches.following import Followed, unrolled
-from bouncing_ball_beyond.periodic.orbits.balls import Balls
+from bouncing_ball_beyond.periodic.orbits.balls import FREQUENCY, LAMBDA
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.saved import columns_of
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
 VARIABLES = {
+    FREQUENCY: Variable("frequency of the table over √(g/a) at a fixed stroke a"),
     "special_point": Variable("number of the last point of the branch before the special orbit"),
     "digits_left": Variable(
         "certain decimal digits of the states, see Orbit.digits_left", budget=math.inf
@@ -65,8 +66,9 @@ def branch_variables(found: Followed) -> dict[str, Any]:
         count = len(found)
         orbits = orbits[np.concatenate([np.arange(count), count + special.order])]
     points = np.concatenate([found.branch.points, special.points])
+    varied = found.problem.equations.values(found.problem.inner(points))
     ends = [str(found.branch.start), str(found.branch.end)]
-    return _in_columns(orbits, unrolled(found.problem, points, orbits), special, ends)
+    return _in_columns(orbits, unrolled(found.problem, points, orbits), varied, special, ends)
 
 
 class _Special(NamedTuple):
@@ -116,14 +118,20 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
 
 
-def _in_columns(orbits: Orbit, ahead: Orbit, special: _Special, ends: list[str]) -> dict[str, Any]:
+def _in_columns(
+    orbits: Orbit,
+    ahead: Orbit,
+    varied: dict[str, np.ndarray],
+    special: _Special,
+    ends: list[str],
+) -> dict[str, Any]:
     """The variables of :func:`branch_variables`, from the orbits along a branch with its special
-    orbits after them, with phases in [-π, π] and, ``ahead``, with phases that pass ±π.
+    orbits after them, with phases in [-π, π] and, ``ahead``, with phases that pass ±π, and the
+    values of the parameters that vary.
     """
     count = orbits.size - len(special.kinds)
     data: dict[str, Any] = {}
-    for name in ahead.along:
-        values = np.broadcast_to(Balls(ahead.model, ahead.amplitude).values[name], ahead.shape)
+    for name, values in varied.items():
         data[name] = "point", values[:count]
         data[f"special_{name}"] = "special", values[count:]
     observed = {
@@ -177,7 +185,9 @@ def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
     nowhere = _Special(np.empty(0, int), np.empty((0, 0)), [], np.empty(0, int), np.empty(0))
-    return _of_one_impact(_in_columns(none, none, nowhere, [str(error)] * 2))
+    return _of_one_impact(
+        _in_columns(none, none, {LAMBDA: none.amplitude}, nowhere, [str(error)] * 2)
+    )
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

@@ -14,9 +14,10 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import point_near
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
 from bouncing_ball_beyond.periodic.orbits.halves import turns_of_half, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
+from bouncing_ball_beyond.periodic.orbits.paths import name_of, place_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.stability import is_stable
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
@@ -71,7 +72,7 @@ def doubled(
     return whole, newton(whole, guess, plane(direction, guess), PATIENT)
 
 
-def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
+def switch(doubling: Orbit, along: str | Path = LAMBDA, aside: float = ASIDE) -> Orbit:
     """The first orbit on the branch of twice the period that begins at a period doubling.
 
     Raises
@@ -105,7 +106,9 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
     return orbit_of_point(whole, found.point)
 
 
-def first_doubled(doubling: Orbit, along: str, to: float | None) -> tuple[Orbit, np.ndarray | None]:
+def first_doubled(
+    doubling: Orbit, along: str | Path, to: float | None
+) -> tuple[Orbit, np.ndarray | None]:
     """The first orbit of twice the period, and the direction that leads away from the doubling;
     None if a value ``to`` lies between the two.
 
@@ -115,13 +118,13 @@ def first_doubled(doubling: Orbit, along: str, to: float | None) -> tuple[Orbit,
         If there is none, or if the orbits exist on the other side than a value ``to``.
     """
     found = switch(doubling, along)
-    at = float(Balls(doubling.model, doubling.amplitude).values[along])
-    change = float(Balls(found.model, found.amplitude).values[along]) - at
+    at = place_along(doubling.model, doubling.amplitude, along)
+    change = place_along(found.model, found.amplitude, along) - at
     if to is not None and (to - at) * change < 0 and abs(change) > _VERTICAL * abs(at):
         where = "above" if change > 0 else "below"
         raise NoOrbitError(
             f"to = {to:g} is beyond the period doubling: the orbits of twice the period exist next "
-            f"to it only for {along} {where} {at:g}"
+            f"to it only for {name_of(along)} {where} {at:g}"
         )
     if to is not None and (to - at) * change >= 0 and abs(to - at) < abs(change):
         return found, None
@@ -157,7 +160,7 @@ class Sides(NamedTuple):
     stable: np.ndarray
 
 
-def sides(fold: Orbit, along: str) -> Sides:
+def sides(fold: Orbit, along: str | Path) -> Sides:
     """The sides of a saddle-node.
 
     Raises
@@ -177,7 +180,7 @@ def sides(fold: Orbit, along: str) -> Sides:
     stable = is_stable(*equations.trace_and_determinant(found.point)) & found.converged
     is_fold = bool(found.converged.all() and rises[0] == rises[1])
     return Sides(
-        at=float(equations.values(here)[along]),
+        at=float(equations.values(here)[equations.along[0]]),
         above=bool(rises[0]) if is_fold else None,
         stable=leaves if stable[0] or not stable[1] else -leaves,
     )

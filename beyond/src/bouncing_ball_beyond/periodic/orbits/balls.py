@@ -1,7 +1,14 @@
-"""Balls whose parameters are known by name, so that any of them can vary along a branch."""
+"""Balls whose parameters are known by name, so that any of them can vary along a branch.
 
+Several parameters vary together on a :class:`Path`: then its variable is one more parameter.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -13,12 +20,39 @@ from bouncing_ball_beyond.models.model import Model
 
 LAMBDA = "amplitude"
 """The name of Λ, the parameter that all balls have."""
+FREQUENCY = "frequency"
+"""The name of the table's frequency at a fixed stroke, the variable of a path."""
 LOWEST = 1e-4
 """The smallest Λ of a branch or a curve: a fold below it belongs to a nearly elastic contact, and
 the steps along a branch are too long to resolve it."""
 # A branch stays away from an end of a range that is not in the range by this number.
 _INSIDE = 1e-9
 _RANGE_OF_LAMBDA = AMPLITUDE._replace(or_zero=False)
+
+
+class Path(ABC):
+    """Parameters of balls as functions of one variable."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """The name of the variable."""
+
+    @abstractmethod
+    def moves(self, balls: Balls) -> list[str]:
+        """The names of the parameters that change along the path."""
+
+    @abstractmethod
+    def parameters(self, balls: Balls, variable: Any) -> dict[str, Any]:
+        """The parameters at values of the variable, on the path on which the balls are."""
+
+    @abstractmethod
+    def place(self, balls: Balls) -> Any:
+        """The value of the variable at the parameters of the balls."""
+
+    @abstractmethod
+    def range(self, balls: Balls) -> Range:
+        """The range of the variable, in which all parameters are inside their ranges."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +65,8 @@ class Balls:
         A single model, or an array of models.
     amplitude : float or array
         Λ.
+    path : Path, optional
+        The path on which parameters vary together.
 
     Examples
     --------
@@ -44,11 +80,26 @@ class Balls:
 
     model: Model
     amplitude: Any
+    path: Path | None = None
 
     @property
     def values(self) -> dict[str, Any]:
-        """The value of each parameter that may vary, Λ included."""
-        return {**self.model.numbers(), LAMBDA: self.amplitude}
+        """The value of each parameter that may vary, Λ and the variable of the path included."""
+        found = {**self.model.numbers(), LAMBDA: self.amplitude}
+        if self.path is not None:
+            found[self.path.name] = self.path.place(replace(self, path=None))
+        return found
+
+    def moved_by(self, name: str) -> set[str]:
+        """The other parameters that vary if one varies: those of the path, and those that follow
+        from others.
+        """
+        names = {name}
+        if self.path is not None and name == self.path.name:
+            names = set(self.path.moves(self))
+        values = self.values
+        implied = self.model.implied({each: values[each] for each in names if each != LAMBDA})
+        return (names | implied.keys()) - {name}
 
     def at(self, varied: Mapping[str, Any]) -> Self:
         """The balls with other values of some parameters; arrays have one entry for each ball.
@@ -58,9 +109,12 @@ class Balls:
         ModelError
             If no ball has these parameters.
         """
-        rest = {name: value for name, value in varied.items() if name != LAMBDA}
-        model = self.model.varied(rest) if rest else self.model
-        return type(self)(model, varied.get(LAMBDA, self.amplitude))
+        values = dict(varied)
+        if self.path is not None and self.path.name in values:
+            values |= self.path.parameters(self, values.pop(self.path.name))
+        amplitude = values.pop(LAMBDA, self.amplitude)
+        model = self.model.varied(values) if values else self.model
+        return replace(self, model=model, amplitude=amplitude)
 
     def dynamics(self) -> Dynamics:
         """The contacts and flights of the balls."""
@@ -76,12 +130,12 @@ class Balls:
         amplitude = self.amplitude
         if np.ndim(amplitude):
             amplitude = np.repeat(np.broadcast_to(amplitude, shape).ravel(), each)
-        return type(self)(model, amplitude)
+        return replace(self, model=model, amplitude=amplitude)
 
     def take(self, which: Any) -> Self:
         """The balls of a row with these indices."""
         amplitude = np.asarray(self.amplitude)
-        return type(self)(self.model.take(which), pick(amplitude, which))
+        return replace(self, model=self.model.take(which), amplitude=pick(amplitude, which))
 
     def range_of(self, name: str) -> Range:
         """The range of a parameter.
@@ -97,20 +151,25 @@ class Balls:
         >>> Balls(RestitutionModel(0.5), 1.0).range_of("loss")
         Traceback (most recent call last):
         bouncing_ball.errors.ParameterError: these orbits have no 'loss': one of restitution, \
-amplitude
+amplitude, frequency
         """
-        names = list(self.values)
-        if name not in names:
+        if self.path is not None and name == self.path.name:
+            return self._range_of_path
+        names = [*self.model.numbers(), LAMBDA, FREQUENCY]
+        if name not in names[:-1]:
             known = f"one of {', '.join(names)}{did_you_mean(name, names)}"
             raise ParameterError(f"these orbits have no {{}}: {known}", repr(name))
-        return self._allowed(name)
-
-    def _allowed(self, name: str) -> Range:
         return _RANGE_OF_LAMBDA if name == LAMBDA else self.model.range_of(name)
+
+    @cached_property
+    def _range_of_path(self) -> Range:
+        # Cached, because each step along a branch asks for it.
+        assert self.path is not None
+        return self.path.range(replace(self, path=None))
 
     def bounds(self, name: str) -> tuple[float, float]:
         """The smallest and the largest value of a parameter on a branch."""
-        allowed = self._allowed(name)
+        allowed = self.range_of(name)
         low = allowed.low + (_INSIDE if allowed.ends[0] == "(" else 0.0)
         high = allowed.high - (_INSIDE if allowed.ends[1] == ")" else 0.0)
         return low, high

@@ -121,6 +121,11 @@ def release_lost(equations: OrbitEquations) -> Event:
     return _end(Special.RELEASE_LOST, lambda y: opening_rate(equations, y))
 
 
+def impact_lost(equations: OrbitEquations) -> Event:
+    """The end of a branch or a curve where the ball lands with the speed of the table."""
+    return _end(Special.GRAZING_IMPACT, lambda y: impact_margin(equations, y))
+
+
 def end_of_sticking(equations: OrbitEquations) -> Event:
     """The end of a branch where a ball just stays on the table after an impact, or just leaves."""
     reason = reason_at(Special.STICKING)
@@ -136,7 +141,7 @@ def events_along(equations: OrbitEquations) -> list[Event]:
     """The special orbits along any branch: those that it passes by, and those at which it ends."""
     return [
         *passed_by(equations),
-        _end(Special.GRAZING_IMPACT, lambda y: impact_margin(equations, y)),
+        impact_lost(equations),
         end_of_sticking(equations),
         release_lost(equations),
     ]

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch, blocks
+from bouncing_ball_beyond.models.attributes import Suggesting
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, Path
 from bouncing_ball_beyond.periodic.orbits.legs import (
     Legs,
     lag_of,
@@ -29,6 +30,7 @@ from bouncing_ball_beyond.periodic.orbits.legs import (
     time_to_section,
     without_force,
 )
+from bouncing_ball_beyond.periodic.orbits.paths import balls_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
 if TYPE_CHECKING:
@@ -47,8 +49,28 @@ def _comparable(value: Any) -> Any:
     return value
 
 
+# What the house itself needs of orbits, which is not among the names that an editor completes.
+_INTERNAL = {
+    "check_shape",
+    "clock",
+    "contact_motion",
+    "contact_path",
+    "flat",
+    "flight_path",
+    "in_a_row",
+    "of",
+    "of_dataset",
+    "point",
+    "problem",
+    "resumes",
+    "take",
+    "touches",
+    "turns",
+}
+
+
 @dataclass(frozen=True, repr=False)
-class OrbitImpacts(Batch):
+class OrbitImpacts(Suggesting, Batch):
     """The impacts of orbits with k impacts in m periods of one model: see
     :class:`~bouncing_ball_beyond.periodic.orbits.orbit.Orbit`, whose fields and shapes these are.
     """
@@ -110,6 +132,21 @@ class OrbitImpacts(Batch):
 
     def __hash__(self) -> int:
         return hash(self._values)
+
+    def __bool__(self) -> bool:
+        """Whether there is a single orbit.
+
+        Raises
+        ------
+        ModelError
+            If there are several: ask for ``exists``.
+        """
+        if self.shape:
+            raise ModelError("several orbits are neither true nor false: see their exists")
+        return bool(self.exists)
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if name not in _INTERNAL and name[0] != "_"]
 
     def __getstate__(self) -> dict[str, Any]:
         # Computed quantities are left out: the equations of an orbit hold functions.
@@ -219,8 +256,9 @@ class OrbitImpacts(Batch):
     @property
     def parameters(self) -> dict[str, Any]:
         """The values of the parameters of the branch from which the orbit comes."""
-        values = Balls(self.model, self.amplitude).values
-        return {name: float(values[name]) for name in self.along}
+        balls, names = balls_along(self.model, self.amplitude, *self.along)
+        values = balls.values
+        return {name: float(values[name]) for name in names}
 
     @property
     def exists(self) -> Any:
@@ -326,21 +364,15 @@ class OrbitImpacts(Batch):
         resumes = np.broadcast_to(self.resumes, whole).ravel()
         return dynamics, without_force(impact, lag_of(dynamics, resumes))
 
-    def problem(self, *along: str) -> OrbitEquations:
-        """The equations of these orbits, with parameters that vary.
+    def problem(self, *along: str | Path) -> OrbitEquations:
+        """The equations of these orbits, with parameters that vary, or a path of parameters.
 
         Raises
         ------
         ParameterError
             If the balls have no such parameter, or if one of them follows from another.
         """
-        balls = Balls(self.model, self.amplitude)
-        for name in along:
-            if name != LAMBDA:
-                balls.range_of(name)
-            for other in self.model.implied({name: balls.values[name]}):
-                if other in along:
-                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
+        balls, names = balls_along(self.model, self.amplitude, *along)
         dynamics, impact = self._start
         whole = (*self.shape, self.impacts)
         durations = np.broadcast_to(self.durations, whole).ravel()
@@ -348,7 +380,7 @@ class OrbitImpacts(Batch):
             balls=balls,
             impacts=self.impacts,
             turns=self.turns,
-            along=along,
+            along=names,
             selects=selects_ends(dynamics, impact, durations),
             resumes=np.broadcast_to(self.resumes, (self.impacts,)),
         )
@@ -361,8 +393,10 @@ class OrbitImpacts(Batch):
             phase = self.phases + time_to_section(dynamics, impact).reshape(whole)
             _, velocity = dynamics.section(impact)
         duration = np.broadcast_to(self.durations, whole)
-        values = Balls(self.model, self.amplitude).values
-        given = {name: values[name] for name in problem.along}
+        given = {}
+        if problem.along:
+            values = Balls(self.model, self.amplitude, problem.balls.path).values
+            given = {name: values[name] for name in problem.along}
         return problem.point(phase, velocity.reshape(whole), duration, **given)
 
     @cached_property

@@ -20,7 +20,6 @@ from bouncing_ball.numerics.arrays import blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.periodic.orbits import stability
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
 from bouncing_ball_beyond.periodic.orbits.highest import about_highest
 from bouncing_ball_beyond.periodic.orbits.impacts import OrbitImpacts
 from bouncing_ball_beyond.periodic.orbits.legs import gap_at_start, time_to_section
@@ -312,6 +311,8 @@ class Orbit(OrbitImpacts):
         """Whether the simulated ball follows the orbit, without an earlier release or landing.
 
         The events of the simulation are certified. The result is False where there is no orbit.
+        Next to an orbit of which a flight or an impact vanishes, the result is that of rounding:
+        there it may change from one point of a branch to the next.
         """
 
         def judged(part: Orbit) -> np.ndarray:
@@ -378,7 +379,7 @@ def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Or
     legs = problem.legs(y)
     theta, v = problem.states(y)
     lam = problem.amplitude(y)
-    along = problem.along or (LAMBDA,)
+    along = problem.remembered
     turns = np.broadcast_to(problem.turns, theta.shape)
     if legs.dynamics is None:
         none = np.full(theta.shape, np.nan)

@@ -54,7 +54,7 @@ from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
+from bouncing_ball_beyond.periodic.orbits.balls import FREQUENCY, LAMBDA, Balls, dynamics_inside
 from bouncing_ball_beyond.periodic.orbits.beside import LegsBeside
 from bouncing_ball_beyond.periodic.orbits.legs import Legs, lag_of, landed, without_force
 from bouncing_ball_beyond.periodic.orbits.stability import multiplier_at, shifted_determinant
@@ -237,8 +237,22 @@ class OrbitEquations:
 
     def amplitude(self, y: np.ndarray) -> np.ndarray:
         """Λ of the orbits, of the leading shape of y."""
-        lam = self.values(y).get(LAMBDA, self.balls.amplitude)
+        varied = self.values(y)
+        moved = self.balls.path is not None and self.balls.path.name in varied
+        lam = self.at(y).amplitude if moved else varied.get(LAMBDA, self.balls.amplitude)
         return np.broadcast_to(lam, y.shape[:-1])
+
+    @property
+    def remembered(self) -> tuple[str, ...]:
+        """The names of the parameters that vary as an orbit has them: the path of a user is known
+        to the branch alone, and its orbits have the parameters that change along it.
+        """
+        path = self.balls.path
+        found: list[str] = []
+        for name in self.along or (LAMBDA,):
+            of_user = path is not None and name == path.name != FREQUENCY
+            found += path.moves(self.balls) if path is not None and of_user else [name]
+        return tuple(found)
 
     def at(self, y: np.ndarray) -> Balls:
         """The balls with the parameters of the orbits."""

@@ -23,6 +23,9 @@ from bouncing_ball_beyond.models.as_text import model_of, text_of
 
 ORBIT = "orbit"
 """The dimension of several orbits that are no branch."""
+MOVED = "moved"
+"""The attribute with the parameters that change along the path of a user, which has no name in its
+orbits."""
 KEPT = {
     "ball_model": Variable("model of the impact with its parameters, as text"),
     "turns": Variable("whole turns of the table from the impact to the next one, see Orbit.turns"),
@@ -120,7 +123,7 @@ def fields_in(data: xr.Dataset, prefix: str = "") -> dict[str, Any]:
     amplitude = given.pop("amplitude", data.attrs.get("amplitude"))
     if amplitude is None:
         raise ModelError("the dataset has no orbits: amplitude is missing")
-    along = str(data.attrs.get("along", "amplitude"))
+    along = str(data.attrs.get(MOVED, data.attrs.get("along", "amplitude")))
     return {
         "model": model_of(str(data["ball_model"].item()), given),
         "amplitude": np.asarray(amplitude) if np.ndim(amplitude) else float(amplitude),

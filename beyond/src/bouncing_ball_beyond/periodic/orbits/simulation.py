@@ -123,4 +123,7 @@ def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
     same[possible] &= np.abs(faster) < _SAME * np.maximum(np.abs(before), np.abs(next_velocity))
     same[possible] &= rests_as_expected(part, leg.impact, expected)
+    if part.forgets and not equations.selects:
+        # A short rest hardly changes the motion, above all for r = 0.
+        same[possible] &= ~leg.departure.sticks
     return np.all(same.reshape(shape), axis=-1)

@@ -118,7 +118,7 @@ def lyapunov_exponent(
 
     >>> from bouncing_ball_beyond import rigid
     >>> found = lyapunov_exponent(rigid(restitution=0.85), amplitude=1.0, phase=1.1)
-    >>> abs(round(float(found.lyapunov_exponent) - np.log(0.85), 6))
+    >>> abs(round(float(found.lyapunov_exponent - np.log(0.85)), 6))
     0.0
     """
     grid, first = first_impacts(ball, amplitude, phase, velocity, relative_velocity)

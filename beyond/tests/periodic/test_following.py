@@ -544,3 +544,24 @@ def test_both_ways_there_is_no_other_branch(refusal):
         bouncing_ball_beyond.follow(orbit, to=(1.1, 1.2))
     with refusal(ParameterError, "to = -1.0 is not a number in"):
         bouncing_ball_beyond.follow(orbit, to=(-1.0, 1.2))
+
+
+@pytest.mark.parametrize(
+    ("ball", "along", "to"),
+    [
+        (BOTH[1][0], "damping_ratio", 0.0),
+        (BOTH[1][0], "restitution", 1.0),
+        (BOTH[0][0], "restitution", 1.0),
+    ],
+)
+def test_a_branch_ends_at_the_end_of_a_range_in_a_few_steps(ball, along, to):
+    """There are no balls beyond it: the steps became ever shorter, in 28 rounds in place of 9."""
+    found = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit(ball, amplitude=1.0), along=along, to=to
+    )
+    # A parameter comes back from arsinh with a rounding error.
+    assert float(found[along][-1]) == pytest.approx(to, abs=4 * np.finfo(float).eps)
+    assert str(found.end_reason[1].values) == f"{along.replace('_', ' ')} = {to:g} is reached"
+    assert np.abs(np.diff(found[along].values)).min() > 1e-5
+    *_, last = found.states()
+    assert last.defect() < 1e-12

@@ -266,8 +266,9 @@ def thresholds_options(parser: Parser) -> None:
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
     add_number(parser, "tolerance", TOLERANCE, texts["tolerance"], default=0.01)
-    text = meanings(rigid)["restitution"]
-    add_number(parser, "restitution", RESTITUTION, text, required=True)
+    add_number(
+        parser, "restitution", RESTITUTION, meanings(spring_damper)["restitution"], required=True
+    )
 
 
 def thresholds(*, n: int, amplitude: float, tolerance: float, restitution: float) -> Answer:

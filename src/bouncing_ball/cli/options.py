@@ -213,9 +213,9 @@ def meanings(call: Callable) -> dict[str, str]:
 
     Examples
     --------
-    >>> from bouncing_ball.models.restitution import rigid
-    >>> meanings(rigid)["restitution"]
-    'Restitution coefficient r in (0, 1].'
+    >>> from bouncing_ball.models.spring_damper import spring_damper
+    >>> meanings(spring_damper)["frequency_ratio"]
+    'Frequency ratio ϖ of a spring-damper contact; the restitution model has none.'
     """
     found: dict[str, str] = {}
     section = re.search(

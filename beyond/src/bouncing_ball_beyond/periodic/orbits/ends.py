@@ -48,7 +48,8 @@ CLOSE = 1e-2
 to an event the functions are of the order of the square root of the distance."""
 AT_BOUND = 1e-6
 """A parameter this close to the end of its range is the reason of too short steps."""
-_BOUND = "bound"
+BOUND = "bound"
+"""The name of the end of a branch at an end of the range of its parameter."""
 # Next to the threshold of permanent contact the lift-off moves as the root of the distance, so that
 # the steps become short at this distance.
 _AT_THRESHOLD = 1e-4
@@ -262,7 +263,7 @@ def _limit(bound: float, sign: float, column: int, reason: str) -> Event:
         gradient[..., column] = sign
         return inside(y), gradient
 
-    return Event(_BOUND, inside, True, reason, condition)
+    return Event(BOUND, inside, True, reason, condition)
 
 
 def with_explained_ends(

@@ -10,12 +10,11 @@ from dataclasses import replace
 from bouncing_ball.numerics.corrector import NewtonSettings
 from bouncing_ball.numerics.steps import StepControl
 
-STEPS = StepControl(smallest=1e-9, largest=0.4, max_angle=0.15)
-"""Steps of a branch, over the phases, the velocities and arsinh of the parameter. Where a branch
-hardly turns, ϖ and other large parameters change by half in a step. A branch ends where its points
-accumulate, for example where its orbits merge with permanent contact."""
+STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15)
+"""Steps of a branch, over the phases, the velocities and arsinh of the parameter. A branch ends
+where its points accumulate, for example where its orbits merge with permanent contact."""
 
-STEPS_OF_CURVES = replace(STEPS, largest=0.1, creep=1e-3)
+STEPS_OF_CURVES = replace(STEPS, creep=1e-3)
 """Steps of a curve in two parameters, which ends where its points accumulate, for example at a
 release without speed, where the equations have no derivatives."""
 

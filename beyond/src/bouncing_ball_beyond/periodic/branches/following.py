@@ -440,7 +440,8 @@ def _onto_limit(tested: WithEvents, branch: Branch, within: Window) -> Branch | 
     values = np.array([[float(each.function(y)) for each in tests] for y in (last, point)])
     if np.any((values[0] >= 0) != (values[1] >= 0)):
         return None
-    return _ended_at(branch, point, limits_of(problem, within))
+    limits = [each for each in events if each.name == BOUND]
+    return _ended_at(branch, point, limits)
 
 
 def _coordinate(within: Window, bound: float, inside: np.ndarray) -> float:

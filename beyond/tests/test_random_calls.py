@@ -51,7 +51,7 @@ def branch_of_an_orbit(calls: Calls) -> Any:
     ends = calls.draw(st.sampled_from([orbit, partial(CALLS["orbit_of_motion"])]))
     start = ends(calls)
     model = getattr(start, "model", None)
-    names = ["amplitude", *(() if model is None else model.numbers())]
+    names = ["amplitude", "frequency", *(() if model is None else model.numbers())]
     more: dict[str, Any] = {}
     if calls.draw(st.booleans()):
         more["along"] = calls.draw(st.sampled_from(names))

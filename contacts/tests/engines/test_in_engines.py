@@ -43,7 +43,7 @@ from bouncing_ball_contacts.documents.engine_steps import (
     steps_of,
 )
 from bouncing_ball_contacts.engines.choice import ENGINES
-from bouncing_ball_contacts.engines.engine import ERROR, Physical
+from bouncing_ball_contacts.engines.engine import ERROR, Physical, Written
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme
@@ -290,7 +290,7 @@ def test_a_bounce_is_as_right_as_the_corrected_models(name, frequency_ratio, rec
         pytest.skip(f"{steps} steps in a contact of {name} take too long")
     single = []
     for many in range(steps, steps + BOUNCES):
-        text = ENGINES[name].snippet(contact, release, duration / many)
+        text = Written(ENGINES[name], contact, release).snippet(duration / many)
         coarse = settings(name, release, r, 1.0, frequency_ratio**2, 0.03)
         found = replace(coarse, time_step=duration / many, steps=many, snippet=text)
         single.append(bounces(name, case, found, 0, 1)[0][0])

@@ -37,7 +37,7 @@ from bouncing_ball_contacts.engines.drop_scripts import drop_script
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 
 # Parameters of which each implies that there is a table.
-_OF_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
+_OF_TABLE = ("frequency", "table_amplitude", "acceleration")
 _OF_STIFFNESS_AND_LOSS = tuple(name for name in quantities(Contact) if name != "mass")
 # The options in their order, in which the answer repeats them.
 _OPTIONS = (

@@ -174,6 +174,17 @@ def test_an_overdamped_ball_comes_back_where_nothing_pulls(zeta):
     assert found.time_step * found.steps == pytest.approx(end, rel=1e-11)
 
 
+def test_an_impedance_that_varies_is_told_at_impacts_as_deep_as_its_width():
+    # ω = 1/(Tζ) = 500 rad/s, and the width is W = 2 mm: impacts of 0.1, 1 and 10 times Wω = 1 m/s.
+    given = {"solref": "0.02 0.1", "solimp": "0.9 0.95 0.002"}
+    told = " ".join(ENGINES["mujoco"].notes(given))
+    assert re.findall(r"at ([\d.]+) m/s", told) == ["0.1", "1", "10"]
+    assert "below the depth of 0.002 m" in told
+    # In another unit of length the same width is another number.
+    half = ENGINES["mujoco"].law(given, length=2.0)
+    assert half.width == ENGINES["mujoco"].law(given).width / 2 == 0.001
+
+
 def test_no_damping_is_written_without_a_sign():
     found = ENGINES["mujoco"].settings(Physical(1.0, 1e4, 0.0))
     assert 'solref="-10000.0 0.0"' in found.snippet

@@ -355,11 +355,11 @@ def engine_row() -> Row:
     from engine_runs import Trial, mujoco
 
     from bouncing_ball_contacts.engines.engine import Physical
-    from bouncing_ball_contacts.engines.mujoco import MuJoCo
+    from bouncing_ball_contacts.engines.mujoco import MUJOCO
 
     stiffness = 20.0**2
     damping = 2 * float(contact.damping_ratio) * 20.0
-    found = MuJoCo().settings(Physical(1.0, stiffness, damping), Release.FORCE, ENGINE_ERROR)
+    found = MUJOCO.settings(Physical(1.0, stiffness, damping), Release.FORCE, ENGINE_ERROR)
     # The engine's table is at its lowest when the ball starts, in the flight before the impact.
     back = phase + np.pi / 2
     trial = Trial(

@@ -23,7 +23,7 @@ print(f"height: restitution model {errors[0]:+.1%}, corrected model {errors[1]:+
 # the mass and half the damper. MercuryDPM's unit test (HelperFunctionsUnitTest.cpp) has
 # 0.004971179385062563 and 0.883132984295725 for them.
 grain = assess_contact(
-    Table(angular_frequency=1.0, acceleration=1.0, gravity=1.0),
+    Table(frequency="1 rad/s", acceleration=1.0, gravity=1.0),
     Contact(mass=0.5, stiffness=2e5, damping=25.0),
     Question(n=1),
 )

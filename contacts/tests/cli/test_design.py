@@ -19,7 +19,7 @@ QUICK = pytest.mark.usefixtures("short_runs")
 CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
         "--restitution", "0.85")  # fmt: skip
 STIFF = (*CASE, "--stiffness", "1e7 N/m")
-UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "acceleration": 1.0,
+UNIT = {"mass": 1.0, "frequency": "1 rad/s", "gravity": 1.0, "acceleration": 1.0,
         "restitution": 0.65, "n": 1}  # fmt: skip
 
 

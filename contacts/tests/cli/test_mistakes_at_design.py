@@ -197,8 +197,6 @@ UNUSUAL = """
     radius 5 was read as 5 m: write a unit, such as '5 mm', if another one was meant
 BALL --frequency 50 --table-amplitude 0.1 --n 1
     table amplitude 0.1 was read as 0.1 m: write a unit, such as '0.1 mm', if another one was
-BALL --period 50 --acceleration "0.8 g"
-    period 50 was read as 50 s: write a unit, such as '20 ms', if another one was meant
 BALL --speed 1000
     speed 1000 was read as 1000 m/s: write a unit, such as '1 m/s', if another one was meant
 --mass 20000 --stiffness 1e6 --restitution 0.8

@@ -31,9 +31,11 @@ def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     assert f"Laws: {', '.join(LAWS)}." in " ".join(said("design", "--help").split())
 
 
-def test_the_help_needs_no_units():
+def test_what_an_answer_does_not_need_is_not_imported():
     call = "design --mass 1 --frequency 1 --acceleration 5 --restitution 0.9 --n 1"
-    for arguments, unneeded in (("--help", "numpy"), (call, "pint")):
+    recipe = "design --engine mujoco --mass 1 --stiffness 1e5 --restitution 0.75"
+    pairs = ("--help", "numpy"), (call, "pint"), (recipe, "xarray"), (recipe, "pandas")
+    for arguments, unneeded in pairs:
         code = (
             "import sys\n"
             "from bouncing_ball.cli.main import main\n"

@@ -30,7 +30,7 @@ STEEL = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "0.8 g", "stiffne
 # The orbit of Figs. 12-14 and of the thresholds, at 50 Hz.
 PAPER = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 0.65, "n": 1}
 # SI units in which mass, Ω and g are 1: ϖ² is the stiffness and Λ the acceleration.
-UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
+UNIT = {"mass": 1.0, "frequency": "1 rad/s", "gravity": 1.0, "restitution": 0.85, "n": 1}
 SHAKEN = {"mass": "4 g", "frequency": "50 Hz", "acceleration": "0.8 g"}
 # Of the laws, the others are designed for weekly.
 OFTEN = ("hunt-crossley",)
@@ -160,7 +160,7 @@ def test_ways_to_say_the_same():
     height = rebound(own, one.damping_ratio, 1.0, 9.80665, Release.DISPLACEMENT)
     # Gravity changes an impact on a stiff contact little.
     assert height == pytest.approx(0.85**2, rel=1e-4)
-    for rate in ({"angular_frequency": f"{omega!r} rad/s"}, {"period": "20 ms"}):
+    for rate in ({"frequency": f"{omega!r} rad/s"}, {"frequency": "3000 rpm"}):
         other = assessed(
             **rate, mass=0.02, table_amplitude=0.8 * 9.80665 / omega**2, gravity="1 g", n=1,
             contact_time=one.contact_time, drop_height="1 m", rebound_height=height,

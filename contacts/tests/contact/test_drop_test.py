@@ -162,6 +162,19 @@ def test_at_the_speed_at_which_gravity_is_felt_r_is_lowered_by_one_percent_for_a
     assert share == pytest.approx(0.99, rel=1e-9)
 
 
+def test_the_second_and_third_rise_are_those_of_the_next_bounces():
+    r = 0.8
+    found = answered(mass=0.1, stiffness=1e9, restitution=r, speed="2 m/s").dropped
+    rises = found.rebound_height, found.second_rise, found.third_rise
+    # Gravity takes 2ζ(1 + r) g/(ωv) of r, and v is at least 1 m/s.
+    taken = 2 * 0.1 * (1 + r) * G / 1e5
+    for k, rise in enumerate(rises, 1):
+        assert rise == pytest.approx(found.drop_height * r ** (2 * k), rel=2 * k * taken / r)
+    # A ball that does not rebound has no further bounces.
+    soft = answered(mass=1.0, stiffness=1e3, restitution=0.4, speed="1 m/s").dropped
+    assert soft.rebound_height == soft.second_rise == soft.third_rise == 0
+
+
 def test_never_and_always_are_two_answers(said):
     elastic = said("design", "--mass=1", "--stiffness=1e4", "--restitution=1")
     assert "gravity lowers r by 1 % at            no speed" in elastic

@@ -12,7 +12,7 @@ from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.verdict_on_motion import aside, said_of_motion
 
-UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
+UNIT = {"mass": 1.0, "frequency": "1 rad/s", "gravity": 1.0, "restitution": 0.85, "n": 1}
 
 
 @pytest.fixture
@@ -177,7 +177,7 @@ def test_the_heights_of_a_motion_are_in_metres(few_starts):
     given = {"acceleration": 1.1, "stiffness": 5000.0, "tolerance": "20 %"}
     unit = assessed(**UNIT, **given)
     omega = 2 * np.pi * 20
-    real = {"mass": 0.3, "angular_frequency": omega, "restitution": 0.85, "n": 1}
+    real = {"mass": 0.3, "frequency": f"{omega!r} rad/s", "restitution": 0.85, "n": 1}
     found = assessed(
         **real, acceleration="1.1 g", stiffness=0.3 * 5000 * omega**2, tolerance="20 %"
     )

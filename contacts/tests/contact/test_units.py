@@ -32,9 +32,8 @@ UNITS = [
     ("frequency", "rpm", 1 / 60),
     ("frequency", "kHz", 1e3),
     ("frequency", "rad/s", 1 / (2 * math.pi)),
-    ("angular_frequency", "Hz", 2 * math.pi),
-    ("angular_frequency", "deg/s", math.pi / 180),
-    ("period", "ms", 1e-3),
+    ("frequency", "deg/s", 1 / 360),
+    ("contact_time", "ms", 1e-3),
     ("table_amplitude", "µm", 1e-6),
     # The Greek letter, which looks the same.
     ("table_amplitude", "\N{GREEK SMALL LETTER MU}m", 1e-6),

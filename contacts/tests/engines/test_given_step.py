@@ -15,6 +15,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts import Contact, EngineSetup, write_contact
 from bouncing_ball_contacts.engines import given_step
 from bouncing_ball_contacts.engines.choice import ENGINES
+from bouncing_ball_contacts.engines.engine import Written
 from bouncing_ball_contacts.engines.given_step import spread_in_steps, stiffest_contact
 from bouncing_ball_contacts.engines.impacts import FEWEST, has_stable_steps, impacts_in_steps
 from bouncing_ball_contacts.engines.physical import Physical
@@ -181,16 +182,16 @@ def test_the_retuned_damping_restores_the_mean_at_the_step():
     engine = ENGINES["mujoco"]
     ball = Physical(0.5, 1e5, 40.0)
     asked = engine.settings(ball, time_step=1e-3)
-    _, tuned = engine.retuned(ball, Release.FORCE, asked.at_step)
-    at = tuned.at_step
+    tuned, at = Written(engine, ball, Release.FORCE).retuned(asked.at_step)
     assert tuned.contact.stiffness == 1e5
     assert at.mean == pytest.approx(asked.at_step.restitution, abs=1e-8)
     assert at.least < at.restitution < at.most
     # A compensated step alone damps more than the contact.
     engine = ENGINES["pybullet"]
-    coarse = engine.at_step(ball, Release.FORCE, 1e-3, 0.001)
+    written = Written(engine, ball, Release.FORCE)
+    coarse = written.at_step(1e-3, 0.001)
     assert coarse.mean < coarse.restitution
-    assert engine.retuned(ball, Release.FORCE, coarse) is None
+    assert written.retuned(coarse) is None
 
 
 def test_the_contact_of_a_drop_test_rebounds_as_measured_at_the_step():
@@ -369,7 +370,7 @@ def test_an_engine_does_with_a_contact_at_a_step_what_the_answer_says(name, stif
     release = Release(found.release)
     zeta = float(damping_ratio(0.75, release))
     physical = Physical(0.5, stiffness, 2 * zeta * float(np.sqrt(stiffness * 0.5)))
-    text = ENGINES[name].snippet(physical, Release(found.release), at.time_step)
+    text = Written(ENGINES[name], physical, release).snippet(at.time_step)
     measured = in_engine(name, text, at.time_step, 0.5, at.steps * at.time_step)
     # LAMMPS' velocity is that of the half step, and PyBullet's positions have single precision.
     expected = by_scheme(at, physical, Release(found.release))

@@ -12,8 +12,10 @@ from installed_engines import only_if_installed
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_contacts.engines import hunt_crossley_steps
-from bouncing_ball_contacts.engines.drake import HuntCrossleyDrake
+from bouncing_ball_contacts.engines.drake import HUNT_CROSSLEY
+from bouncing_ball_contacts.engines.engine import LawInSI
 from bouncing_ball_contacts.engines.physical import Physical
 
 pytestmark = pytest.mark.usefixtures("short_runs")
@@ -185,7 +187,7 @@ def test_on_a_table_a_law_at_a_step_has_the_r_of_its_orbit(said, refusal):
 def test_drake_itself_has_this_range(step):
     only_if_installed("drake")
     ball = Physical(0.5, 1e5, 1.0)
-    settings = HuntCrossleyDrake({"stiffness": 1e5, "damping": 0.5}).settings(ball)
+    settings = HUNT_CROSSLEY.settings(ball, law=LawInSI(LinearHuntCrossley(2e5, 0.5)))
     text = re.sub(r"time_step=[^)]*", f"time_step={step!r}", settings.snippet)
     settings = replace(settings, time_step=step, snippet=text, release=str(Release.FORCE))
     at = answered(**ASKED, time_step=step, speed="1 m/s").at_step

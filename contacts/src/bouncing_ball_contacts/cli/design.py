@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from bouncing_ball.cli.options import Parser
-from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball_beyond.cli.options import add_file
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
@@ -29,8 +28,7 @@ from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.contact.units import doubts, in_si
 from bouncing_ball_contacts.contact.write import (
-    at_given_step,
-    at_own_step,
+    at_step_of_parameters,
     describe_for,
     drop_of_parameters,
     settings_for,
@@ -39,7 +37,7 @@ from bouncing_ball_contacts.engines.drop_scripts import drop_script
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
 
 # Parameters of which each implies that there is a table.
-_OF_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
+_OF_TABLE = ("frequency", "table_amplitude", "acceleration")
 _OF_STIFFNESS_AND_LOSS = tuple(name for name in quantities(Contact) if name != "mass")
 # The options in their order, in which the answer repeats them.
 _OPTIONS = (
@@ -83,7 +81,11 @@ def design(
     NoOrbitError
         If no model has the orbit.
     """
-    require_writable(plot, PICTURES)
+    if plot is not None:
+        # Imported here, because it imports xarray, which takes longer than most recipes.
+        from bouncing_ball.datasets.files import PICTURES, require_writable
+
+        require_writable(plot, PICTURES)
     found = answer_design(given, script)
     if plot is not None:
         _draw(found, plot)
@@ -125,6 +127,9 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
     if script is not None:
         if engine is None:
             raise ParameterError("{script} needs {engine}, such as mujoco")
+        # Imported here, because it imports xarray, which takes longer than most recipes.
+        from bouncing_ball.datasets.files import require_writable
+
         require_writable(script, (".py",))
         text = drop_script(engine, contact.radius, found.case.table.gravity)
         script.write_text(text, encoding="utf-8")
@@ -138,10 +143,9 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
         )
     if engine is not None:
         at_step = engine.asked or engine.at_step
-    elif "time_step" in si:
-        at_step = at_given_step(contact, si["time_step"], error, _impact_speed(found, speed))
     else:
-        at_step = at_own_step(contact, error, _impact_speed(found, speed))
+        at_speed = _impact_speed(found, speed)
+        at_step = at_step_of_parameters(contact, si.get("time_step"), error, at_speed)
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,

@@ -173,22 +173,26 @@ def design_lines(given: DesignAnswer) -> list[str]:
 
 def _description(given: DesignAnswer, found: Description) -> list[str]:
     """The contact without a table; for an engine what is pasted first."""
-    numbers = [
-        *(line(*row) for row in contact_numbers(given)),
-        line("release", found.release),
-        *law_lines(found),
-    ]
     doubts = [f"Note: {doubt}." for doubt in given.doubts]
     notes = [*(f"Note: {note}." for note in found.notes), *_drop_remarks(given)]
     if given.engine is None:
         stepped = [*_of_parameters(given.at_step), *engine_lines(given)]
-        return [_echo(given.question), *doubts, *numbers, *notes, *stepped]
+        return [_echo(given.question), *doubts, *_of_contact(given, found), *notes, *stepped]
     return [
         *engine_lines(given),
         *doubts,
         *notes,
         _echo(given.question),
-        *(["", "Without time steps:", *numbers] if given.whole else []),
+        *(["", "Without time steps:", *_of_contact(given, found)] if given.whole else []),
+    ]
+
+
+def _of_contact(given: DesignAnswer, found: Description) -> list[str]:
+    """The numbers of the contact, with its release and its law."""
+    return [
+        *(line(*row) for row in contact_numbers(given)),
+        line("release", found.release),
+        *law_lines(found),
     ]
 
 

@@ -8,9 +8,8 @@ from bouncing_ball_contacts.contact.drops import Dropped
 from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps, Range
-from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
+from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings, Written, without_step
 from bouncing_ball_contacts.engines.given_step import AtStep
-from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
 
 
@@ -222,8 +221,11 @@ def _retuned_as(given: DesignAnswer, at: AtStep) -> str:
         return ""
     if at.speed is not None:
         return ""
-    stiffness = engine.stiffness_at_rest(case.given.engine_parameters, case.mass)
-    contact = Physical(case.mass, stiffness, at.retuned)
-    values = engine.parameters(engine.for_step(contact, at.time_step))
+    written = Written(
+        engine,
+        engine.read(without_step(case.given.engine_parameters), case.mass),
+        case.equivalent.release,
+    )
+    values = written.with_damping(at.retuned).parameters(at.time_step)
     said = " and ".join(f"{name} = {value:.6g}" for name, value in values.items())
     return f", written as {said}"

@@ -28,7 +28,7 @@ from bouncing_ball_contacts.contact.quantities import (
     given,
     text_of_given,
 )
-from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.choice import engine_named, engine_of
 from bouncing_ball_contacts.engines.engine import Engine
 from bouncing_ball_contacts.engines.laws import LAWS
 
@@ -247,7 +247,7 @@ class Contact:
         """
         if self.from_engine is None:
             return None
-        return engine_named(self.from_engine).reader(self.engine_parameters)
+        return engine_of(self.from_engine, self.engine_parameters)
 
     def by_stiffness_and_loss(self, written: str | None = None) -> "Contact":
         """The contact by other parameters than those of an engine, and with the release that it has
@@ -314,9 +314,10 @@ class Contact:
         engine = engine_named(name)
         rule = str(engine.release(self.release))
         is_hertz = self.reduced_modulus is not None or self.youngs_modulus is not None
-        if is_hertz and Tsuji.name not in engine.laws:
+        written = engine.names_of_laws
+        if is_hertz and Tsuji.name not in written.values():
             raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
-        law = engine.laws.get(str(self.law), self.law)
-        if self.law_unless_spring_damper is not None and law not in engine.laws.values():
+        law = written.get(str(self.law), self.law)
+        if self.law_unless_spring_damper is not None and law not in written.values():
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")
         return replace(self, release=rule, law=law, **self._measured())

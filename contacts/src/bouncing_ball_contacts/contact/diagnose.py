@@ -8,7 +8,7 @@ import math
 
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.engines.engine import Engine
+from bouncing_ball_contacts.engines.engine import Engine, without_step
 from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.physical import Physical
@@ -41,8 +41,7 @@ of the same stiffness, r is 0.8 with small steps",)
     engine = contact.engine
     if engine is None or engine.needs_speed:
         return ()
-    parameters = {k: x for k, x in contact.engine_parameters.items() if k != "time_step"}
-    ball = engine.read(parameters, contact.mass)
+    ball = engine.read(without_step(contact.engine_parameters), contact.mass)
     release = engine.release(contact.release)
     zeta = ball.damping_ratio
     holds = zeta >= 1 and release is Release.DISPLACEMENT

@@ -30,7 +30,7 @@ def _on_engine(case: ResolvedContact) -> tuple[str, ...]:
     engine = case.given.engine
     if engine is None:
         return ()
-    found = engine.remarks(case.given.engine_parameters)
+    found = engine.notes(case.given.engine_parameters)
     contact = engine.contact(case.given.engine_parameters, case.given.mass)
     own = engine.release()
     release = case.equivalent.release
@@ -87,7 +87,9 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     spring = n_t.orbit(ContactModel(case.equivalent), family.n, case.table.amplitude)
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
-    where = engine.at_depth(case.given.engine_parameters, family.greatest_compression)
+    law = engine.law(case.given.engine_parameters)
+    depth = np.array(family.greatest_compression)
+    where = f"where the impedance is {float(law.impedance(depth)):.3g}"
     without = spring.max_height * case.table.length
     off = float((family.max_height - without) / without)
     return (

@@ -19,8 +19,6 @@ STANDARD_GRAVITY = 9.80665
 _LONGEST_SHOWN = 60
 _NONE_TOO = Range(0, 1e40, "[]")
 Frequency = Annotated[Any, SIParameter("Hz", "50 Hz")]
-AngularFrequency = Annotated[Any, SIParameter("rad/s", "314 rad/s")]
-Period = Annotated[Any, SIParameter("s", "20 ms")]
 TableAmplitude = Annotated[Any, SIParameter("m", "0.1 mm")]
 Acceleration = Annotated[Any, SIParameter("m/s^2", "2 g")]
 Gravity = Annotated[Any, SIParameter("m/s^2", "9.81 m/s^2")]
@@ -138,8 +136,8 @@ def single(data: Mapping[str, Any], names: Sequence[str], what: str, give: str =
 
     Examples
     --------
-    >>> single({"period": 2.0}, ["frequency", "period"], "the frequency of the table")
-    'period'
+    >>> single({"stiffness": 2.0}, ["stiffness", "contact_time"], "the stiffness of the contact")
+    'stiffness'
     """
     found = [name for name in names if name in data]
     if len(found) > 1:

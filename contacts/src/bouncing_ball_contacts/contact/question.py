@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
-from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.errors import (
     FAMILY,
     ModelError,
@@ -12,11 +11,14 @@ from bouncing_ball.errors import (
     shortened,
     suggesting,
 )
-from bouncing_ball_beyond.accuracy.errors import QUANTITIES
 from bouncing_ball_contacts.contact.quantities import RestitutionError, TimeStep, Tolerance, convert
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.engine import ERROR
 
+# All quantities but the apparent restitution, which nobody measures or writes.
+_Judged = Literal[
+    "max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling", "permanent_contact"
+]
 # The families of which one is judged by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
 
@@ -48,12 +50,12 @@ class Question:
     """
 
     n: Annotated[int, FAMILY] | None = None
-    quantity: Annotated[str, Quantity] = "max_height"
+    quantity: _Judged = "max_height"
     tolerance: Tolerance = 0.01
 
     def __post_init__(self) -> None:
         convert(self)
-        one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
+        one_of("quantity", self.quantity, {each: each for each in get_args(_Judged)})
         if self.n is not None and (isinstance(self.n, bool) or self.n not in FAMILY):
             raise ModelError(f"index of the family n = {shortened(self.n)} is not {FAMILY}")
 

@@ -21,6 +21,7 @@ from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.rebounds import slowed
 from bouncing_ball_contacts.contact.table import TableMotion
+from bouncing_ball_contacts.engines.engine import without_step
 from bouncing_ball_contacts.engines.physical import Physical
 
 # Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
@@ -181,8 +182,9 @@ class ResolvedContact:
         """
         engine = self.given.engine
         if self.is_linear and engine is not None and self.written is None:
-            parameters = self.given.engine_parameters
-            return self.mass * self.table.gravity / engine.stiffness_at_rest(parameters, self.mass)
+            # Implicit steps do not damp a ball at rest.
+            at_rest = engine.read(without_step(self.given.engine_parameters), self.mass)
+            return self.mass * self.table.gravity / at_rest.stiffness
         if self.is_linear:
             return self.table.gravity / self.omega**2
         return rest(self.law) * self.table.length

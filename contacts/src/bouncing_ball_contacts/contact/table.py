@@ -6,14 +6,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from bouncing_ball.errors import NoOrbitError, require, suggesting
+from bouncing_ball.errors import NoOrbitError, ParameterError, require, suggesting
 from bouncing_ball_contacts.contact.quantities import (
     STANDARD_GRAVITY,
     Acceleration,
-    AngularFrequency,
     Frequency,
     Gravity,
-    Period,
     TableAmplitude,
     convert,
     given,
@@ -79,11 +77,7 @@ class Table:
     Parameters
     ----------
     frequency
-        Frequency of the table in Hz; or give the angular frequency or the period.
-    angular_frequency
-        Angular frequency Ω of the table in rad/s, in place of the frequency.
-    period
-        Period of the table, in place of the frequency.
+        Frequency of the table in Hz, or with its unit in rad/s or rpm.
     table_amplitude
         Amplitude A of the table's motion, in m; or give the acceleration.
     acceleration
@@ -106,8 +100,6 @@ class Table:
     """
 
     frequency: Frequency = None
-    angular_frequency: AngularFrequency = None
-    period: Period = None
     table_amplitude: TableAmplitude = None
     acceleration: Acceleration = None
     gravity: Gravity = None
@@ -129,16 +121,13 @@ class Table:
     def motion(self) -> TableMotion:
         """Ω, A and g."""
         data = given(self)
-        fast = ("frequency", "angular_frequency", "period")
-        rate = single(data, fast, "the frequency of the table", "{frequency}, such as 50 Hz")
+        if self.frequency is None:
+            raise ParameterError(
+                "the frequency of the table is missing: give {frequency}, such as 50 Hz"
+            )
         ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
         far = single(data, ("table_amplitude", "acceleration"), "the amplitude of the table", ways)
-        if rate == "frequency":
-            omega = 2 * math.pi * self.frequency
-        elif rate == "period":
-            omega = 2 * math.pi / self.period
-        else:
-            omega = self.angular_frequency
+        omega = 2 * math.pi * self.frequency
         moved = self.table_amplitude
         if far == "acceleration":
             moved = self.acceleration / omega**2

@@ -26,7 +26,6 @@ from bouncing_ball.errors import ParameterError, Range, shortened
 _SPELLINGS = {
     "kg": ("kg", "g", "mg"),
     "Hz": ("Hz", "kHz", "rpm", "rad/s"),
-    "rad/s": ("rad/s", "Hz", "rpm"),
     "s": ("s", "ms", "us", "ns"),
     "m": ("m", "cm", "mm", "um"),
     "m/s": ("m/s", "mm/s", "km/h"),
@@ -232,7 +231,7 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
 
 def _in_another_unit(unit: str, kind: SIParameter) -> str:
     """A clause on a unit of another dimension, by the name of the unit."""
-    if kind.name in ("Hz", "rad/s") and unit == "1 / second":
+    if kind.name == "Hz" and unit == "1 / second":
         return _PER_TIME
     if not kind.name:
         return f"is in {unit}, and not a plain number"
@@ -244,7 +243,6 @@ _MOST_BARE = {
     "contact_time": 0.5,
     "radius": 0.5,
     "table_amplitude": 0.02,
-    "period": 10.0,
     "time_step": 0.1,
     "mass": 1e3,
     "drop_height": 100.0,

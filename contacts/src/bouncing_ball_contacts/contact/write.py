@@ -11,8 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bouncing_ball.errors import ParameterError, suggesting
-from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.assess import Assessment, assess
@@ -27,10 +26,17 @@ from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import Table, TableMotion
 from bouncing_ball_contacts.engines.choice import engine_named
-from bouncing_ball_contacts.engines.drop_in_steps import MOST_STEPS, DropInSteps, drop_in_steps
-from bouncing_ball_contacts.engines.engine import Engine, EngineSettings
+from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps, drop_in_steps
+from bouncing_ball_contacts.engines.engine import (
+    Engine,
+    EngineSettings,
+    LawInSI,
+    Written,
+    without_step,
+)
 from bouncing_ball_contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball_contacts.engines.physical import Physical
+from bouncing_ball_contacts.engines.steps import InstantStep
 
 HEIGHT = 1.0
 """The height in m of the drop by which a contact is judged if no speed and no height is given."""
@@ -131,16 +137,16 @@ def _suited_stiffness(
 ) -> float:
     """The stiffness in N/m of the contact whose rebound in a drop is nearest to its r."""
     plain = contact.by_stiffness_and_loss(name)
-    engine = engine_named(name)
     release = plain.rule
     # The r of a drop test is taken without gravity here, and fitted to the stiffness afterwards.
     zeta = loss(plain)
     of_step = SpringDamper.of_duration(step, zeta, release)
     omega = float(of_step.frequency_ratio) / _BEGIN
     linear = Physical(plain.mass, plain.mass * omega**2, 2 * zeta * plain.mass * omega)
-    at = engine.at_step(linear, release, step, 1.0)
+    written = Written(engine_named(name), linear, release)
+    at = written.at_step(step, 1.0)
     height = _height(contact, gravity, speed)
-    return engine.suited(linear, release, at, at.restitution, height, gravity)[1].contact.stiffness
+    return written.suited(at, at.restitution, height, gravity)[0].contact.stiffness
 
 
 def _stiffest(contact: Contact, name: str, step: float, gravity: float, error: float) -> float:
@@ -191,17 +197,17 @@ def settings_for(
     """
     case = found.case
     judged = found.judged if isinstance(found, Assessment) else None
-    engine = _engine_of(case, setup.engine, None if judged is None else judged.impact_speed)
-    given_step = setup.time_step is not None
-    if given_step and not case.is_spring_damper and not engine.has_steps_of_law:
+    engine, law = _of_law(case, setup.engine, None if judged is None else judged.impact_speed)
+    steps_known = law is None or engine.needs_speed
+    if setup.time_step is not None and not steps_known:
         raise ParameterError(_OF_A_LAW)
     release = str(case.equivalent.release)
-    settings = engine.settings(case.physical, release, setup.error, setup.time_step)
-    if case.is_spring_damper or engine.has_steps_of_law:
+    settings = engine.settings(case.physical, release, setup.error, setup.time_step, law)
+    if steps_known:
         if speed is None and judged is not None:
             speed = judged.impact_speed
-        height = _height(case.given, case.table.gravity, speed)
-        settings = _dropped(engine, settings, case, height)
+        written = Written(engine, settings.contact, case.equivalent.release, law)
+        settings = _dropped(written, settings, case, _height(case.given, case.table.gravity, speed))
     # At a step that is too long the contact has another r, and so another orbit.
     if judged is None or (settings.at_step is not None and not settings.at_step.is_within):
         return settings
@@ -216,55 +222,65 @@ def settings_for(
 
 
 def _dropped(
-    engine: Engine, asked: EngineSettings, case: ResolvedContact, height: float
+    asked: Written, settings: EngineSettings, case: ResolvedContact, height: float
 ) -> EngineSettings:
     """The settings with their drop, or at a step that is too long those with the least error."""
     gravity = case.table.gravity
-    at = asked.at_step
-    r = asked.restitution if at is None else at.restitution
+    at = settings.at_step
+    r = settings.restitution if at is None else at.restitution
     measured = case.given
     if measured.rebound_height is not None:
         r = math.sqrt(measured.rebound_height / measured.drop_height)
-    tried = [("", engine, asked)]
+    tried = [("", asked, settings)]
     if at is not None and not at.is_within and case.given.is_stiff:
-        release = Release(asked.release)
-        suited = engine.suited(asked.contact, release, at, r, height, gravity)
+        suited = asked.suited(at, r, height, gravity)
         candidates = {
-            "damping": engine.retuned(asked.contact, release, at),
+            "damping": asked.retuned(at),
             "stiffness": suited,
-            "stiffness and damping": suited[0].retuned(
-                suited[1].contact, release, suited[1].at_step or at
-            ),
+            "stiffness and damping": suited[0].retuned(suited[1]),
         }
-        tried += [(what, *found) for what, found in candidates.items() if found is not None]
-    drops = [one.drop(settings, height, gravity, r) for _, one, settings in tried]
+        tried += [
+            (what, one[0], one[0].settings(one[1]))
+            for what, one in candidates.items()
+            if one is not None
+        ]
+    drops = [
+        written.drop(
+            one.time_step,
+            one.steps,
+            height,
+            gravity,
+            r,
+            is_stable=one.at_step is None or one.at_step.is_stable,
+        )
+        for _, written, one in tried
+    ]
     errors = np.array([math.inf if drop is None else drop.error for drop in drops])
     # The fewest changes that are about as good as the best ones.
     best = int(np.argmax(errors <= _AS_GOOD * errors.min()))
-    changed, engine, settings = tried[best]
+    changed, written, settings = tried[best]
     settings = replace(
         settings,
         changed=changed,
         asked=at if changed else None,
         wanted=r,
         drop=drops[best],
-        taken_by_gravity=_taken_by_gravity(case, engine, settings, height),
+        taken_by_gravity=_taken_by_gravity(case, written, settings, height),
     )
-    return _with_instant(engine, settings, r, height, gravity)
+    return _with_instant(written.engine, settings, r, height, gravity)
 
 
 def _taken_by_gravity(
-    case: ResolvedContact, engine: Engine, settings: EngineSettings, height: float
+    case: ResolvedContact, written: Written, settings: EngineSettings, height: float
 ) -> float:
     """How much less √(h′/h) is than the r of a free impact, in a drop without steps."""
     unit = case.table
     law: ContactLaw | None = None
     if not case.is_spring_damper:
-        law = engine.law(settings.parameters, case.mass, unit.time, unit.length)
+        law = written.engine.law(settings.parameters, case.mass, unit.time, unit.length)
     if law is None:
         ratio = settings.contact.angular_frequency * unit.time
-        zeta = settings.contact.damping_ratio
-        law = SpringDamper(ratio, zeta, Release(settings.release))
+        law = SpringDamper(ratio, settings.contact.damping_ratio, written.release)
     speed = np.array([math.sqrt(2 * height / unit.length)])
     free = float(law.signature(speed[0]).restitution)
     return free - float(np.sqrt(2 * rises(law, speed))[0] / speed[0])
@@ -274,72 +290,74 @@ def _with_instant(
     engine: Engine, settings: EngineSettings, r: float, height: float, gravity: float
 ) -> EngineSettings:
     """The settings, with the number r of the engine beside them if it comes closer."""
-    step = engine.instant(r, settings.time_step)
-    if step is None or settings.at_step is None or settings.drop is None:
+    if engine.instant is None or settings.at_step is None or settings.drop is None:
         return settings
     mass = settings.contact.mass
     half = engine.half_steps
+    step = InstantStep(r, settings.time_step)
     drop = drop_in_steps(step, mass, height, gravity, 1.0, r, half_steps=half)
     if drop.error >= settings.drop.error:
         return settings
-    return replace(settings, instant=engine.instant_in_words(r), instant_drop=drop)
+    return replace(settings, instant=engine.instant(r), instant_drop=drop)
 
 
-def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> Engine:
-    """The engine with this name, for the law of a contact and for impacts with a speed in m/s."""
-    engine = engine_named(name)
-    law = case.law_in_si
-    if law is None:
-        return engine
-    at = case.law_speed if speed is None else speed
-    data = given(case.given)
-    materials = tuple(data[name] for name in MATERIALS) if MATERIALS[0] in data else None
-    known = {"radius": case.given.radius, "speed": at, "materials": materials}
-    return engine.with_law({**law, **known})
-
-
-def at_given_step(
-    contact: Contact, time_step: float, error: float, speed: float | None = None
-) -> AtStep:
-    """What the engine whose parameters are given does with them and a time step in s, at an impact
-    speed in m/s if r depends on it.
+def _of_law(case: ResolvedContact, name: str, speed: float | None) -> tuple[Engine, LawInSI | None]:
+    """The row of an engine for the law of a contact, and this law for impacts with a speed in m/s;
+    None for a spring and a damper.
 
     Raises
     ------
     ModelError
-        If no engine is named, or r depends on the speed and none is given.
+        If the engine has no such law.
     """
-    engine = contact.engine
-    if engine is None:
-        raise ParameterError(
-            "{time_step} needs {engine} or {from_engine}, such as generic: "
-            "engines step in different ways"
-        )
-    parameters = contact.engine_parameters
-    if _STEP in parameters:
-        raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
-    plain = contact.by_stiffness_and_loss()
-    return engine.at_step_of(parameters, plain.mass, time_step, error, plain.release, speed)
+    engine = engine_named(name)
+    if case.is_spring_damper:
+        return engine, None
+    kind = type(case.law)
+    row = next((row for row in engine.laws.values() if row.written_law is kind), None)
+    if row is None:
+        raise ModelError(f"{case.law.name} is not written for {name}")
+    data = given(case.given)
+    return row, LawInSI(
+        law=kind(**case.law.in_si(1.0, case.table.length, case.table.time)),
+        speed=case.law_speed if speed is None else speed,
+        radius=case.given.radius,
+        materials=tuple(data[name] for name in MATERIALS) if MATERIALS[0] in data else None,
+    )
 
 
-def at_own_step(contact: Contact, error: float, speed: float | None = None) -> AtStep | None:
-    """What an engine does with parameters that contain its time step; None without such a step.
+def at_step_of_parameters(
+    contact: Contact, time_step: float | None, error: float, speed: float | None = None
+) -> AtStep | None:
+    """What the engine whose parameters are given does with them at a time step in s, which may be
+    one of the parameters; None without a step.
 
     ``speed`` is the impact speed in m/s on which r may depend.
 
     Raises
     ------
     ModelError
-        If the parameters of this engine contain no time step.
+        If no engine is named, the step is given twice, the parameters of this engine contain none,
+        or r depends on the speed and none is given.
     """
     engine = contact.engine
-    if engine is None or _STEP not in contact.engine_parameters:
+    if engine is None:
+        if time_step is None:
+            return None
+        raise ParameterError(
+            "{time_step} needs {engine} or {from_engine}, such as generic: "
+            "engines step in different ways"
+        )
+    own = contact.engine_parameters.get(_STEP)
+    if own is not None and time_step is not None:
+        raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
+    step = own if time_step is None else time_step
+    if step is None:
         return None
     plain = contact.by_stiffness_and_loss()
-    parameters = dict(contact.engine_parameters)
-    step = parameters.pop(_STEP)
+    parameters = without_step(contact.engine_parameters)
     found = engine.at_step_of(parameters, plain.mass, step, error, plain.release, speed)
-    return replace(found, is_of_parameters=True)
+    return replace(found, is_of_parameters=own is not None)
 
 
 def drop_of_parameters(
@@ -351,21 +369,10 @@ def drop_of_parameters(
     engine = contact.engine
     if at is None or engine is None:
         return None
-    parameters = {k: x for k, x in contact.engine_parameters.items() if k != _STEP}
-    plain = contact.by_stiffness_and_loss()
-    release = engine.release(contact.release)
-    one, found = engine.at_parameters(parameters, plain.mass, at.time_step)
-    step = one.step(found, release, at.time_step)
+    mass = contact.by_stiffness_and_loss().mass
+    parameters = without_step(contact.engine_parameters)
+    written, _ = engine.stepped(parameters, mass, at.time_step, engine.release(contact.release))
     height = _height(contact, gravity, speed)
-    if at.steps > MOST_STEPS:
-        return None
-    return drop_in_steps(
-        step,
-        plain.mass,
-        height,
-        gravity,
-        at.steps,
-        at.restitution,
-        half_steps=one.half_steps,
-        is_stable=at.is_stable,
+    return written.drop(
+        at.time_step, at.steps, height, gravity, at.restitution, is_stable=at.is_stable
     )

@@ -1,29 +1,81 @@
-"""The physics engines that a user can name."""
+"""The physics engines that a user can name: the table of them.
+
+* *generic*: any script with a spring, a damper and a rule that ends the contact, here with
+  semi-implicit Euler steps as in a simple script.
+* *PyBullet*, ``changeDynamics`` of both bodies, whose springs are in series and whose dampings are
+  added. If ball and table have the same parameters, these are 2k in N/m and c/2 in N s/m. By
+  default, Bullet also has contacts of bodies that do not touch yet, at distances that depend on
+  their sizes: the damper then acts from the surface on, so that r is ``exp(-ζωh)`` times the value
+  without such contacts. The text to paste allows none, and no slop.
+
+  ``restitution`` is another kind of contact: an instant with the product r of both bodies' values,
+  of the speed that a ball inside has after gravity: in a step Δt it rebounds with ``r (v + gΔt)``,
+  so that slow impacts bounce too high. With contacts ahead the ball is stopped at the surface
+  instead, so that r is 0; below ``restitutionVelocityThreshold`` it is 0 as well; and
+  ``contactERP`` adds up to its own value to r, as it pushes the ball out of the table.
+* *Newton*, SolverSemiImplicit and SolverFeatherstone: ke = k in N/m and kd = c in N s/m, averaged
+  over both shapes. The damper acts while the ball approaches only, and a step is one of
+  semi-implicit Euler. Newton computes with single precision.
+
+The other rows are in :mod:`~bouncing_ball_contacts.engines.mujoco`,
+:mod:`~bouncing_ball_contacts.engines.granular` and :mod:`~bouncing_ball_contacts.engines.drake`.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 from bouncing_ball.errors import ModelError, one_of
-from bouncing_ball_contacts.engines.drake import Drake
-from bouncing_ball_contacts.engines.engine import Engine
-from bouncing_ball_contacts.engines.genesis import Genesis
-from bouncing_ball_contacts.engines.granular import Lammps, Liggghts, MercuryDPM
-from bouncing_ball_contacts.engines.mujoco import MuJoCo
-from bouncing_ball_contacts.engines.newton import NewtonMuJoCo, NewtonSemiImplicit
-from bouncing_ball_contacts.engines.proportional import Generic, PyBullet
+from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_contacts.engines.drake import DRAKE
+from bouncing_ball_contacts.engines.engine import Engine, EngineParameters, LawInSI, proportional
+from bouncing_ball_contacts.engines.granular import LAMMPS, LIGGGHTS, MERCURYDPM
+from bouncing_ball_contacts.engines.mujoco import GENESIS, MUJOCO, NEWTON_MUJOCO
+from bouncing_ball_contacts.engines.physical import Physical
+from bouncing_ball_contacts.engines.scheme import Scheme
 
-ENGINES: dict[str, Engine] = {
-    engine.name: engine
-    for engine in (
-        Generic(),
-        MuJoCo(),
-        Lammps(),
-        Liggghts(),
-        PyBullet(),
-        Drake(),
-        MercuryDPM(),
-        NewtonSemiImplicit(),
-        NewtonMuJoCo(),
-        Genesis(),
+
+def _with_mass(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
+    return contact._asdict()
+
+
+def _instant_of_pybullet(restitution: float) -> str:
+    return (
+        f"restitution={math.sqrt(restitution):.6g} of ball and table alike, without a spring, "
+        "with contactProcessingThreshold=0, contactERP=0 and restitutionVelocityThreshold=0"
     )
-}
+
+
+_ROWS = (
+    replace(
+        proportional(
+            "generic",
+            ("stiffness", "damping"),
+            (Release.DISPLACEMENT, Release.FORCE),
+            Scheme.SEMI_IMPLICIT,
+            has_mass=True,
+        ),
+        parameters=_with_mass,
+    ),
+    MUJOCO,
+    LAMMPS,
+    LIGGGHTS,
+    proportional(
+        "pybullet",
+        ("contactStiffness", "contactDamping"),
+        (Release.FORCE,),
+        Scheme.COMPENSATED,
+        lambda mass: (2.0, 0.5),
+        instant=_instant_of_pybullet,
+    ),
+    DRAKE,
+    MERCURYDPM,
+    proportional("newton-semi-implicit", ("ke", "kd"), (Release.APPROACH,), Scheme.SEMI_IMPLICIT),
+    NEWTON_MUJOCO,
+    GENESIS,
+)
+ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ROWS}
 """The engines by name."""
 
 
@@ -54,3 +106,26 @@ def engine_named(name: str) -> Engine:
     if known := _KNOWN.get(str(name).casefold()):
         raise ModelError(f"{known}; contacts are written for {', '.join(ENGINES)}")
     return one_of("engine", name, ENGINES)
+
+
+def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:
+    """The engine with this name, or the row of the law to which these parameters belong.
+
+    Raises
+    ------
+    ModelError
+        If there is no such engine, or the parameters are those of no contact that lasts.
+    """
+    engine = engine_named(name)
+    if engine.instant is not None and "restitution" in parameters:
+        both = float(parameters["restitution"]) ** 2
+        raise ModelError(
+            f"restitution of {name} has no stiffness: if ball and table have it, "
+            f"r = {both:.4g} with small steps, and {both:.4g} (1 + gΔt/v) at a step Δt and an "
+            "impact speed v, with contactProcessingThreshold=0, contactERP=0 and "
+            "restitutionVelocityThreshold=0, and 0 without the first of these"
+        )
+    # Hertz contacts are written, and not read.
+    rows = (row for row in engine.laws.values() if row.needs_speed)
+    # The laws of an engine differ in the name of their damping.
+    return next((row for row in rows if row.names[1] in parameters), engine)

@@ -1,19 +1,18 @@
-"""The interface of an engine: parameters from k, c and m, release rules, a time-stepping scheme,
-and a text to paste."""
+"""An engine is a row of a table; and a contact as it is written for one."""
 
 import math
 import re
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
-from typing import Any, ClassVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_contacts.engines.drop_in_steps import (
     MOST_STEPS,
     DropInSteps,
@@ -21,12 +20,13 @@ from bouncing_ball_contacts.engines.drop_in_steps import (
     restitutions_in_steps,
 )
 from bouncing_ball_contacts.engines.given_step import AtStep, at_step
+from bouncing_ball_contacts.engines.hunt_crossley_steps import at_step_of_law, missing_speed
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.least_error import stiffness_of_least_error
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated, represented
 from bouncing_ball_contacts.engines.settings import EngineParameters, EngineSettings
-from bouncing_ball_contacts.engines.steps import LinearStep, Step
+from bouncing_ball_contacts.engines.steps import LinearStep, Step, step_of_law
 
 ERROR = 0.001
 """The default of the largest error of a free impact's r that the time step may cause."""
@@ -34,6 +34,11 @@ ERROR = 0.001
 # A whole number of steps is not rounded down.
 _ALMOST = 1 + 1e-9
 _PLACE = re.compile(r"@([\w.]+)@")
+_STEP = "time_step"
+_LIMIT = (
+    "k, c and r are those in the limit of small time steps, which damp less; with the parameter "
+    "time_step, in s, they are those of this step"
+)
 
 
 def twelve_digits(value: float) -> float:
@@ -58,163 +63,91 @@ def at_speeds(law: ContactLaw, speeds: np.ndarray) -> str:
     return "r = " + ", ".join(f"{r:.4f} at {v:.3g} m/s" for r, v in found)
 
 
-class Engine(ABC):
-    """A physics engine and its linear contact between a ball and a wall, at rest or moving.
+class LawInSI(NamedTuple):
+    """A contact law in SI units, with its stiffness per unit of mass.
 
-    A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
-    default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
-    ``snippets/NAME.txt``, where NAME may be another ``text``.
+    Engines also need the ``speed`` in m/s of an impact, the ``radius`` in m of the ball, and E and
+    ν of both ``materials``, as far as they are known.
     """
 
-    name: ClassVar[str]
-    names: ClassVar[tuple[str, ...]]
-    releases: ClassVar[tuple[Release, ...]]
-    scheme: ClassVar[Scheme]
-    laws: ClassVar[dict[str, str]] = {}
-    """The names of the engine's other contact laws, by the names that users may give."""
-    text: ClassVar[str] = ""
-    has_steps_of_law: ClassVar[bool] = False
-    """Whether it is known what the engine's law does at a time step that is given."""
-    half_steps: ClassVar[bool] = False
-    """Whether velocities are those of half steps, so that free flights are exact."""
-    was_run: ClassVar[bool] = True
-    """Whether the text to paste was run in the engine."""
-    needs_speed: ClassVar[bool] = False
-    """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
+    law: Any
+    speed: float | None = None
+    radius: float | None = None
+    materials: tuple[float, ...] | None = None
 
-    @abstractmethod
-    def parameters(self, contact: Physical) -> EngineParameters:
-        """The parameters of a contact, in the units and under the names of the engine."""
 
-    def for_step(self, contact: Physical, time_step: float) -> Physical:
-        """The contact whose parameters let the engine compute a contact with a time step in s."""
-        if self.scheme is not Scheme.COMPENSATED:
-            return contact
-        m, k, c = contact
-        return Physical(m, *(twelve_digits(x * m) for x in compensated(k / m, c / m, time_step)))
+@dataclass(frozen=True, eq=False, repr=False)
+class Engine:
+    """A physics engine and its contact between a ball and a wall, at rest or moving.
 
-    def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        """The contact that the engine computes with these parameters, and a ``time_step`` in s.
+    Parameters
+    ----------
+    name : str
+    names : tuple of str
+        The names of its parameters, that of the stiffness first.
+    releases : tuple of Release
+        The default first.
+    scheme : Scheme
+        How it moves a ball in contact.
+    parameters : callable
+        The parameters in the engine's units, of a :class:`.Physical` and for another law than the
+        spring and damper of its :class:`LawInSI`.
+    contact_of : callable
+        k and c of a mass in kg and the two numbers of the parameters.
+    numbers : callable, optional
+        These two numbers of the parameters, by default those under the two ``names``.
+    law : callable, optional
+        The contact law of the parameters, dimensionless with units of mass in kg, time in s and
+        length in m; None if the contact is a spring and a damper.
+    remarks : callable, optional
+        Sentences on how the contact with these parameters differs from a spring and a damper.
+    kept_stable : callable, optional
+        The parameters as the engine changes them at a time step in s, and sentences on it.
+    instant : callable, optional
+        How impacts that are instants with a given r are set, in words, if r is a number beside
+        those of the contact.
+    laws : mapping, optional
+        The rows of the engine's other contact laws, by the names that users may give.
+    written_law : type of ContactLaw, optional
+        The law of such a row.
+    text : str, optional
+        The file of the text to paste, ``snippets/TEXT.txt``, by default that with its name.
+    half_steps : bool, optional
+        Whether velocities are those of half steps, so that free flights are exact.
+    was_run : bool, optional
+        Whether the text to paste was run in the engine.
+    needs_speed : bool, optional
+        Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0.
+    has_mass : bool, optional
+        Whether the mass in kg is one of the parameters.
+    """
 
-        The time step is a parameter of engines with a compensated scheme only. Without it the
-        contact is the limit of small steps.
+    name: str
+    names: tuple[str, ...]
+    releases: tuple[Release, ...]
+    scheme: Scheme
+    parameters: Callable[..., EngineParameters]
+    contact_of: Callable[[float, float, float], tuple[float, float]]
+    numbers: Callable[["Engine", Mapping[str, Any]], tuple[float, float]] | None = None
+    law: Callable[..., Any] = lambda *_: None
+    remarks: Callable[[Mapping[str, Any]], tuple[str, ...]] = lambda _: ()
+    kept_stable: Callable[[Mapping[str, Any], float], tuple[Any, tuple[str, ...]]] = (
+        lambda parameters, _: (parameters, ())
+    )
+    instant: Callable[[float], str] | None = None
+    laws: Mapping[str, "Engine"] = field(default_factory=dict)
+    written_law: type[ContactLaw] | None = None
+    text: str = ""
+    half_steps: bool = False
+    was_run: bool = True
+    needs_speed: bool = False
+    has_mass: bool = False
 
-        Raises
-        ------
-        ModelError
-            See :meth:`read`; or if the time step is not positive.
-        """
-        if self.scheme is not Scheme.COMPENSATED or "time_step" not in parameters:
-            return self.read(parameters, mass)
-        values = dict(parameters)
-        step = values.pop("time_step")
-        require(0 < step < math.inf, step, "time_step", "a positive number of s")
-        m, k, c = self.read(values, mass)
-        return Physical(m, *(value * m for value in represented(k / m, c / m, step)))
-
-    def numbers(self, contact: Physical) -> dict[str, float]:
-        """The parameters of a contact as single numbers; an entry of a list is named NAME.INDEX."""
-        found: dict[str, float] = {}
-        for name, value in self.parameters(contact).items():
-            many = {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
-            found |= many if isinstance(value, list) else {name: value}
-        return found
-
-    def template(self, release: Release) -> str:
-        """The text to paste for a release, with placeholders ``@name@`` for the numbers.
-
-        A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
-        """
-        lines = (
-            line.rpartition("|") for line in text_to_paste(self.text or self.name).splitlines()
-        )
-        return "\n".join(line for rule, _, line in lines if rule in ("", release))
-
-    def snippet(
-        self, contact: Physical, release: Release, time_step: float, at: AtStep | None = None
-    ) -> str:
-        """The text to paste for a contact and a time step in s; its comments give the units, and r,
-        at a step that does not resolve the contact as it is there.
-
-        It has no line about a release under which the ball would not rebound.
-        """
-        values = {**contact._asdict(), "time_step": time_step}
-        values |= self.numbers(self.for_step(contact, time_step))
-        texts = {name: repr(value) for name, value in values.items()}
-        texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
-        if at is not None and not at.is_within:
-            texts = {name: text for name, text in texts.items() if name not in list(Release)}
-            texts[release] = f"{at.span} at this step"
-        return filled(self.template(release), texts)
-
-    @abstractmethod
-    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        """The contact with these parameters, in the engine's units, and with a mass in kg.
-
-        Raises
-        ------
-        ModelError
-            If a parameter or the mass is missing, unknown, or outside its range.
-        """
-
-    def reader(self, parameters: Mapping[str, Any]) -> "Engine":
-        """The engine, or the part of it to which these parameters belong."""
-        return self
-
-    def law(
-        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
-    ) -> ContactLaw | None:
-        """The contact law with these parameters for a mass in kg, dimensionless with units of time
-        in s and length in m.
-
-        None if the contact is the spring and damper of :meth:`read`.
-        """
-        return None
-
-    def at_depth(self, parameters: Mapping[str, Any], depth: float) -> str:
-        """A clause on what distinguishes the law of :meth:`law` from the spring and damper of
-        :meth:`read` at a depth in m.
-        """
-        return "where the contact is not a spring and a damper"
-
-    def with_law(self, law_in_si: Mapping[str, Any]) -> "Engine":
-        """The engine for a contact law, which has a ``name`` and its parameters in SI units, also
-        the ``radius`` in m of the ball and the ``speed`` in m/s of an impact, if they are known.
-
-        Its settings are made from the linear contact with the same restitution and duration.
-
-        Raises
-        ------
-        ModelError
-            If the engine has no such law.
-        """
-        raise ModelError(f"{law_in_si['name']} is not written for {self.name}")
-
-    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        """Sentences on how the contact with these parameters differs from a spring and damper."""
-        if self.scheme is not Scheme.COMPENSATED or "time_step" in parameters:
-            return ()
-        limit = "k, c and r are those in the limit of small time steps, which damp less"
-        return (f"{limit}; with the parameter time_step, in s, they are those of this step",)
-
-    def instant(self, restitution: float, time_step: float) -> Step | None:
-        """The step of impacts that are instants, for engines in which r is a number beside those of
-        the contact; None without such a number.
-        """
-        return None
-
-    def instant_in_words(self, restitution: float) -> str:
-        """How such an impact is set; empty without one."""
-        return ""
-
-    def stiffness_at_rest(self, parameters: Mapping[str, Any], mass: float | None) -> float:
-        """The stiffness in N/m that carries a ball at rest.
-
-        Steps that are implicit do not damp a ball at rest, so that it is that of the parameters,
-        whatever contact they are at a step.
-        """
-        values = {name: value for name, value in parameters.items() if name != "time_step"}
-        return self.read(values, mass).stiffness
+    @property
+    def names_of_laws(self) -> dict[str, str]:
+        """The names of the engine's other laws, by the names that users may give."""
+        rows = self.laws.items()
+        return {name: row.written_law.name for name, row in rows if row.written_law is not None}
 
     def release(self, asked: str | None = None) -> Release:
         """The release with this name, or the engine's default.
@@ -232,178 +165,59 @@ class Engine(ABC):
             raise ModelError(f"{self.name} has no {release} release: its contacts end by {has}")
         return release
 
-    def restitutions(self, contact: Physical, release: Release) -> dict[Release, float]:
-        """r of a free impact under a release, and under those other releases of the engine under
-        which the ball rebounds.
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        """The contact with these parameters, in the engine's units, and with a mass in kg.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1 and ``release`` is the displacement release.
+            If a parameter or the mass is missing, unknown, or outside its range.
         """
-        slow = contact.damping_ratio < 1
-        rules = [rule for rule in self.releases if rule is release or slow]
-        return {rule: contact.restitution(rule) for rule in rules}
+        values = {name: value for name, value in parameters.items() if value is not None}
+        if self.has_mass:
+            mass = values.pop("mass", mass)
+        if unknown := set(values) - set(self.names):
+            names = " and ".join(self.names)
+            first = sorted(unknown)[0]
+            if first == _STEP:
+                names += ", and the step of any engine is given by --time-step or time_step"
+            meant = did_you_mean(first, self.names)
+            raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}{meant}")
+        if mass is None:
+            raise ModelError(
+                f"the mass is missing: the parameters of {self.name} do not contain it"
+            )
+        require(0 < mass < math.inf, mass, "mass", "a positive number of kg")
+        first, second = (self.numbers or two_numbers)(self, values)
+        return Physical(float(mass), *self.contact_of(float(mass), first, second))
 
-    def settings(
-        self,
-        contact: Physical,
-        release: str | None = None,
-        error: float = ERROR,
-        time_step: float | None = None,
-    ) -> EngineSettings:
-        """The settings for a contact, with a time step that changes r by at most ``error``.
+    def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        """The contact that the engine computes with these parameters, and a ``time_step`` in s.
 
-        With a ``time_step`` in s they are for this step, whatever r the contact then has.
+        The time step is a parameter of engines with implicit steps only. Without it the contact is
+        the limit of small steps.
 
         Raises
         ------
         ModelError
-            If the engine has no such release, the contact does not bounce, or the error is not
-            positive.
-
-        Examples
-        --------
-        >>> from bouncing_ball_contacts.engines.mujoco import MuJoCo
-        >>> found = MuJoCo().settings(Physical(1.0, 1e6, 200.0), error=0.01, time_step=2e-4)
-        >>> found.at_step.is_within, found.time_step, found.parameters["solref"]
-        (False, 0.0002, [-1000000.0, -200.0])
+            See :meth:`read`; or if the time step is not positive.
         """
-        rule = self.release(release)
-        contact = Physical(*map(twelve_digits, contact))
-        if time_step is None:
-            steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
-            step = twelve_digits(contact.contact_time(rule) / steps)
-            return self._settings(contact, rule, error, step, steps)
-        return self._at(contact, rule, self.at_step(contact, rule, time_step, error))
+        if self.scheme is Scheme.SEMI_IMPLICIT or _STEP not in parameters:
+            return self.read(parameters, mass)
+        step = parameters[_STEP]
+        require(0 < step < math.inf, step, _STEP, "a positive number of s")
+        found = self.read(without_step(parameters), mass)
+        if self.scheme is not Scheme.COMPENSATED:
+            return found
+        m, k, c = found
+        return Physical(m, *(value * m for value in represented(k / m, c / m, step)))
 
-    def retuned(
-        self, contact: Physical, release: Release, at: AtStep
-    ) -> tuple["Engine", EngineSettings] | None:
-        """The engine and the settings of a contact with the damping that restores the mean r at the
-        step of ``at``; None if no damping does.
-        """
-        if at.retuned is None:
-            return None
-        engine, tuned = self._retuned(contact, twelve_digits(at.retuned), at.restitution)
-        again = engine.at_step(tuned, release, at.time_step, at.allowed, contact)
-        return engine, engine._at(tuned, release, again)
-
-    def suited(
-        self,
-        contact: Physical,
-        release: Release,
-        at: AtStep,
-        restitution: float,
-        height: float,
-        gravity: float,
-    ) -> tuple["Engine", EngineSettings]:
-        """The engine and the settings of the contact with the free r of ``at`` and another
-        stiffness, with which √(h′/h) of a drop is nearest to a restitution at the step of ``at``.
-        """
-
-        def found(stiffness: float, steps: float) -> np.ndarray:
-            engine, other = self.with_stiffness(contact, stiffness)
-            step = engine.step(other, release, at.time_step)
-            return restitutions_in_steps(step, height, gravity, steps, half_steps=self.half_steps)
-
-        one = self.stiffness(contact) * at.steps**2
-        best = stiffness_of_least_error(found, restitution, one)
-        engine, other = self.with_stiffness(contact, best)
-        again = engine.at_step(other, release, at.time_step, at.allowed)
-        return engine, engine._at(other, release, again)
-
-    def stiffness(self, contact: Physical) -> float:
-        """The stiffness in N/m that is written for a contact, without what compensates a step."""
-        return contact.stiffness
-
-    def with_stiffness(self, contact: Physical, stiffness: float) -> tuple["Engine", Physical]:
-        """The engine and the contact with a stiffness in N/m and the same r.
-
-        Examples
-        --------
-        >>> from bouncing_ball_contacts.engines.mujoco import MuJoCo
-        >>> MuJoCo().with_stiffness(Physical(1.0, 100.0, 2.0), 400.0)
-        (MuJoCo(), Physical(mass=1.0, stiffness=400.0, damping=4.0))
-        """
-        m, k, c = contact
-        return self, Physical(m, stiffness, twelve_digits(c * math.sqrt(stiffness / k)))
-
-    def drop(
-        self, settings: EngineSettings, height: float, gravity: float, restitution: float
-    ) -> DropInSteps | None:
-        """A drop with settings of this engine; None if a contact takes too many steps.
-
-        ``restitution`` is the r that was asked for.
-        """
-        if settings.steps > MOST_STEPS:
-            return None
-        step = self.step(settings.contact, Release(settings.release), settings.time_step)
-        return drop_in_steps(
-            step,
-            settings.contact.mass,
-            height,
-            gravity,
-            settings.steps,
-            restitution,
-            half_steps=self.half_steps,
-            is_stable=settings.at_step is None or settings.at_step.is_stable,
-        )
-
-    def _retuned(
-        self, contact: Physical, damping: float, restitution: float
-    ) -> tuple["Engine", Physical]:
-        """The engine and the contact with the damping that restores the mean r at a step."""
-        return self, contact._replace(damping=damping)
-
-    def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
-        """The settings of a contact at a time step that is given."""
-        steps = math.floor(contact.contact_time(release) / at.time_step * _ALMOST)
-        return self._settings(contact, release, at.allowed, at.time_step, steps, at)
-
-    def _settings(
-        self,
-        contact: Physical,
-        release: Release,
-        error: float,
-        step: float,
-        steps: int,
-        at: AtStep | None = None,
-    ) -> EngineSettings:
-        by_rule = {str(one): r for one, r in self.restitutions(contact, release).items()}
-        return EngineSettings(
-            name=self.name,
-            contact=contact,
-            parameters=self.parameters(self.for_step(contact, step)),
-            time_step=step,
-            release=str(release),
-            restitution=contact.restitution(release),
-            restitutions=by_rule,
-            steps=steps,
-            error=error,
-            scheme=str(self.scheme),
-            snippet=self.snippet(contact, release, step, at),
-            at_step=at,
-        )
-
-    def step(self, contact: Physical, release: Release, time_step: float) -> Step:
-        """A time step in s of a ball in a contact that is written for the engine."""
-        m, k, c = contact
-        return LinearStep.of(self.scheme, k / m, c / m, release, time_step)
-
-    def at_step(
-        self,
-        contact: Physical,
-        release: Release,
-        time_step: float,
-        error: float,
-        asked: Physical | None = None,
-    ) -> AtStep:
-        """What a contact that is written for the engine does with a time step in s, in place of the
-        one that was asked for.
-        """
-        given = self.name, self.scheme, contact, release
-        return at_step(*given, time_step=time_step, error=error, asked=asked)
+    def notes(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        """Sentences on how the contact with these parameters differs from a spring and damper."""
+        if _STEP in parameters:
+            return ()
+        limit = (_LIMIT,) if self.scheme is Scheme.COMPENSATED else ()
+        return (*limit, *self.remarks(parameters))
 
     def at_step_of(
         self,
@@ -423,62 +237,303 @@ class Engine(ABC):
         Raises
         ------
         ModelError
-            See :meth:`read`.
+            See :meth:`read`; or if r depends on the speed and none is given.
         """
         rule = self.release(release)
-        asked = self.read(parameters, mass)
-        contact, remarks = self.stepped(parameters, mass, time_step)
-        found = at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
-        return replace(found, remarks=remarks)
+        asked = Written(self, self.read(parameters, mass), rule)
+        found, remarks = self.stepped(parameters, mass, time_step, rule, speed)
+        if self.needs_speed:
+            if speed is None:
+                raise missing_speed()
+            return found.at_step(time_step, error)
+        return replace(found.at_step(time_step, error, asked), remarks=remarks)
 
     def stepped(
-        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
-    ) -> tuple[Physical, tuple[str, ...]]:
-        """The contact that the engine computes with parameters and a time step in s, and sentences
-        on it.
+        self,
+        parameters: Mapping[str, Any],
+        mass: float | None,
+        time_step: float,
+        release: Release,
+        speed: float | None = None,
+    ) -> tuple["Written", tuple[str, ...]]:
+        """The contact that the engine computes with parameters and a time step in s, with the law
+        of its steps, and sentences on how the engine changes the parameters.
         """
-        if self.scheme is not Scheme.COMPENSATED:
-            return self.read(parameters, mass), ()
-        return self.contact({**parameters, "time_step": time_step}, mass), ()
+        values, remarks = self.kept_stable(parameters, time_step)
+        if self.scheme is Scheme.COMPENSATED:
+            values = {**values, _STEP: time_step}
+        contact = self.contact(values, mass)
+        law = self.law(values, contact.mass)
+        of_law = None if law is None else LawInSI(law, speed)
+        return Written(self, contact, release, of_law), remarks
 
-    def at_parameters(
-        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
-    ) -> tuple["Engine", Physical]:
-        """The engine and the contact that it computes with parameters and a time step in s, whose
-        :meth:`step` is that of their law.
+    def settings(
+        self,
+        contact: Physical,
+        release: str | None = None,
+        error: float = ERROR,
+        time_step: float | None = None,
+        law: LawInSI | None = None,
+    ) -> EngineSettings:
+        """The settings for a contact, with a time step that changes r by at most ``error``.
+
+        With a ``time_step`` in s they are for this step, whatever r the contact then has.
+
+        Raises
+        ------
+        ModelError
+            If the engine has no such release, the contact does not bounce, or the error is not
+            positive.
+
+        Examples
+        --------
+        >>> from bouncing_ball_contacts.engines.choice import ENGINES
+        >>> mujoco = ENGINES["mujoco"]
+        >>> found = mujoco.settings(Physical(1.0, 1e6, 200.0), error=0.01, time_step=2e-4)
+        >>> found.at_step.is_within, found.time_step, found.parameters["solref"]
+        (False, 0.0002, [-1000000.0, -200.0])
         """
-        return self, self.stepped(parameters, mass, time_step)[0]
+        rule = self.release(release)
+        written = Written(self, Physical(*map(twelve_digits, contact)), rule, law)
+        if time_step is not None:
+            return written.settings(written.at_step(time_step, error))
+        steps = steps_for(self.scheme, written.contact.damping_ratio, rule, error)
+        step = twelve_digits(written.contact.contact_time(rule) / steps)
+        return written._settings(error, step, steps, None)
 
-    def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
-        """The mass in kg, after a check of it and of the names of all parameters."""
-        if unknown := set(parameters) - set(self.names):
-            names = " and ".join(self.names)
-            first = sorted(unknown)[0]
-            if first == "time_step":
-                names += ", and the step of any engine is given by --time-step or time_step"
-            meant = did_you_mean(first, self.names)
-            raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}{meant}")
-        if mass is None:
-            raise ModelError(
-                f"the mass is missing: the parameters of {self.name} do not contain it"
-            )
-        require(0 < mass < math.inf, mass, "mass", "a positive number of kg")
-        return float(mass)
 
-    def _two(self, parameters: Mapping[str, Any], mass: float | None) -> tuple[float, float, float]:
-        """The mass in kg, and the engine's parameters of stiffness, which must be positive, and of
-        damping, in the engine's units.
+def without_step(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of an engine without a ``time_step``."""
+    return {name: value for name, value in parameters.items() if name != _STEP}
+
+
+def two_numbers(engine: Engine, parameters: Mapping[str, Any]) -> tuple[float, float]:
+    """The engine's parameters of stiffness, which must be positive, and of damping, in its units.
+
+    Raises
+    ------
+    ModelError
+        If one is missing or outside its range.
+    """
+    for name in engine.names:
+        if name not in parameters:
+            both = " and ".join(engine.names)
+            raise ModelError(f"{name} is missing: the parameters of {engine.name} are {both}")
+        value = float(parameters[name])
+        require(0 <= value < math.inf, value, name, "a number of at least 0")
+    stiffness, damping = (float(parameters[name]) for name in engine.names)
+    require(stiffness > 0, stiffness, engine.names[0], "positive")
+    return stiffness, damping
+
+
+def proportional(
+    name: str,
+    names: tuple[str, str],
+    releases: tuple[Release, ...],
+    scheme: Scheme,
+    factors: Callable[[float], tuple[float, float]] = lambda mass: (1.0, 1.0),
+    **more: Any,
+) -> Engine:
+    """An engine with two parameters a·k and b·c, whose ``factors`` a and b depend on the mass.
+
+    Examples
+    --------
+    >>> rule = (Release.FORCE,)
+    >>> halves = proportional("e", ("a", "b"), rule, Scheme.IMPLICIT, lambda m: (2.0, 0.5))
+    >>> halves.parameters(Physical(mass=1.0, stiffness=100.0, damping=4.0))
+    {'a': 200.0, 'b': 2.0}
+    >>> halves.read({"a": 200.0, "b": 2.0}, 1.0)
+    Physical(mass=1.0, stiffness=100.0, damping=4.0)
+    """
+
+    def parameters(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
+        a, b = factors(contact.mass)
+        return dict(zip(names, (a * contact.stiffness, b * contact.damping), strict=True))
+
+    def contact_of(mass: float, stiffness: float, damping: float) -> tuple[float, float]:
+        a, b = factors(mass)
+        return stiffness / a, damping / b
+
+    return Engine(name, names, releases, scheme, parameters, contact_of, **more)
+
+
+@dataclass(frozen=True)
+class Written:
+    """A contact as it is written for an engine: its linear contact, and its law if it is another.
+
+    Examples
+    --------
+    >>> from bouncing_ball_contacts.engines.choice import ENGINES
+    >>> written = Written(ENGINES["mujoco"], Physical(1.0, 100.0, 2.0), Release.FORCE)
+    >>> written.with_stiffness(400.0).contact
+    Physical(mass=1.0, stiffness=400.0, damping=4.0)
+    """
+
+    engine: Engine
+    contact: Physical
+    release: Release
+    of_law: LawInSI | None = None
+
+    @property
+    def _damped_by_law(self) -> LinearHuntCrossley | None:
+        """The law of which r depends on the speed, if it is such a one."""
+        law = None if self.of_law is None else self.of_law.law
+        return law if isinstance(law, LinearHuntCrossley) else None
+
+    def step(self, time_step: float) -> Step:
+        """A time step in s of a ball in this contact."""
+        found = None if self.of_law is None else step_of_law(self.of_law.law, time_step)
+        if found is not None:
+            return found
+        m, k, c = self.contact
+        return LinearStep.of(self.engine.scheme, k / m, c / m, self.release, time_step)
+
+    def at_step(self, time_step: float, error: float, asked: "Written | None" = None) -> AtStep:
+        """What the contact does with a time step in s, in place of the one that was asked for."""
+        law = self._damped_by_law
+        if law is not None and self.of_law is not None and self.of_law.speed is not None:
+            wanted = None if asked is None else asked._damped_by_law
+            return at_step_of_law(law, self.of_law.speed, time_step, error, wanted)
+        given = self.engine.name, self.engine.scheme, self.contact, self.release
+        return at_step(*given, time_step, error, None if asked is None else asked.contact)
+
+    def with_damping(self, damping: float) -> "Written":
+        """The same with another damping, in N s/m, or in s/m if it is that of the law."""
+        if (law := self._damped_by_law) is None or self.of_law is None:
+            return replace(self, contact=self.contact._replace(damping=damping))
+        return replace(self, of_law=self.of_law._replace(law=replace(law, damping=damping)))
+
+    def with_stiffness(self, stiffness: float) -> "Written":
+        """The same with another stiffness in N/m, and with the same r, at each speed."""
+        m, k, c = self.contact
+        factor = stiffness / self.stiffness
+        linear = Physical(m, twelve_digits(k * factor), twelve_digits(c * math.sqrt(factor)))
+        if (law := self._damped_by_law) is None or self.of_law is None:
+            return replace(self, contact=linear)
+        of_law = self.of_law._replace(law=replace(law, stiffness=stiffness / m))
+        return replace(self, contact=linear, of_law=of_law)
+
+    @property
+    def stiffness(self) -> float:
+        """The stiffness in N/m that is written, without what compensates a step."""
+        law = self._damped_by_law
+        return self.contact.stiffness if law is None else float(law.stiffness) * self.contact.mass
+
+    def parameters(self, time_step: float) -> EngineParameters:
+        """The engine's parameters with which it has this contact at a time step in s."""
+        contact = self.contact
+        if self.engine.scheme is Scheme.COMPENSATED:
+            m, k, c = contact
+            both = compensated(k / m, c / m, time_step)
+            contact = Physical(m, *(twelve_digits(x * m) for x in both))
+        return self.engine.parameters(contact, self.of_law)
+
+    def restitutions(self) -> dict[str, float]:
+        """r of a free impact under the release, and under those other releases of the engine under
+        which the ball rebounds.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1 and the release is the displacement release.
         """
-        m = self._given(parameters, mass)
-        for name in self.names:
-            if name not in parameters:
-                both = " and ".join(self.names)
-                raise ModelError(f"{name} is missing: the parameters of {self.name} are {both}")
-            value = float(parameters[name])
-            require(0 <= value < math.inf, value, name, "a number of at least 0")
-        stiffness, damping = (float(parameters[name]) for name in self.names)
-        require(stiffness > 0, stiffness, self.names[0], "positive")
-        return m, stiffness, damping
+        slow = self.contact.damping_ratio < 1
+        rules = [rule for rule in self.engine.releases if rule is self.release or slow]
+        return {str(rule): self.contact.restitution(rule) for rule in rules}
 
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}()"
+    def snippet(self, time_step: float, at: AtStep | None = None) -> str:
+        """The text to paste for a time step in s; its comments give the units, and r, at a step
+        that does not resolve the contact as it is there.
+
+        A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
+        There is no line about a release under which the ball would not rebound.
+        """
+        values: dict[str, Any] = {**self.contact._asdict(), _STEP: time_step}
+        if self.of_law is not None:
+            values["radius"] = twelve_digits(self.of_law.radius or math.nan)
+        for name, value in self.parameters(time_step).items():
+            values |= {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
+            values[name] = value
+        texts = {name: repr(value) for name, value in values.items()}
+        if at is None or at.is_within:
+            texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions().items()}
+        else:
+            texts[str(self.release)] = f"{at.span} at this step"
+        lines = text_to_paste(self.engine.text or self.engine.name).splitlines()
+        parts = (line.rpartition("|") for line in lines)
+        ours = ("", str(self.release))
+        return filled("\n".join(line for rule, _, line in parts if rule in ours), texts)
+
+    def settings(self, at: AtStep) -> EngineSettings:
+        """The settings at a time step that is given."""
+        duration = self.contact.contact_time(self.release)
+        steps = math.floor(duration / at.time_step * _ALMOST)
+        return self._settings(at.allowed, at.time_step, steps, at)
+
+    def _settings(self, error: float, step: float, steps: int, at: AtStep | None) -> EngineSettings:
+        return EngineSettings(
+            name=self.engine.name,
+            contact=self.contact,
+            parameters=self.parameters(step),
+            time_step=step,
+            release=str(self.release),
+            restitution=self.contact.restitution(self.release),
+            restitutions=self.restitutions(),
+            steps=steps,
+            error=error,
+            scheme=str(self.engine.scheme),
+            snippet=self.snippet(step, at),
+            at_step=at,
+        )
+
+    def retuned(self, at: AtStep) -> tuple["Written", AtStep] | None:
+        """The contact with the damping that restores the mean r at the step of ``at``, and what it
+        does there; None if no damping does.
+        """
+        if at.retuned is None:
+            return None
+        found = self.with_damping(twelve_digits(at.retuned))
+        return found, found.at_step(at.time_step, at.allowed, self)
+
+    def suited(
+        self, at: AtStep, restitution: float, height: float, gravity: float
+    ) -> tuple["Written", AtStep]:
+        """The contact with the free r of ``at`` and another stiffness, with which √(h′/h) of a drop
+        is nearest to a restitution at the step of ``at``, and what it does there.
+        """
+        half = self.engine.half_steps
+
+        def found(stiffness: float, steps: float) -> np.ndarray:
+            step = self.with_stiffness(stiffness).step(at.time_step)
+            return restitutions_in_steps(step, height, gravity, steps, half_steps=half)
+
+        best = stiffness_of_least_error(found, restitution, self.stiffness * at.steps**2)
+        other = self.with_stiffness(best)
+        return other, other.at_step(at.time_step, at.allowed)
+
+    def drop(
+        self,
+        time_step: float,
+        steps: float,
+        height: float,
+        gravity: float,
+        restitution: float,
+        *,
+        is_stable: bool = True,
+    ) -> DropInSteps | None:
+        """A drop at a time step in s of which so many are in a contact; None if these are too many.
+
+        ``restitution`` is the r that was asked for.
+        """
+        if steps > MOST_STEPS:
+            return None
+        return drop_in_steps(
+            self.step(time_step),
+            self.contact.mass,
+            height,
+            gravity,
+            steps,
+            restitution,
+            half_steps=self.engine.half_steps,
+            is_stable=is_stable,
+        )

@@ -48,12 +48,12 @@ def at_step_of_law(
     speed: float,
     time_step: float,
     error: float,
-    asked: float | None = None,
+    asked: LinearHuntCrossley | None = None,
 ) -> AtStep:
     """What the contact of a law does with a time step in s, at an impact speed in m/s.
 
-    The law has its parameters in SI units, with the stiffness per unit of mass; ``asked`` is the r
-    that was asked for, if it is another one than that of the law.
+    The laws have their parameters in SI units, with the stiffness per unit of mass; ``asked`` is
+    the one that was asked for, if it is another one.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def at_step_of_law(
     impact = law.signature(speed)
     duration = float(impact.duration)
     exact = float(impact.restitution)
-    wanted = exact if asked is None else asked
+    wanted = exact if asked is None else float(asked.signature(speed).restitution)
     steps = duration / time_step
     if steps < _FEWEST_STEPS:
         raise ModelError(

@@ -1,4 +1,6 @@
-r"""MuJoCo: ``solref`` and ``solimp``, a spring and damper of accelerations, weighted by d.
+r"""MuJoCo's contact, in MuJoCo, Newton and Genesis: a spring and damper of accelerations.
+
+They are weighted by the impedance d: ``solref`` and ``solimp``.
 
 The acceleration in contact is ``a₁ = (1 - d) a₀ - d (b v + κ x)``, where a₀ is the acceleration by
 all other forces, x < 0 in contact, and d is the impedance of ``solimp`` (dmin at the surface, dmax
@@ -13,6 +15,24 @@ per unit of mass. The impedance then affects the load only: in contact only the 
 gravity and of the table's acceleration acts on the ball. A spring and damper corresponds to d = 0,
 and the smallest d that MuJoCo allows is 10⁻⁴. Contacts with any impedance are the law
 :mod:`bouncing_ball_contacts.engines.impedance`.
+
+*Newton*, SolverMuJoCo, has ``timeconst = 2/kd`` and ``dampratio = kd/(2√ke)``, so that ke = k/m in
+1/s² and kd = c/m in 1/s, as in the direct form of ``solref``. Its impedance is the attribute
+``mujoco:geom_solimp``, which exists after ``SolverMuJoCo.register_custom_attributes``. Contacts
+with friction are pyramids of several rows, which with a small impedance add up to another contact:
+``mujoco:condim`` must be 1. Without friction, or with very little, these pyramids are singular: in
+Newton 1.8.0 the ball's state is not a number after one step, or with a small impedance the ball is
+thrown out. With ``mujoco:condim`` = 1 a friction of 0 is right. A kd of 0 is not a contact without
+damping, but MuJoCo's default. Newton computes with single precision.
+
+*Genesis*, ``sol_params`` of a geometry, has the positive form and the five numbers of the
+impedance. The option ``constraint_timeconst`` of its rigid solver sets T only, with ζ = 1, where a
+free impact has r = e⁻² for every T: it cannot set the bounce. Genesis raises T to two time steps.
+Its scheme is MuJoCo's, and so are its bounces at every time step. A ball that sinks in deeper than
+its radius falls through the plane.
+
+Sources: the kernels of Newton 1.8, and the rigid solver of Genesis 1.4.5, read with the engines
+themselves.
 """
 
 import re
@@ -23,10 +43,15 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError, shortened
 from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_contacts.engines.engine import Engine, Physical, at_speeds
+from bouncing_ball_contacts.engines.engine import (
+    Engine,
+    EngineParameters,
+    LawInSI,
+    at_speeds,
+)
 from bouncing_ball_contacts.engines.impedance import Impedance
+from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
-from bouncing_ball_contacts.engines.steps import ImpedanceStep
 
 # What is written between numbers and around them elsewhere.
 _BETWEEN = re.compile(r"[\s,;()\[\]]+")
@@ -107,148 +132,185 @@ def time_constant(engine: str, contact: Physical) -> float:
     return 2 * contact.mass / contact.damping
 
 
-class MuJoCo(Engine):
-    """Contacts by the direct form of ``solref``, with the smallest impedance.
+def _parameters(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
+    # Differences, because -c/m of a contact without damping would be -0.0.
+    stiffness = 0.0 - contact.stiffness / contact.mass
+    damping = 0.0 - contact.damping / contact.mass
+    return {"solref": [stiffness, damping], "solimp": [_LEAST, _LEAST, 0.001]}
+
+
+def _solref(engine: Engine, parameters: Mapping[str, Any]) -> tuple[float, float]:
+    """The two numbers of ``solref``, after a check of ``solimp``."""
+    impedance(parameters.get("solimp", ()))
+    if "solref" not in parameters:
+        raise ModelError("solref is missing: give it, such as '-10000 -20'")
+    first, second = _numbers("solref", parameters["solref"], range(2, 3))
+    return first, second
+
+
+def _contact_of(m: float, first: float, second: float) -> tuple[float, float]:
+    """k and c of either form of ``solref``.
 
     Examples
     --------
-    >>> contact = Physical(mass=0.5, stiffness=5e4, damping=10.0)
-    >>> MuJoCo().parameters(contact)
-    {'solref': [-100000.0, -20.0], 'solimp': [0.0001, 0.0001, 0.001]}
-    >>> MuJoCo().read(MuJoCo().parameters(contact), 0.5) == contact
-    True
+    >>> _contact_of(0.5, -1e5, -20.0), _contact_of(1.0, 0.02, 0.5)
+    ((50000.0, 10.0), (10000.0, 100.0))
+    """
+    if first < 0 and second <= 0:
+        return -first * m, abs(second) * m
+    if first > _LONGEST and second > 0:
+        raise ModelError(
+            f"solref = '{first:g} {second:g}' is a time constant of {first:g} s, which no "
+            f"simulation has: -k/m and -c/m are written '-{first:g} -{second:g}'"
+        )
+    if first > 0 and second > 0:
+        return m / (first * second) ** 2, 2 * m / first
+    raise ModelError(
+        f"solref = '{first:g} {second:g}' is neither two negative numbers, -k/m and -c/m, nor "
+        "two positive ones, a time constant and a damping ratio"
+    )
 
-    The form with two positive numbers, whose default is 20 ms and critical damping:
 
-    >>> MuJoCo().read({"solref": "0.02 0.5"}, 1.0)
-    Physical(mass=1.0, stiffness=10000.0, damping=100.0)
+def _law(
+    parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
+) -> Impedance | None:
+    """The law of an impedance of which the load is felt.
 
-    Its frequency of 100 rad/s is ϖ = 50 if the unit of time 1/Ω is half a second:
+    Examples
+    --------
+    The frequency of 100 rad/s is ϖ = 50 if the unit of time 1/Ω is half a second:
 
-    >>> MuJoCo().law({"solref": "0.02 0.5"}, time=0.5).frequency_ratio
+    >>> _law({"solref": "0.02 0.5"}, time=0.5).frequency_ratio
     50.0
     """
+    at_surface, deep, width, midpoint, power = impedance(parameters.get("solimp", ()))
+    contact = MUJOCO.read(parameters, 1.0)
+    if max(at_surface, deep) <= _FELT:
+        return None
+    return Impedance(
+        frequency_ratio=contact.angular_frequency * time,
+        damping_ratio=contact.damping_ratio,
+        share=deep,
+        at_surface=at_surface,
+        width=(width or 1.0) / length,
+        midpoint=midpoint,
+        power=power,
+    )
 
-    name = "mujoco"
-    names = ("solref", "solimp")
-    releases = (Release.FORCE,)
-    scheme = Scheme.SEMI_IMPLICIT
 
-    def parameters(self, contact: Physical) -> dict[str, list[float]]:
-        # Differences, because -c/m of a contact without damping would be -0.0.
-        stiffness = 0.0 - contact.stiffness / contact.mass
-        damping = 0.0 - contact.damping / contact.mass
-        return {"solref": [stiffness, damping], "solimp": [_LEAST, _LEAST, 0.001]}
+def _kept_stable(
+    parameters: Mapping[str, Any], time_step: float
+) -> tuple[Mapping[str, Any], tuple[str, ...]]:
+    """By default MuJoCo raises a positive time constant to two time steps (``refsafe``).
 
-    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        values = {name: value for name, value in parameters.items() if value is not None}
-        m = self._given(values, mass)
-        impedance(values.get("solimp", ()))
-        if "solref" not in values:
-            raise ModelError("solref is missing: give it, such as '-10000 -20'")
-        first, second = _numbers("solref", values["solref"], range(2, 3))
-        if first < 0 and second <= 0:
-            return Physical(m, -first * m, abs(second) * m)
-        if first > _LONGEST and second > 0:
-            raise ModelError(
-                f"solref = '{first:g} {second:g}' is a time constant of {first:g} s, which no "
-                f"simulation has: -k/m and -c/m are written '-{first:g} -{second:g}'"
-            )
-        if first > 0 and second > 0:
-            return Physical(m, m / (first * second) ** 2, 2 * m / first)
+    Examples
+    --------
+    >>> found = MUJOCO.at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
+    >>> found.is_stable, found.remarks[0]
+    (False, 'MuJoCo raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)')
+    """
+    first, second = _numbers("solref", parameters.get("solref", ()), range(2, 3))
+    remarks: tuple[str, ...] = ()
+    safe = _SAFE * time_step
+    if 0 < first < safe:
+        parameters = {**parameters, "solref": [safe, second]}
+        remarks = (
+            f"MuJoCo raises the time constant of {first:g} s to {safe:g} s, two time steps "
+            "(refsafe)",
+        )
+    law = _law(parameters)
+    if law is not None and law.has_kink:
+        remarks += (
+            f"this holds for impacts much deeper than {law.width:g} m, the width of solimp",
+        )
+    return parameters, remarks
+
+
+def _remarks(parameters: Mapping[str, Any]) -> tuple[str, ...]:
+    law = _law(parameters)
+    if law is None:
+        return ()
+    # Deep in, where the impedance is constant, a free impact is that of a spring and damper.
+    spring = Impedance(law.frequency_ratio, law.damping_ratio, 0.0).signature(1.0)
+    found: tuple[str, ...] = (
+        f"with the impedance {law.share:g} a contact feels {1 - law.share:.2g} of the load "
+        '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
+    )
+    if law.has_kink:
+        share = law.at_surface / law.share
+        # Impacts as deep as a tenth of the width, as the width, and as ten of it.
+        speeds = law.width * law.frequency_ratio * np.array([0.1, 1, 10])
+        found += (
+            f"this is the contact below the depth of {law.width:g} m; at the surface the "
+            f"spring is {share**2:.2g} and the damper {share:.2g} of it",
+            f"a free impact has {at_speeds(law, speeds)}, and {spring.restitution:.4f} "
+            "where it is much deeper than that",
+        )
+    return found
+
+
+MUJOCO = Engine(
+    name="mujoco",
+    names=("solref", "solimp"),
+    releases=(Release.FORCE,),
+    scheme=Scheme.SEMI_IMPLICIT,
+    parameters=_parameters,
+    contact_of=_contact_of,
+    numbers=_solref,
+    law=_law,
+    remarks=_remarks,
+    kept_stable=_kept_stable,
+)
+"""The direct form of ``solref``, with the smallest impedance."""
+
+
+def _genesis_parameters(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
+    constant = time_constant("genesis", contact)
+    return {"timeconst": constant, "dampratio": contact.damping_ratio}
+
+
+def _genesis_contact(m: float, constant: float, zeta: float) -> tuple[float, float]:
+    if zeta == 0:
+        raise ModelError("dampratio = 0 is no contact of genesis: its time constant is 2 m/c")
+    return m / (constant * zeta) ** 2, 2 * m / constant
+
+
+GENESIS = Engine(
+    name="genesis",
+    names=("timeconst", "dampratio"),
+    releases=(Release.FORCE,),
+    scheme=Scheme.SEMI_IMPLICIT,
+    parameters=_genesis_parameters,
+    contact_of=_genesis_contact,
+)
+"""``set_sol_params``: T and ζ, with the smallest impedance."""
+
+
+def _newton_parameters(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
+    # Raises for a contact without damping.
+    time_constant("newton-mujoco", contact)
+    return {"ke": contact.stiffness / contact.mass, "kd": contact.damping / contact.mass}
+
+
+def _newton_contact(m: float, stiffness: float, damping: float) -> tuple[float, float]:
+    if damping == 0:
         raise ModelError(
-            f"solref = '{first:g} {second:g}' is neither two negative numbers, -k/m and -c/m, nor "
-            "two positive ones, a time constant and a damping ratio"
+            "kd = 0 of newton-mujoco is no contact without damping, but the default of MuJoCo: "
+            "kd is c/m in 1/s"
         )
-
-    def law(
-        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
-    ) -> Impedance | None:
-        at_surface, deep, width, midpoint, power = impedance(parameters.get("solimp", ()))
-        contact = self.read(parameters, 1.0)
-        if max(at_surface, deep) <= _FELT:
-            return None
-        return Impedance(
-            frequency_ratio=contact.angular_frequency * time,
-            damping_ratio=contact.damping_ratio,
-            share=deep,
-            at_surface=at_surface,
-            width=(width or 1.0) / length,
-            midpoint=midpoint,
-            power=power,
-        )
-
-    def at_parameters(
-        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
-    ) -> tuple[Engine, Physical]:
-        contact, _ = self.stepped(parameters, mass, time_step)
-        direct = [-contact.stiffness / contact.mass, -contact.damping / contact.mass]
-        law = self.law({**parameters, "solref": direct})
-        return self if law is None else _MuJoCoOfLaw(law), contact
-
-    def stepped(
-        self, parameters: Mapping[str, Any], mass: float | None, time_step: float
-    ) -> tuple[Physical, tuple[str, ...]]:
-        """The contact that MuJoCo computes with parameters and a time step in s.
-
-        By default MuJoCo raises a positive time constant to two time steps (``refsafe``).
-
-        Examples
-        --------
-        >>> found = MuJoCo().at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
-        >>> found.is_stable, found.remarks[0]
-        (False, 'MuJoCo raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)')
-        """
-        first, second = _numbers("solref", parameters.get("solref", ()), range(2, 3))
-        contact = self.read(parameters, mass)
-        remarks: tuple[str, ...] = ()
-        safe = _SAFE * time_step
-        if 0 < first < safe:
-            contact = self.read({**parameters, "solref": [safe, second]}, mass)
-            remarks = (
-                f"MuJoCo raises the time constant of {first:g} s to {safe:g} s, two time steps "
-                "(refsafe)",
-            )
-        law = self.law(parameters)
-        if law is not None and law.has_kink:
-            remarks += (
-                f"this holds for impacts much deeper than {law.width:g} m, the width of solimp",
-            )
-        return contact, remarks
-
-    def at_depth(self, parameters: Mapping[str, Any], depth: float) -> str:
-        law = self.law(parameters)
-        if law is None:
-            return super().at_depth(parameters, depth)
-        return f"where the impedance is {float(law.impedance(np.array(depth))):.3g}"
-
-    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        law = self.law(parameters)
-        if law is None:
-            return ()
-        # Deep in, where the impedance is constant, a free impact is that of a spring and damper.
-        spring = Impedance(law.frequency_ratio, law.damping_ratio, 0.0).signature(1.0)
-        found: tuple[str, ...] = (
-            f"with the impedance {law.share:g} a contact feels {1 - law.share:.2g} of the load "
-            '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
-        )
-        if law.has_kink:
-            share = law.at_surface / law.share
-            speeds = law.width * law.frequency_ratio * np.array([0.1, 1, 10])
-            found += (
-                f"this is the contact below the depth of {law.width:g} m; at the surface the "
-                f"spring is {share**2:.2g} and the damper {share:.2g} of it",
-                f"a free impact has {at_speeds(law, speeds)}, and {spring.restitution:.4f} "
-                "where it is much deeper than that",
-            )
-        return found
+    return stiffness * m, damping * m
 
 
-class _MuJoCoOfLaw(MuJoCo):
-    """MuJoCo with an impedance of which the load is felt, in SI units."""
-
-    def __init__(self, law: Impedance):
-        self._law = law
-
-    def step(self, contact: Physical, release: Release, time_step: float) -> ImpedanceStep:
-        return ImpedanceStep(self._law, time_step)
+NEWTON_MUJOCO = Engine(
+    name="newton-mujoco",
+    names=("ke", "kd"),
+    releases=(Release.FORCE,),
+    scheme=Scheme.SEMI_IMPLICIT,
+    parameters=_newton_parameters,
+    contact_of=_newton_contact,
+    remarks=lambda _: (
+        "ke and kd are per unit of mass in SolverMuJoCo: k/m in 1/s^2 and c/m in 1/s",
+        "without mujoco:condim = 1 a friction mu of 0 gives no numbers in Newton 1.8.0",
+    ),
+)
+"""SolverMuJoCo: ke = k/m and kd = c/m."""

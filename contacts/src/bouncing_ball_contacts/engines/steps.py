@@ -15,6 +15,8 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
+from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_contacts.engines.impedance import Impedance
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated
@@ -208,6 +210,17 @@ class InstantStep:
 
     def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
         return np.where(free < 0, -self.restitution * free, free)
+
+
+def step_of_law(law: ContactLaw, time_step: float) -> Step | None:
+    """A time step in s of a ball on a contact law in SI units, with its stiffness per unit of mass;
+    None if the steps of this law are not known.
+    """
+    if isinstance(law, Impedance):
+        return ImpedanceStep(law, time_step)
+    if isinstance(law, LinearHuntCrossley):
+        return HuntCrossleyStep(float(law.stiffness), float(law.damping), time_step)
+    return None
 
 
 def patience(steps: float) -> int:

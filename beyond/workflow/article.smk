@@ -1,5 +1,5 @@
-# The article of what goes past the paper, from the results of its studies and the accepted verdicts
-# on the paper.
+# The article, from the results of the studies that it is about and the accepted verdicts on the
+# paper.
 
 PAPER = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 TEMPLATES = os.path.relpath(Path(HOUSE, "report"))
@@ -25,19 +25,9 @@ rule beyond_article:
             rules.ext_orders_study.output,
             rules.ext_map_study.output,
             rules.ext_laws_study.output,
-            rules.ext_release_study.output,
-            rules.ext_impact_study.output,
-            rules.ext_flights_study.output,
-            rules.ext_proofs_study.output,
-            rules.ext_verdicts_study.output,
             "../figures/claims.nc",
         ],
-        tables=[
-            rules.set_ext_orders.output.md,
-            rules.set_ext_laws.output.md,
-            rules.set_ext_proofs.output.md,
-            rules.set_ext_verdicts.output.md,
-        ],
+        tables=[],
     output:
         "results/article.md",
     params:

@@ -14,10 +14,8 @@ from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
 
 HOUSE = ROOT / "beyond"
 REPORT = HOUSE / "report"
-READ = (
-    *("ext_instant", "ext_orders", "ext_map", "ext_laws", "ext_release", "ext_impact"),
-    *("ext_flights", "ext_proofs", "claims"),
-)
+OF_ARTICLE = ("ext_instant", "ext_orders", "ext_map", "ext_laws")
+READ = (*OF_ARTICLE, "ext_proofs", "claims")
 TABLES = {
     "ext_orders": corrected_model_figures.ext_orders,
     "ext_laws": contact_laws_figures.ext_laws,

@@ -56,7 +56,7 @@ def test_every_command_that_a_page_shows_is_one(page):
     assert {*shown} <= {*COMMANDS, "explain"}
 
 
-@pytest.mark.parametrize("page", DOCS, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", [HOUSE / "README.md", *DOCS], ids=lambda page: page.name)
 def test_the_examples_of_a_page_run(page):
     its_examples_run(page)
 

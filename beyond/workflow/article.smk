@@ -1,5 +1,5 @@
-# The article of what goes past the paper, from the results of its studies and the accepted verdicts
-# on the paper.
+# The article, from the results of the studies that it is about and the accepted verdicts on the
+# paper.
 
 PAPER = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 TEMPLATES = os.path.relpath(Path(HOUSE, "report"))
@@ -25,19 +25,9 @@ rule beyond_article:
             rules.compute_ext_orders.output,
             rules.compute_ext_map.output,
             rules.compute_ext_laws.output,
-            rules.compute_ext_release.output,
-            rules.compute_ext_impact.output,
-            rules.compute_ext_flights.output,
-            rules.compute_ext_proofs.output,
-            rules.compute_ext_verdicts.output,
             "../figures/claims.nc",
         ],
-        tables=[
-            rules.set_ext_orders.output.md,
-            rules.set_ext_laws.output.md,
-            rules.set_ext_proofs.output.md,
-            rules.set_ext_verdicts.output.md,
-        ],
+        tables=[],
     output:
         "results/article.md",
     params:

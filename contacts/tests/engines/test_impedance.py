@@ -1,7 +1,6 @@
 """MuJoCo's law keeps the contract of a law, has its closed forms, and refuses what it cannot be."""
 
 import inspect
-import re
 import runpy
 from pathlib import Path
 
@@ -22,7 +21,6 @@ from bouncing_ball_beyond.models.laws.sweeps import Start
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_contacts.engines.impedance import Impedance
-from bouncing_ball_contacts.engines.mujoco import MuJoCo
 
 BEYOND = Path(__file__).parents[3] / "beyond" / "tests"
 LAWS = {
@@ -156,21 +154,3 @@ def test_the_corrected_model_leaves_errors_of_second_order():
         left.append([paper_error(exact=one, simple=other) for one, other in pairs])
     ratio = np.abs(np.array(left[0]) / np.array(left[1]))
     assert np.all((ratio > 3) & (ratio < 5.5))
-
-
-VARYING = {"solref": "-1e6 -20", "solimp": "0.1 0.9 0.001"}
-
-
-def test_the_width_of_an_impedance_is_in_the_unit_of_length():
-    in_metres = MuJoCo().law(VARYING)
-    assert in_metres.width == 0.001
-    assert MuJoCo().law(VARYING, length=0.002).width == pytest.approx(0.5, rel=1e-15)
-
-
-def test_the_speeds_named_with_a_varying_impedance_reach_about_its_width():
-    """A ball on a spring with k/m = 10⁶ s⁻² sinks in by its speed over 10³ s⁻¹."""
-    (said,) = (line for line in MuJoCo().remarks(VARYING) if line.startswith("a free impact"))
-    speeds = [float(speed) for speed in re.findall(r"at (\S+) m/s", said)]
-    for speed, widths in zip(speeds, (0.1, 1, 10), strict=True):
-        # The impedance changes the stiffness by less than a factor of ten.
-        assert 0.3 < speed / 1e3 / (0.001 * widths) < 3

@@ -53,7 +53,7 @@ def test_it_shows_all_figures_of_its_studies(article):
 
 def test_pages_show_the_other_figures():
     pages = "".join(page.read_text("utf-8") for page in (REPORT.parent / "docs").glob("*.md"))
-    other = [each.place for name, each in ARTIFACTS.items() if name not in OF_ARTICLE and each.drawing]
+    other = [one.place for name, one in ARTIFACTS.items() if one.drawing and name not in OF_ARTICLE]
     assert other
     assert [place for place in other if f"(../{place}.png)" not in pages] == []
 

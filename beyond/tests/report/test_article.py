@@ -48,8 +48,14 @@ def test_it_adds_its_works_to_those_of_the_replication(article):
 def test_it_shows_all_figures_of_its_studies(article):
     picture = r"^!\[[^]]*\]\((figures/\w+)\.png\)"
     shown = re.findall(picture, article, re.MULTILINE)
-    drawn = [ARTIFACTS[name].place for name in OF_ARTICLE]
-    assert sorted(shown) == sorted(drawn)
+    assert sorted(shown) == sorted(ARTIFACTS[name].place for name in OF_ARTICLE)
+
+
+def test_pages_show_the_other_figures():
+    pages = "".join(page.read_text("utf-8") for page in (REPORT.parent / "docs").glob("*.md"))
+    other = [one.place for name, one in ARTIFACTS.items() if one.drawing and name not in OF_ARTICLE]
+    assert other
+    assert [place for place in other if f"(../{place}.png)" not in pages] == []
 
 
 def test_it_has_a_file_with_its_title_keywords_and_abstract(article):

@@ -175,6 +175,34 @@ def test_the_second_and_third_rise_are_those_of_the_next_bounces():
     assert soft.rebound_height == soft.second_rise == soft.third_rise == 0
 
 
+@pytest.mark.parametrize("release", ["displacement", "force", "approach"])
+@pytest.mark.parametrize("loss", [{"restitution": 0.5}, {"damping_ratio": 0.02}])
+def test_a_contact_of_a_penetration_sinks_in_by_it(release, loss):
+    given = {"mass": 0.3, "penetration": "2 mm", **loss, "release": release}
+    found = answered(**given, speed="1.5 m/s")
+    assert found.dropped.greatest_compression == pytest.approx(2e-3, rel=1e-9)
+    # A drop from the same height asks for the same contact.
+    r = loss.get("restitution", 0.9)
+    drop = answered(mass=0.3, penetration="2 mm", drop_height=1.0, rebound_height=r**2)
+    again = answered(
+        mass=0.3, stiffness=drop.found.stiffness, damping=drop.found.damping,
+        speed=math.sqrt(2 * G),
+    )  # fmt: skip
+    assert again.dropped.greatest_compression == pytest.approx(2e-3, rel=1e-9)
+    assert again.dropped.rebound_height == pytest.approx(r**2, rel=1e-9)
+
+
+def test_a_penetration_needs_an_impact(refusal):
+    ball = {"mass": 1.0, "restitution": 0.5, "penetration": "2 mm"}
+    for more in ({}, {"frequency": 50.0, "acceleration": "2 g", "speed": 1.0}):
+        with refusal(ModelError, "penetration needs speed of an impact on a table at rest"):
+            answered(**ball, **more)
+    with refusal(ModelError, "contradict each other, because each gives the stiffness"):
+        answered(**ball, stiffness=1e5, speed=1.0)
+    with refusal(ModelError, "penetration is not allowed with law hunt-crossley"):
+        answered(**ball, law="hunt-crossley", contact_time=1e-3, speed=1.0)
+
+
 def test_never_and_always_are_two_answers(said):
     elastic = said("design", "--mass=1", "--stiffness=1e4", "--restitution=1")
     assert "gravity lowers r by 1 % at            no speed" in elastic

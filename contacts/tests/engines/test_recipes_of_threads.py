@@ -11,6 +11,7 @@ from installed_engines import only_if_installed
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.contact.texts import shown
 
 HERTZ = {"mass": 0.02, "radius": RADIUS, "reduced_modulus": "1 GPa", "speed": "1 m/s"}
 
@@ -46,6 +47,20 @@ def test_a_hertz_recipe_has_the_modulus_and_the_restitution(restitution):
     assert -run.y[1, -1] == pytest.approx(restitution, abs=1e-6)
     duration = run.t[-1]
     assert found.time_step * found.steps == pytest.approx(duration, rel=1e-5)
+
+
+def test_the_step_of_a_hertz_recipe_stands_beside_the_rayleigh_time(said):
+    ball = ("--mass=4 g", "--radius=5 mm", "--restitution=0.8", "--speed=1 m/s", "--engine=lammps")
+    solids = ("--youngs-modulus=5 MPa", "--poissons-ratio=0.45", "--table-youngs-modulus=2 GPa",
+              "--table-poissons-ratio=0.2")  # fmt: skip
+    text = said("design", *ball, *solids)
+    density = 0.004 / (4 / 3 * math.pi * 0.005**3)
+    wave = math.sqrt(5e6 / (2 * 1.45) / density) * (0.1631 * 0.45 + 0.8766)
+    time = math.pi * 0.005 / wave
+    assert f"of the Rayleigh time of the ball, {shown(time, 's')}." in text
+    step = json.loads(said("design", *ball, *solids, "--json"))["engine"]["time_step"]
+    assert f"The step is {shown(step / time, '%')} of" in text
+    assert "Rayleigh" not in said("design", *ball, "--reduced-modulus=5 MPa")
 
 
 def test_liggghts_gets_the_materials_that_were_given():

@@ -5,6 +5,7 @@ from bouncing_ball_contacts.cli.options import option
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
 from bouncing_ball_contacts.contact.drops import Dropped
+from bouncing_ball_contacts.contact.hertz import rayleigh_time
 from bouncing_ball_contacts.contact.texts import shown
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps, Range
@@ -60,6 +61,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
         *_gravity(engine),
         *_changed(engine),
         *_instant(engine),
+        *_rayleigh(given, engine),
         *_never_run(engine),
         *_many(engine),
         *(line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
@@ -167,6 +169,15 @@ def _never_run(engine: EngineSettings) -> list[str]:
     if engine_named(engine.name).was_run:
         return []
     return [f"Note: this text was never run, because no wheel of {engine.name} was found."]
+
+
+def _rayleigh(given: DesignAnswer, engine: EngineSettings) -> list[str]:
+    """The time step beside the other measure of it, which codes for granular matter have."""
+    time = rayleigh_time(given.found.case.given)
+    if time is None:
+        return []
+    share = shown(engine.time_step / time, "%")
+    return [f"The step is {share} of the Rayleigh time of the ball, {shown(time, 's')}."]
 
 
 # More time steps in a contact than simulations have.

@@ -18,6 +18,7 @@ from bouncing_ball_contacts.contact.quantities import (
     DropHeight,
     Loss,
     Mass,
+    Penetration,
     PoissonsRatio,
     Radius,
     ReboundHeight,
@@ -32,7 +33,7 @@ from bouncing_ball_contacts.engines.choice import engine_named, engine_of
 from bouncing_ball_contacts.engines.engine import Engine
 from bouncing_ball_contacts.engines.laws import LAWS
 
-STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
+STIFF = ("stiffness", "contact_time", "penetration", "reduced_modulus", "youngs_modulus")
 """Parameters that determine the stiffness of a contact; a modulus needs the radius, too."""
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 """Parameters that determine its loss; the height of a rebound needs that of the drop, too."""
@@ -75,11 +76,11 @@ def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
 class Contact:
     """A ball and its contact with a table, by any parameters that determine them.
 
-    One parameter gives the stiffness: ``stiffness``, ``contact_time``, or for Hertz ``radius`` with
-    ``reduced_modulus`` or the data of both materials. Without any of these the contact is still to
-    be chosen. Another one gives the loss: ``damping``, ``damping_ratio``, ``restitution``,
-    ``measured_restitution``, or ``drop_height`` with ``rebound_height``. In place of both, a
-    contact may have the parameters of a physics engine.
+    One parameter gives the stiffness: ``stiffness``, ``contact_time``, ``penetration``, or for
+    Hertz ``radius`` with ``reduced_modulus`` or the data of both materials. Without any of these
+    the contact is still to be chosen. Another one gives the loss: ``damping``, ``damping_ratio``,
+    ``restitution``, ``measured_restitution``, or ``drop_height`` with ``rebound_height``. In place
+    of both, a contact may have the parameters of a physics engine.
 
     Parameters
     ----------
@@ -89,6 +90,9 @@ class Contact:
         Stiffness k of the contact. If no parameter gives a stiffness, a contact is chosen.
     contact_time
         Duration of a free impact, in place of the stiffness.
+    penetration
+        Greatest compression in an impact on a table at rest, in place of the stiffness; needs the
+        speed, or the height of a drop.
     reduced_modulus
         Reduced modulus E* of a Hertz contact with the damping of Tsuji; needs the radius.
     youngs_modulus
@@ -151,6 +155,7 @@ class Contact:
     mass: Mass = None
     stiffness: Stiffness = None
     contact_time: ContactTime = None
+    penetration: Penetration = None
     reduced_modulus: ReducedModulus = None
     youngs_modulus: YoungsModulus = None
     poissons_ratio: PoissonsRatio = None

@@ -17,6 +17,8 @@ from bouncing_ball_contacts.contact.table import TableMotion
 
 MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_poissons_ratio")
 """Moduli E and Poisson's ratios ν of the ball and of the table, from which E* follows."""
+# What gives the stiffness of a linear contact, or of another law.
+_NOT_HERTZ = ("stiffness", "contact_time", "penetration")
 
 
 def reduced_modulus(contact: Contact) -> float | None:
@@ -50,7 +52,7 @@ def reduced_modulus(contact: Contact) -> float | None:
             )
     elastic = "youngs_modulus" if known else "reduced_modulus"
     # Beside a stiffness the radius says how deep a ball may sink in.
-    by_itself = elastic not in data and not data.keys().isdisjoint(("stiffness", "contact_time"))
+    by_itself = elastic not in data and not data.keys().isdisjoint(_NOT_HERTZ)
     if not by_itself and (elastic in data) != ("radius" in data):
         ways = "{reduced_modulus}, or {youngs_modulus} and the other data of both materials"
         raise ParameterError(
@@ -62,6 +64,30 @@ def reduced_modulus(contact: Contact) -> float | None:
         return contact.reduced_modulus
     ball, ball_ratio, table, table_ratio = (data[name] for name in MATERIALS)
     return 1 / ((1 - ball_ratio**2) / ball + (1 - table_ratio**2) / table)
+
+
+def rayleigh_time(contact: Contact) -> float | None:
+    r"""The time in s in which a Rayleigh wave passes half of the circumference of a ball.
+
+    Codes for granular matter take a share of it as their time step. With the density ρ and the
+    shear modulus G = E/(2(1 + ν)) it is ``πR √(ρ/G)/(0.1631ν + 0.8766)``. None if E, ν or the
+    radius is not known.
+
+    Examples
+    --------
+    A glass bead of 1 mm, as in LIGGGHTS' ``fix check/timestep/gran``:
+
+    >>> mass = 2500 * 4 / 3 * math.pi * 0.5e-3**3
+    >>> bead = Contact(mass=mass, radius="0.5 mm", youngs_modulus="70 GPa", poissons_ratio=0.25)
+    >>> f"{rayleigh_time(bead):.4g}"
+    '5.116e-07'
+    """
+    e, nu, radius = contact.youngs_modulus, contact.poissons_ratio, contact.radius
+    if e is None or nu is None or radius is None:
+        return None
+    density = contact.mass / (4 / 3 * math.pi * radius**3)
+    slowness = math.sqrt(density * 2 * (1 + nu) / e)
+    return math.pi * radius * slowness / (0.1631 * nu + 0.8766)
 
 
 def hertz(

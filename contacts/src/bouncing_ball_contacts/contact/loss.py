@@ -10,12 +10,15 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
+import scipy
+
 from bouncing_ball.errors import ParameterError
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.contact import LOSSY, Contact
 from bouncing_ball_contacts.contact.drop_test import fitted_damping_ratio
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, given, single
+from bouncing_ball_contacts.contact.rebounds import compression
 
 # Largest number of times that the damping of a drop test is fitted to a stiffness.
 _REFITS = 12
@@ -122,3 +125,37 @@ def same_omega(omega: float) -> Callable[[float], float]:
 def omega_of_time(duration: float, release: Release) -> Callable[[float], float]:
     """√(k/m) in rad/s, as a function of ζ, of contacts whose free impacts last so many seconds."""
     return lambda zeta: float(SpringDamper.of_duration(duration, zeta, release).frequency_ratio)
+
+
+def omega_of_penetration(
+    depth: float, speed: float, gravity: float, release: Release
+) -> Callable[[float], float]:
+    """√(k/m) in rad/s, as a function of ζ, of contacts with a greatest compression in m in an
+    impact with a speed in m/s, with gravity.
+
+    Examples
+    --------
+    An elastic ball sinks in by p where kp² = mv² + 2mgp:
+
+    >>> found = omega_of_penetration(0.01, 1.0, 9.81, Release.FORCE)(0.0)
+    >>> abs(found - math.sqrt(1 + 2 * 9.81 * 0.01) / 0.01) < 1e-9
+    True
+    """
+    stiffest = math.sqrt(speed**2 + 2 * gravity * depth) / depth
+
+    def surplus(omega: float, zeta: float) -> float:
+        # In units of 1/ω and g/ω² the contact has ϖ = 1.
+        unit = gravity / omega**2
+        found, _ = compression(SpringDamper(1.0, zeta, release), speed * omega / gravity)
+        return found * unit / depth - 1
+
+    def omega_of(zeta: float) -> float:
+        if zeta == 0:
+            return stiffest
+        # A damper takes a part of the depth.
+        softest = stiffest / 2
+        while surplus(softest, zeta) < 0:
+            softest /= 2
+        return float(scipy.optimize.brentq(surplus, softest, stiffest, (zeta,), xtol=1e-12))
+
+    return omega_of

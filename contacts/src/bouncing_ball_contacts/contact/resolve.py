@@ -30,13 +30,25 @@ from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution
 from bouncing_ball_contacts.contact.contact import STIFF, Contact
 from bouncing_ball_contacts.contact.diagnose import diagnosis
 from bouncing_ball_contacts.contact.hertz import hertz, reduced_modulus
-from bouncing_ball_contacts.contact.loss import loss, omega_of_time, same_omega
+from bouncing_ball_contacts.contact.loss import (
+    loss,
+    omega_of_penetration,
+    omega_of_time,
+    same_omega,
+)
 from bouncing_ball_contacts.contact.quantities import given, single
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import TableMotion
 
 # What a contact of a law is not given by, because its parameters follow from a free impact.
-_NOT_OF_A_LAW = ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus")
+_NOT_OF_A_LAW = (
+    "stiffness",
+    "penetration",
+    "damping",
+    "damping_ratio",
+    "reduced_modulus",
+    "youngs_modulus",
+)
 
 # The last Newton step for the impact speed of an orbit, relative to this speed. The error is of the
 # order of its square.
@@ -88,7 +100,7 @@ def resolve(
         instead = "" if written is None else f", or the {{time_step}} of {written}"
         raise ParameterError(f"no stiffness: give {{stiffness}}, or {{contact_time}}{instead}")
     if kind is None and modulus is None:
-        found = _spring_damper(plain, table)
+        found = _spring_damper(plain, table, speed)
     else:
         found = _of_law(plain, table, families, kind, modulus, speed)
     found = replace(found, given=contact, written=written, impact_speed=speed)
@@ -139,11 +151,17 @@ def law_type(contact: Contact) -> type[ContactLaw] | None:
     return kind
 
 
-def _spring_damper(contact: Contact, table: TableMotion) -> ResolvedContact:
-    """A linear contact whose stiffness or duration is given, with its loss."""
+def _spring_damper(contact: Contact, table: TableMotion, speed: float | None) -> ResolvedContact:
+    """A linear contact by its stiffness, duration or greatest compression, with its loss."""
     rule = contact.rule
     if contact.stiffness is not None:
         omega = same_omega(math.sqrt(contact.stiffness / contact.mass))
+    elif contact.penetration is not None:
+        if speed is None and contact.drop_height is not None:
+            speed = math.sqrt(2 * table.gravity * contact.drop_height)
+        if speed is None:
+            raise ParameterError("{penetration} needs {speed} of an impact on a table at rest")
+        omega = omega_of_penetration(contact.penetration, speed, table.gravity, rule)
     else:
         omega = omega_of_time(contact.contact_time, rule)
     zeta = loss(contact, omega, table.gravity)

@@ -241,6 +241,7 @@ def _in_another_unit(unit: str, kind: SIParameter) -> str:
 # What is more, in SI units and without a unit in the text, was probably meant in thousandths.
 _MOST_BARE = {
     "contact_time": 0.5,
+    "penetration": 0.05,
     "radius": 0.5,
     "table_amplitude": 0.02,
     "time_step": 0.1,
@@ -251,7 +252,13 @@ _MOST_BARE = {
     "diameter": 1.0,
 }
 # Lengths in meters that are beyond any ball, shaker or drop, also with the unit in the text.
-_LONGEST = {"radius": 1.0, "diameter": 2.0, "table_amplitude": 1.0, "drop_height": 1000.0}
+_LONGEST = {
+    "radius": 1.0,
+    "penetration": 1.0,
+    "diameter": 2.0,
+    "table_amplitude": 1.0,
+    "drop_height": 1000.0,
+}
 
 
 def doubts(given: Mapping[str, Any], kinds: Mapping[str, SIParameter]) -> tuple[str, ...]:

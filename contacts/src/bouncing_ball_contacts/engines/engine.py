@@ -242,10 +242,6 @@ class Engine:
         rule = self.release(release)
         asked = Written(self, self.read(parameters, mass), rule)
         found, remarks = self.stepped(parameters, mass, time_step, rule, speed)
-        if self.needs_speed:
-            if speed is None:
-                raise missing_speed()
-            return found.at_step(time_step, error)
         return replace(found.at_step(time_step, error, asked), remarks=remarks)
 
     def stepped(
@@ -375,10 +371,10 @@ class Written:
     of_law: LawInSI | None = None
 
     @property
-    def _damped_by_law(self) -> LinearHuntCrossley | None:
-        """The law of which r depends on the speed, if it is such a one."""
-        law = None if self.of_law is None else self.of_law.law
-        return law if isinstance(law, LinearHuntCrossley) else None
+    def _by_speed(self) -> LawInSI | None:
+        """The law, if r depends on the speed under it and its steps are known."""
+        of = self.of_law
+        return of if of is not None and isinstance(of.law, LinearHuntCrossley) else None
 
     def step(self, time_step: float) -> Step:
         """A time step in s of a ball in this contact."""
@@ -390,34 +386,38 @@ class Written:
 
     def at_step(self, time_step: float, error: float, asked: "Written | None" = None) -> AtStep:
         """What the contact does with a time step in s, in place of the one that was asked for."""
-        law = self._damped_by_law
-        if law is not None and self.of_law is not None and self.of_law.speed is not None:
-            wanted = None if asked is None else asked._damped_by_law
-            return at_step_of_law(law, self.of_law.speed, time_step, error, wanted)
-        given = self.engine.name, self.engine.scheme, self.contact, self.release
-        return at_step(*given, time_step, error, None if asked is None else asked.contact)
+        of = self._by_speed
+        if of is None:
+            given = self.engine.name, self.engine.scheme, self.contact, self.release
+            return at_step(*given, time_step, error, None if asked is None else asked.contact)
+        if of.speed is None:
+            raise missing_speed()
+        wanted = None if asked is None or asked.of_law is None else asked.of_law.law
+        return at_step_of_law(of.law, of.speed, time_step, error, wanted)
 
     def with_damping(self, damping: float) -> "Written":
         """The same with another damping, in N s/m, or in s/m if it is that of the law."""
-        if (law := self._damped_by_law) is None or self.of_law is None:
+        of = self._by_speed
+        if of is None:
             return replace(self, contact=self.contact._replace(damping=damping))
-        return replace(self, of_law=self.of_law._replace(law=replace(law, damping=damping)))
+        return replace(self, of_law=of._replace(law=replace(of.law, damping=damping)))
 
     def with_stiffness(self, stiffness: float) -> "Written":
         """The same with another stiffness in N/m, and with the same r, at each speed."""
         m, k, c = self.contact
         factor = stiffness / self.stiffness
         linear = Physical(m, twelve_digits(k * factor), twelve_digits(c * math.sqrt(factor)))
-        if (law := self._damped_by_law) is None or self.of_law is None:
+        of = self._by_speed
+        if of is None:
             return replace(self, contact=linear)
-        of_law = self.of_law._replace(law=replace(law, stiffness=stiffness / m))
-        return replace(self, contact=linear, of_law=of_law)
+        law = replace(of.law, stiffness=stiffness / m)
+        return replace(self, contact=linear, of_law=of._replace(law=law))
 
     @property
     def stiffness(self) -> float:
         """The stiffness in N/m that is written, without what compensates a step."""
-        law = self._damped_by_law
-        return self.contact.stiffness if law is None else float(law.stiffness) * self.contact.mass
+        of = self._by_speed
+        return self.contact.stiffness if of is None else of.law.stiffness * self.contact.mass
 
     def parameters(self, time_step: float) -> EngineParameters:
         """The engine's parameters with which it has this contact at a time step in s."""

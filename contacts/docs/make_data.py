@@ -22,7 +22,7 @@ from bouncing_ball.datasets.files import (
 )
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import style
-from bouncing_ball.drawing.tables import TextTable, tables_by_suffix
+from bouncing_ball.drawing.tables import TextTable, to_csv, to_markdown
 from bouncing_ball.pipeline.article import FORMATS, by_sentence
 from bouncing_ball.pipeline.front import with_parts
 from bouncing_ball_beyond.models.damping import Release
@@ -153,7 +153,8 @@ def computed(name: str, **changed: Any) -> xr.Dataset:
 
 def tables(name: str, data: xr.Dataset) -> dict[str, str]:
     """The texts of the table of a dataset by their suffixes."""
-    return tables_by_suffix(*SHOWN[name].table(data))
+    header, rows = SHOWN[name].table(data)
+    return {".csv": to_csv(header, rows), ".md": to_markdown(header, rows)}
 
 
 def drawn(name: str, data: xr.Dataset) -> Any:

@@ -89,9 +89,10 @@ def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
 '''
 
 
-def copy_of(text, first, last):
-    """The part of a text from one line up to another one, with the name of the new figure."""
-    part = text[text.index(first) : text.index(last)]
+def copy_of(text, *names):
+    """Rules of a text for the new figure, in which they have its name."""
+    rules = {rule.split(":")[0]: rule.strip() for rule in text.split("\nrule ")[1:]}
+    part = "\n\n\n".join(f"rule {rules[name]}" for name in names)
     return part.replace("fig10", "heights").replace("Figure 10", "The greatest height")
 
 
@@ -114,13 +115,13 @@ def test_a_figure_needs_the_files_of_its_recipe_only(fresh):
     copied(fresh, f"{SCRIPTS}/compute_fig10.py", compute)
     datasets = fresh.path / RULES / "datasets.smk"
     text = datasets.read_text(encoding="utf-8")
-    rule = copy_of(text, "rule compute_fig10:", "rule compute_fig11:")
+    rule = copy_of(text, "compute_fig10")
     datasets.write_text(f"{text}\n\n{rule.strip()}\n", encoding="utf-8")
     with (fresh.path / FIGURES).open("a", encoding="utf-8") as module:
         module.write(DRAWING)
     pictures = fresh.path / RULES / "figures.smk"
     text = pictures.read_text(encoding="utf-8")
-    rules = copy_of(text, "rule draw_fig10:", "rule draw_fig11:")
+    rules = copy_of(text, "draw_fig10", "fig10")
     pictures.write_text(f"{text}\n\n{rules.strip()}\n", encoding="utf-8")
     draw = f"{SCRIPTS}/draw_heights.py"
     copied(fresh, f"{SCRIPTS}/draw_fig10.py", draw)

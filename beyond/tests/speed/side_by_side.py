@@ -2,7 +2,7 @@
 
 Each row compares times of this machine in this run, with the error that each program reached. A
 program that is not installed is named absent: AUTO-07p interpreted (`pip install bifpy`, which
-needs gfortran) and compiled (AUTO_DIR, see compiled_auto.py), heyoka, MuJoCo. With --cold, a cold
+needs gfortran) and compiled (AUTO_DIR, see compiled_auto.py), heyoka. With --cold, a cold
 run of the pipeline is compared with its imports, in some minutes (tests/speed/imports_only.py).
 """
 
@@ -23,7 +23,6 @@ import numpy as np
 import bouncing_ball_beyond
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.branches.curves import CurveProblem, condition_of, curve_through
@@ -41,8 +40,6 @@ REPETITIONS = 3
 BRANCHES, POINTS = 200, 20
 # Numbers of branches together at which the time for each is compared with compiled AUTO.
 TOGETHER = (1, 2, 5, 10, 20, 50, 100, 200)
-# Bounces of the comparison with an engine, and the error of r for which its time step is chosen.
-BOUNCES, ENGINE_ERROR = 24, 1e-4
 
 
 class Row(NamedTuple):
@@ -331,54 +328,6 @@ def simulation_row() -> Row:
     return Row(task, ours, error, "heyoka", theirs, float(their_error))
 
 
-def engine_row() -> Row:
-    """Bounces on an orbit, against the time steps of MuJoCo with which r is met within an error."""
-    contact = SpringDamper.from_restitution(0.85, 20.0, Release.FORCE)
-    orbit = n_t.orbit(ContactModel(contact), 1, 0.9)
-    phase = float(orbit.phase)
-    velocity = float(orbit.impact_velocity)
-    highest = float(orbit.max_height)
-    dynamics = LinearContactDynamics.of(contact, 0.9)
-
-    def simulated():
-        return dynamics.simulate(np.array([phase]), np.array([velocity]), BOUNCES)
-
-    ours, sequence = timed(simulated)
-    # The ball lands from its greatest height.
-    landing = 0.9 * np.sin(sequence.phase[-1, 0])
-    error = abs(float(landing + sequence.impact_velocity[-1, 0] ** 2 / 2) / highest - 1)
-    task = f"{BOUNCES} bounces of one ball on a contact with ϖ = 20, released at zero force"
-    # The engine's time step is that of the contacts, a house above this one.
-    if not (peer("mujoco") and peer("bouncing_ball_contacts")):
-        return Row(task, ours, error, "MuJoCo: absent")
-    sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "contacts" / "tests"))
-    from engine_runs import Trial, mujoco
-
-    from bouncing_ball_contacts.engines.engine import Physical
-    from bouncing_ball_contacts.engines.mujoco import MUJOCO
-
-    stiffness = 20.0**2
-    damping = 2 * float(contact.damping_ratio) * 20.0
-    found = MUJOCO.settings(Physical(1.0, stiffness, damping), Release.FORCE, ENGINE_ERROR)
-    # The engine's table is at its lowest when the ball starts, in the flight before the impact.
-    back = phase + np.pi / 2
-    trial = Trial(
-        settings=found,
-        mass=1.0,
-        height=0.9 * (1 + np.sin(phase)) - velocity * back - back**2 / 2,
-        speed=velocity + back,
-        steps=int(2 * np.pi * BOUNCES / found.time_step),
-        gravity=1.0,
-        amplitude=0.9,
-    )
-    runs = [mujoco(trial) for _ in range(REPETITIONS)]
-    heights = runs[-1][0] - 0.9 * np.cos(trial.times)
-    last = trial.times > 2 * np.pi * (BOUNCES - 1)
-    their_error = abs(float(heights[last].max()) / highest - 1)
-    name = f"MuJoCo, {found.steps} steps in a contact"
-    return Row(task, ours, error, name, median(spent for _, spent in runs), their_error)
-
-
 def page(rows: list[Row], even: str, cold: str) -> str:
     """The page as Markdown."""
     table = "\n".join(row.line() for row in rows)
@@ -390,9 +339,7 @@ numpy {np.__version__}).
 A ratio above 1 says that this package is faster. The error of a branch is the largest defect of the
 equations; that of AUTO-07p includes the eleven digits of its output files, and on the curve its
 error is the difference of Λ from this package. The error of a simulation is the distance from the
-1-T orbit in closed form, to which the ball has settled. MuJoCo has the time step with which r is
-met within {ENGINE_ERROR:g}; its time is that of the steps alone, and the error
-against it is that of the greatest height, relative to the orbit in closed form. "AUTO-07p"
+1-T orbit in closed form, to which the ball has settled. "AUTO-07p"
 evaluates the equations of the restitution model in Python, through its interface `bifpy`, and each
 of its runs is a process. "AUTO-07p compiled" has them in Fortran (`tests/speed/two_impacts.f90`),
 with the same settings; its time is that of its own clock, and both this and that of `follow` beside
@@ -414,7 +361,6 @@ def main() -> None:
     compiled, even = compiled_rows()
     rows += [compiled, curve_row(), batch_row()]
     rows.append(simulation_row())
-    rows.append(engine_row())
     cold = "A cold run of the pipeline against its imports was left out: `make speed COLD=--cold`."
     if "--cold" in sys.argv:
         import imports_only

@@ -12,7 +12,7 @@ from matplotlib.layout_engine import LayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
-from bouncing_ball.drawing.labels import QUANTITIES, number_label
+from bouncing_ball.drawing.labels import number_label
 from bouncing_ball.drawing.style import LINES, MARKS, palette
 from bouncing_ball.errors import ModelError
 
@@ -163,18 +163,3 @@ def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None
     axes.plot(x, np.where(shown, y, np.nan), **look)
     if not np.all(shown):
         axes.plot(x, np.where(shown, np.nan, y), color=look["color"], **LINES["inadmissible"])
-
-
-def panels_by_quantity(
-    data: xr.Dataset, height: float, xlabel: str
-) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity, with labels at the outside."""
-    figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
-    for axes in slots.flat:
-        axes.set(xlabel=xlabel, ylabel="relative error")
-        axes.label_outer()
-    quantities = map(str, data["quantity"].values)
-    panels = dict(zip(quantities, slots.flat, strict=False))
-    for quantity, axes in panels.items():
-        axes.set_title(QUANTITIES[quantity])
-    return figure, panels

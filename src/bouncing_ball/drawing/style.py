@@ -23,7 +23,6 @@ COLOURS = ("#000000", "#0072B2", "#C77C00", "#AA3A00", "#3F96CC")
 _DARKEST = 0.55
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
-CORRECTED = "#AA3A00"
 TABLE = "#8c8c8c"
 Look = dict[str, Any]
 """Keywords of a line or a marker."""
@@ -70,19 +69,9 @@ MARKS: dict[str, Look] = {
 MODELS: dict[str, Look] = {
     "spring-damper": {"color": CONTACT, "linewidth": 2.2, "alpha": 0.75},
     "restitution": {"color": RESTITUTION, "linewidth": 1.0},
-    "corrected": {"color": CORRECTED, "linewidth": 1.2, "linestyle": (0, (4, 1.5))},
 }
 LIMIT: Look = MODELS["restitution"] | {"linestyle": "--"}
 """The value of the restitution model, to which that of the contact tends along ϖ."""
-
-# Contact laws differ by their dashes as well as by their colours.
-LAWS: dict[str, Look] = {
-    "linear": {"color": COLOURS[0], "linestyle": "-"},
-    "linear, force release": {"color": COLOURS[0], "linestyle": (0, (5, 1, 1, 1, 1, 1))},
-    "hunt-crossley": {"color": COLOURS[1], "linestyle": (0, (4, 1.5))},
-    "tsuji": {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))},
-    "kuwabara-kono": {"color": COLOURS[3], "linestyle": (0, (2, 1))},
-}
 
 
 def palette(count: int) -> Sequence[str]:

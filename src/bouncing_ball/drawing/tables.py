@@ -11,16 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-LAW_NAMES = {
-    "restitution": "constant r",
-    "linear": "linear",
-    "linear, force release": "linear, force release",
-    "hunt-crossley": "Hunt and Crossley",
-    "tsuji": "Tsuji",
-    "kuwabara-kono": "Kuwabara and Kono",
-}
-"""The names of contact laws for readers; a law without one here keeps its own."""
-
 Rows = Sequence[Sequence[str]]
 TextTable = tuple[list[str], list[list[str]]]
 """Header and rows."""
@@ -77,17 +67,6 @@ def to_markdown(header: Sequence[str], rows: Rows) -> str:
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
-def tables_by_suffix(header: Sequence[str], rows: Rows) -> dict[str, str]:
-    """A table in all formats, by the suffix of its file.
-
-    Examples
-    --------
-    >>> list(tables_by_suffix(["n"], [["1"]]))
-    ['.csv', '.md']
-    """
-    return {".csv": to_csv(header, rows), ".md": to_markdown(header, rows)}
-
-
 Column = Callable[[xr.Dataset], str]
 """A function that makes the text of a cell from the part of the dataset for its row."""
 
@@ -110,18 +89,6 @@ def text_table(parts: Iterable[xr.Dataset], columns: Columns) -> TextTable:
 def text(name: str) -> Column:
     """The column of a variable as text without a number format."""
     return lambda part: str(part[name].item())
-
-
-def law_name(name: str) -> Column:
-    """The column of a variable with the names of contact laws, for readers.
-
-    Examples
-    --------
-    >>> text_table([xr.Dataset({"law": "hunt-crossley"})], {"law": law_name("law")})[1]
-    [['Hunt and Crossley']]
-    """
-    plain = text(name)
-    return lambda part: LAW_NAMES.get(plain(part), plain(part))
 
 
 def quantity_in_words(part: xr.Dataset) -> str:

@@ -5,7 +5,7 @@
 :mod:`.damping`              damping from restitution (Eq. 16), the two release rules
 :mod:`.model`                what both models share: what an impact does to a ball
 :mod:`.restitution`          impacts with a restitution coefficient (Eqs. 2, 9)
-:mod:`.spring_damper`        contacts with a spring and a damper (Eqs. 10-13, 17, 23)
+:mod:`.spring_damper`        contacts with a spring and a damper (Eqs. 10-13, 23)
 :mod:`.permanent_contact`    the thresholds Λ_CR and Λ_SD (Eqs. 9, 28-36)
 :mod:`.history`              balls over time, from impact to impact
 ============================ ==========================================================

@@ -1,4 +1,4 @@
-r"""The spring-damper model: contacts with a spring and a damper (Eqs. 10-13, 17, 23).
+r"""The spring-damper model: contacts with a spring and a damper (Eqs. 10-13, 23).
 
 In the relative coordinate δ = z - w, the ball in contact obeys (Eqs. 10 and 11) ::
 
@@ -115,7 +115,9 @@ def _double_quotient(
     short = np.abs(time) * (omega + abs(nu)) < 1
     if not short.any():
         return found
-    s, loss, stiffness = time[short], 2 * decay_rate[short], (omega * omega)[short]
+    s = time[short]
+    loss = 2 * decay_rate[short]
+    stiffness = (omega * omega)[short]
     power = s * s / 2
     total = power + 0j
     before, of_poles, of_all = np.zeros_like(s), np.ones_like(s), np.ones_like(total)
@@ -381,7 +383,7 @@ class SpringDamper(Model):
         x, y = table(np.asarray(phase, dtype=float), amplitude)
         by_phase = x * found.in_phase - y * found.quadrature
         rate_by_phase = x * (found.impulse - found.quadrature) - y * found.in_phase
-        opening = self.opening_rate(duration, phase, velocity, amplitude)
+        opening = state.velocity + self.lag * state.acceleration
         later_by_phase = -(by_phase + self.lag * rate_by_phase) / opening
         later_by_velocity = -(found.impulse + self.lag * found.impulse_rate) / opening
         return matrix_of(

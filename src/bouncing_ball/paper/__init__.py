@@ -13,9 +13,10 @@ afternoon of reading, some four hours at ten lines a minute:
 
 The rest need not be read. In :mod:`.exhibits`, the modules ``…_figures`` draw datasets and compute
 nothing, and ``orbit_parameters`` refuses parameters for which there is no orbit. In :mod:`.claims`,
-``claim``, ``claims``, ``parameters``, ``verdict`` and ``tables`` decide, count and list the claims,
-and ``formulas``, ``formulas_in_use``, ``witness`` and ``forensics`` compute formulas, orbits and
-Table 1 once more, for those who doubt a number in the tables with these names in ``figures``.
+``claim``, ``claims``, ``paper_parameters``, ``verdict``, ``places`` and ``claim_tables`` decide,
+count and list the claims, and ``formulas``, ``formulas_in_use``, ``witness`` and ``forensics``
+compute formulas, orbits and Table 1 once more, for those who doubt a number in the tables with
+these names in ``figures``.
 
 The library computes with the equations of the paper in the following functions and classes of
 ``bouncing_ball``. The docstring of each, or of its module, shows the equation as the paper writes

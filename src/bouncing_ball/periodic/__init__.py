@@ -8,6 +8,8 @@
 :mod:`.calls`             the calls ``orbit``, ``orbits`` and ``limits``
 ========================= ====================================================================
 
-There are two routes to an orbit, which share the equations of the impact and of the flight alone:
-its branch in closed form, and continuation. A simulation of the ball is the third.
+There are two routes to an orbit: its branch in closed form, and continuation. They share the
+equations of the impact and of the flight, and the trace and the determinant of the monodromy. A
+continuation also starts from an orbit in closed form, which Newton's method corrects by the six
+equations. A simulation of the ball is the third route.
 """

@@ -91,7 +91,8 @@ _FINE = 20_001
 
 class _Points(NamedTuple):
     """Orbits along a branch, or its special orbits in order, as rows: their coordinates
-    (φ, z′_i, ϖτ_b, Λ), and the largest defects of their equations.
+    (φ, z′_i, ϖτ_b, Λ), or (φ, Λ) of the restitution model, and the largest defects of their
+    equations.
     """
 
     orbits: Orbit

@@ -432,8 +432,10 @@ def _explained(equations: PaperEquations, end: End, point: np.ndarray) -> End:
 
 
 def default_top(model: Model, n: int) -> float:
-    """The largest Λ of a branch if none is given: 1.4 times that of its period doubling, or twice
-    that of its saddle-node.
+    """The largest Λ of a branch if none is given: 1.4 times that of its period doubling.
+
+    If there is no period doubling above the saddle-node, the place of its Λ takes twice that of the
+    saddle-node, or 1 if this is more.
     """
     branch = explicit_branch(model)
     fold = float(branch.bifurcation(Bifurcation.SADDLE_NODE, n).amplitude)

@@ -203,9 +203,9 @@ class Orbit(Batch):
     def max_height(self) -> Any:
         """Greatest absolute height z over the orbit, in flight or in contact: max z of Eq. 37.
 
-        The apex of a flight is at z_b + z′_b²/2, by Eq. 14 with z_b = Λ sin(τ_b + φ). If it reaches
-        Λ, it is the greatest height, because a ball in contact is below the table and thus below Λ.
-        Otherwise the table may lift the ball higher during a long contact.
+        The apex of a flight is at z_b + z′_b²/2, by Eq. 14 from the height z_b of the release. If
+        it reaches Λ, it is the greatest height, because a ball in contact is below the table and
+        thus below Λ. Otherwise the table may lift the ball higher during a long contact.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
         top = np.array(self.bounce_height + rising * rising / 2 + np.zeros(self.shape))

@@ -8,6 +8,8 @@ import xarray as xr
 from declared_artifacts import read_by
 
 from bouncing_ball.datasets.files import parameter_attributes
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.claims import claims as claims_module
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
 from bouncing_ball.paper.claims.paper_parameters import PAPER, digest, of_dataset
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
@@ -29,6 +31,12 @@ def data(recorded):
 @pytest.fixture(scope="module")
 def verdicts(data, described):
     return described(claims(data))
+
+
+def test_two_claims_of_one_name_are_refused(monkeypatch, recorded, refusal):
+    monkeypatch.setattr(claims_module, "CLAIMS", (*CLAIMS, CLAIMS[0]))
+    with refusal(ModelError, f"'{CLAIMS[0].id}' is the name of two claims"):
+        claims(recorded)
 
 
 def test_names_are_unique_and_references_are_there():

@@ -16,8 +16,8 @@ from bouncing_ball.pipeline.diff import causes as module
 from bouncing_ball.pipeline.diff import compare
 from bouncing_ball.pipeline.diff.causes import touched_files
 from bouncing_ball.pipeline.diff.compare import compare_folders
-from bouncing_ball.pipeline.diff.outcome import Outcome
-from bouncing_ball.pipeline.diff.report import differences_html, to_terminal
+from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
+from bouncing_ball.pipeline.diff.report import differences_html, headline, to_terminal
 
 ROOT = Path(__file__).resolve().parents[3]
 PNG = "figures/fig05.png"
@@ -441,3 +441,11 @@ def test_the_command_takes_a_house_its_results_and_artifacts(
         main(["diff", *arguments])
     assert capsys.readouterr().out.splitlines()[-1].startswith(count)
     assert ended.value.code == int("drifted" in count)
+
+
+def test_the_first_line_begins_with_the_first_suspect_of_most_artifacts():
+    """A file that made more artifacts, but was changed before, comes after that of this change."""
+    rows = (Row("phase", Outcome.DRIFTED, "+1 % in phase", 1),)
+    of_two = [Whole(x, (Whole("", rows),), cause="", code=("new.py", "old.py")) for x in "ab"]
+    other = Whole("c", (Whole("", rows),), cause="", code=("old.py",))
+    assert headline(Whole("", (*of_two, other)))[0].endswith(": new.py (2), old.py (3)")

@@ -4,21 +4,24 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import panels_by_quantity
 from bouncing_ball.drawing.labels import parameters
-from bouncing_ball.drawing.style import GUIDE, LAWS
+from bouncing_ball.drawing.style import GUIDE
 from bouncing_ball.drawing.tables import (
-    LAW_NAMES,
     Columns,
     TextTable,
     at,
     entry_of,
-    law_name,
     quantity_in_words,
     text_table,
     value,
 )
 from bouncing_ball.drawing.thresholds import with_zeros
+from bouncing_ball_beyond.drawing.laws_and_models import (
+    LAW_NAMES,
+    LAWS,
+    law_name,
+    panels_by_quantity,
+)
 
 # The lowest error shown, as a share of the smallest at a sample.
 _BELOW = 0.3

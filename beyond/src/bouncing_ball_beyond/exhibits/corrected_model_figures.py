@@ -5,9 +5,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic, panels_by_quantity
+from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic
 from bouncing_ball.drawing.labels import note, parameters
-from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, MODELS, TABLE, Look
+from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, TABLE, Look
 from bouncing_ball.drawing.tables import (
     Columns,
     TextTable,
@@ -19,6 +19,7 @@ from bouncing_ball.drawing.tables import (
     value,
 )
 from bouncing_ball.drawing.thresholds import with_zeros
+from bouncing_ball_beyond.drawing.laws_and_models import MODELS, panels_by_quantity
 
 # Errors are below 1 but next to a phase of 0; the orders have the room above.
 _ERRORS = (1e-11, 1e5)

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from bouncing_ball.drawing.labels import QUANTITIES
-from bouncing_ball.drawing.style import COLOURS, CONTACT, CORRECTED, MODELS, RESTITUTION, TABLE
+from bouncing_ball.drawing.style import COLOURS, CONTACT, RESTITUTION, TABLE
+from bouncing_ball_beyond.drawing.laws_and_models import CORRECTED, MODELS
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69

@@ -11,19 +11,18 @@ from matplotlib.figure import Figure
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.style import COLOURS, LAWS, Look
+from bouncing_ball.drawing.style import COLOURS, Look
 from bouncing_ball.drawing.tables import (
-    LAW_NAMES,
     Column,
     Columns,
     TextTable,
     at,
-    law_name,
     text,
     text_table,
     value,
     words,
 )
+from bouncing_ball_beyond.drawing.laws_and_models import LAW_NAMES, LAWS, law_name
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {

@@ -38,7 +38,7 @@ def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
     """The result of a function of the datasets; missing data are an error with one line."""
     try:
         return decide(data)
-    except (ModelError, KeyError, AttributeError) as error:
+    except (ValueError, KeyError, AttributeError) as error:
         raise ModelError(f"{name!r}: {' '.join(str(error).split())}") from error
 
 

@@ -1,6 +1,7 @@
 """The verdict on every claim of the paper, and the number of claims with each verdict."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
 
@@ -8,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims import (
     both_models,
     evidence,
@@ -154,8 +156,11 @@ def claims(data: Data) -> xr.Dataset:
     Raises
     ------
     ModelError
-        If a dataset, or a variable of it, is missing.
+        If a dataset, or a variable of it, is missing, or two claims have one name.
     """
+    names = Counter(claim.id for claim in CLAIMS)
+    if twice := [name for name, number in names.items() if number > 1]:
+        raise ModelError(f"{twice[0]!r} is the name of two claims: figures/claims.md has all names")
     printed = (
         evidence.stiff_orbit_error,
         evidence.short_of_lift,

@@ -66,7 +66,8 @@ def told_files(artifact: Whole) -> list[Whole]:
 def headline(comparison: Whole) -> list[str]:
     r"""The files of code in which the causes may be, and a line for each artifact that differs.
 
-    A file comes first if it made more of the artifacts that differ. A line has the cause and what
+    A file comes first if it is the first suspect of more artifacts, and then if it made more of
+    them. A line has the cause and what
     moved most, of words everything.
 
     Examples
@@ -80,7 +81,10 @@ def headline(comparison: Whole) -> list[str]:
     two: other; +9 % in phase; and 1 more
     """
     count = Counter(file for artifact in comparison.moved for file in artifact.code)
-    named = [f"{file} ({number})" for file, number in count.most_common()]
+    # The files of the present change are the first ones of each artifact.
+    first = Counter(artifact.code[0] for artifact in comparison.moved if artifact.code)
+    ranked = sorted(count, key=lambda file: (-first[file], -count[file]))
+    named = [f"{file} ({count[file]})" for file in ranked]
     lines = [f"changed code (artifacts made by it that differ): {some(named)}"] if named else []
     for artifact in comparison.moved:
         rows = [row for file in told_files(artifact) for row in file.moved]

@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors, values
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch, required_orbit
 from bouncing_ball.periodic.orbit import Bifurcation
 
 
@@ -22,7 +22,7 @@ def test_the_values_are_those_of_the_orbits_and_bifurcations_of_each_model():
     expected = [lam * np.sin(phi) + half**2 / 2, half, phi, r, fold, flip, 1.0]
     np.testing.assert_allclose(found, expected, rtol=1e-14)
     branch = explicit_branch(exact)
-    orbit = branch.required(n, lam)
+    orbit = required_orbit(branch.model, n, lam)
     of_contact = values(exact, n, lam, list(Quantity))
     names = "max_height", "bounce_velocity", "phase", "apparent_restitution"
     assert of_contact[:4].tolist() == [float(getattr(orbit, name)) for name in names]

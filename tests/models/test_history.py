@@ -8,10 +8,10 @@ from scipy.optimize import brentq
 import bouncing_ball
 from bouncing_ball import rigid, spring_damper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models import history
-from bouncing_ball.models.history import impacts_of, impacts_until, motion_at, next_impact
+from bouncing_ball.models import simulation
 from bouncing_ball.models.model import Status
 from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.simulation import impacts_of, impacts_until, motion_at, next_impact
 from bouncing_ball.models.spring_damper import SpringDamper, force
 
 MODELS = [
@@ -138,7 +138,7 @@ def test_a_ball_that_rises_at_first_and_a_wrong_start_are_refused(refusal):
 
 
 def test_a_sequence_of_too_many_impacts_is_refused(refusal, monkeypatch):
-    monkeypatch.setattr(history, "_MOST", 50)
+    monkeypatch.setattr(simulation, "_MOST", 50)
     elastic = rigid(restitution=1.0)
     with refusal(ModelError, "more than 50 impacts in this time: use fewer periods"):
         bouncing_ball.history(elastic, amplitude=0.0, velocity=-1.0, periods=20.0, samples=1)

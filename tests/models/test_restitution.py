@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from bouncing_ball import limits, orbit, rigid, simulate
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.history import impacts_of, motion_at
 from bouncing_ball.models.model import Status
 from bouncing_ball.models.restitution import RestitutionModel, chattering, lift_off_phase
+from bouncing_ball.models.simulation import impacts_of, motion_at
 
 EPS = np.finfo(float).eps
 

@@ -7,8 +7,9 @@ import bouncing_ball
 from bouncing_ball import branch, limits, orbit, orbits, rigid, spring_damper
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.periodic.branches import restitution_dataset
-from bouncing_ball.periodic.explicit import RestitutionBranch, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, trace_and_determinant
+from bouncing_ball.periodic.restitution_branch import RestitutionBranch
 
 
 def test_a_branch_of_the_restitution_model_is_that_of_its_formula():

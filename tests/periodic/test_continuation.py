@@ -16,8 +16,9 @@ from bouncing_ball.periodic.continuation import (
     default_top,
     follow_branches,
 )
-from bouncing_ball.periodic.explicit import SpringDamperBranch, branch_point, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Side, multipliers
+from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch, branch_point
 
 EPS = np.finfo(float).eps
 

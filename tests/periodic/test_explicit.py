@@ -14,20 +14,21 @@ from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.explicit import (
-    Absence,
+from bouncing_ball.periodic.explicit import Absence, absence, explicit_branch, required_orbit
+from bouncing_ball.periodic.orbit import Bifurcation, Side, trace_and_determinant
+from bouncing_ball.periodic.restitution_branch import (
     ImpactMap,
     RestitutionBranch,
-    SpringDamperBranch,
-    branch_point,
-    excess_angle,
-    explicit_branch,
-    nearest_excess,
     period_doubling_lift,
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball.periodic.orbit import Bifurcation, Side, trace_and_determinant
+from bouncing_ball.periodic.spring_damper_branch import (
+    SpringDamperBranch,
+    branch_point,
+    excess_angle,
+    nearest_excess,
+)
 
 EPS = np.finfo(float).eps
 
@@ -336,21 +337,22 @@ def test_a_required_orbit_that_does_not_exist_is_refused_with_its_reason(refusal
     stiff = explicit_branch(by_restitution(0.85, 10.0))
     # The saddle-node of the model notes' table, 0.2400.
     with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "saddle-node at Λ = 0.239988"):
-        stiff.required(1, 0.2)
+        required_orbit(stiff.model, 1, 0.2)
     rigid = explicit_branch(RestitutionModel(0.85))
     with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.2 for r = 0.85", "at Λ = 0.254724"):
-        rigid.required(1, 0.2)
+        required_orbit(rigid.model, 1, 0.2)
     # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
     soft = explicit_branch(by_restitution(0.0893, 2.592))
     assert not soft.bifurcation(Bifurcation.SADDLE_NODE, 1).exists
-    assert soft.required(1, 2.5).stable and not soft.required(1, 4.0).stable
+    assert required_orbit(soft.model, 1, 2.5).stable
+    assert not required_orbit(soft.model, 1, 4.0).stable
     with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ"):
-        soft.required(1, 0.5)
+        required_orbit(soft.model, 1, 0.5)
     with refusal(NoOrbitError, "Λ = 2.5", "no saddle-node and therefore no other side"):
-        soft.required(1, 2.5, Side.UNSTABLE)
+        required_orbit(soft.model, 1, 2.5, Side.UNSTABLE)
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
     with refusal(NoOrbitError, "Λ = 1.3", "does not reach this Λ"):
-        explicit_branch(by_restitution(0.85, 2.0)).required(1, 1.3, Side.UNSTABLE)
+        required_orbit(by_restitution(0.85, 2.0), 1, 1.3, Side.UNSTABLE)
 
 
 @pytest.mark.parametrize(
@@ -427,9 +429,9 @@ def test_a_missing_orbit_has_its_reason_in_a_row_as_alone():
     lam = np.array([0.9, 0.2, 1.3, 2.5])
     contact = by_restitution(r, omega)
     for side in Side:
-        many = explicit_branch(contact).absence(1, lam, side)
+        many = absence(explicit_branch(contact), 1, lam, side)
         for k in range(4):
-            assert many[k] == explicit_branch(contact[k]).absence(1, lam[k], side)
+            assert many[k] == absence(explicit_branch(contact[k]), 1, lam[k], side)
     assert many.tolist() == [
         Absence.BELOW_SADDLE_NODE,
         Absence.BELOW_SADDLE_NODE,

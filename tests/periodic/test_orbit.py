@@ -8,10 +8,10 @@ from scipy.optimize import brentq, minimize_scalar
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.history import next_impact
 from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.simulation import next_impact
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.explicit import RestitutionBranch, branch_point, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch, required_orbit
 from bouncing_ball.periodic.orbit import (
     Bifurcation,
     Orbit,
@@ -25,6 +25,8 @@ from bouncing_ball.periodic.orbit import (
     release_margin,
     trace_and_determinant,
 )
+from bouncing_ball.periodic.restitution_branch import RestitutionBranch
+from bouncing_ball.periodic.spring_damper_branch import branch_point
 
 EPS = np.finfo(float).eps
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
@@ -40,7 +42,7 @@ every_release = pytest.mark.parametrize("release", Release)
 
 @every_model
 def test_the_observables_are_those_of_the_simulated_cycle(model):
-    orbit = explicit_branch(model).required(1, 1.0)
+    orbit = required_orbit(model, 1, 1.0)
     leg = next_impact(model, orbit.phase, orbit.relative_impact_velocity, 1.0)
     assert float(leg.time) == pytest.approx(2 * np.pi, abs=1e-12)
     assert float(leg.departure.duration) == pytest.approx(float(orbit.contact_duration), abs=1e-12)
@@ -59,7 +61,7 @@ def test_the_observables_are_those_of_the_simulated_cycle(model):
 
 @every_model
 def test_the_path_is_periodic_and_its_velocity_is_the_rate_of_its_height(model):
-    orbit = explicit_branch(model).required(1, 1.0)
+    orbit = required_orbit(model, 1, 1.0)
     time = np.linspace(0.01, 2 * np.pi - 0.01, 500)
     # Away from the ends of the contact, where the acceleration jumps.
     time = time[np.abs(time - float(orbit.contact_duration)) > 1e-3]
@@ -79,7 +81,7 @@ def test_the_path_is_periodic_and_its_velocity_is_the_rate_of_its_height(model):
 def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
     # A stable orbit of a compliant contact: the ball turns round before its release.
     contact = SpringDamper(0.3691, damping_ratio(0.1546))
-    orbit = explicit_branch(contact).required(1, 10.5378)
+    orbit = required_orbit(contact, 1, 10.5378)
     assert float(orbit.bounce_velocity) < 0
     time = np.linspace(0, float(orbit.contact_duration), 201)
     k = np.argmax(path(orbit, time)[0])
@@ -159,7 +161,7 @@ def test_at_a_bifurcation_a_multiplier_is_one_or_minus_one():
 
 def test_without_dissipation_no_orbit_is_asymptotically_stable():
     for model in (RestitutionModel(1.0), SpringDamper(7.0, 0.0), SpringDamper(40.0, 0.0, "force")):
-        orbit = explicit_branch(model).required(1, 0.5)
+        orbit = required_orbit(model, 1, 0.5)
         assert float(trace_and_determinant(orbit)[1]) == 1.0
         assert not orbit.stable
 
@@ -286,7 +288,7 @@ def test_the_margin_of_a_release_is_its_highest_maximum_below_zero(release):
 def test_an_orbit_that_does_not_return_to_its_start_is_inadmissible():
     # By less than what an overlooked event would do, and by more than rounding.
     model = RestitutionModel(0.85)
-    phase = float(explicit_branch(model).required(1, 1.0).phase)
+    phase = float(required_orbit(model, 1, 1.0).phase)
     for off, same in ((0.0, True), (1e-9, True), (1e-4, False)):
         late = Orbit(model, 1, 1.0, phase + off, 0.0, -np.pi)
         fast = Orbit(model, 1, 1.0, phase, 0.0, -np.pi * (1 + off))

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.history import next_impact
+from bouncing_ball.models.simulation import next_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.continuation import PaperEquations
-from bouncing_ball.periodic.explicit import Absence, SpringDamperBranch, restitution_saddle_node
+from bouncing_ball.periodic.explicit import Absence, absence
 from bouncing_ball.periodic.orbit import Side, monodromy
+from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
+from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch
 
 # For each of two rules and two sides.
 SIZES = [500, pytest.param(25_000, marks=pytest.mark.long)]
@@ -37,7 +39,7 @@ def drawn(request, size):
 
 def test_every_missing_orbit_has_its_reason(drawn):
     branch, n, lam, side, orbit = drawn
-    reasons = branch.absence(n, lam, side)
+    reasons = absence(branch, n, lam, side)
     assert np.array_equal(reasons == Absence.NONE, orbit.exists)
     # The sample reaches below the saddle-nodes, and most of it lies above.
     assert np.mean(reasons == Absence.BELOW_SADDLE_NODE) > 1 / 50

@@ -56,7 +56,7 @@ def test_a_parameter_a_formula_a_drawing_and_a_lost_file_run_again_what_they_dec
 
 
 def test_no_file_time_hides_a_change_of_the_code(complete):
-    equation_7 = "src/bouncing_ball/periodic/explicit.py"
+    equation_7 = "src/bouncing_ball/periodic/restitution_branch.py"
     formula = "np.asarray(n) * np.pi * (1 - r) / (1 + r)"
     complete.rewrite(equation_7, f"return {formula}", f"return 1.001 * {formula}")
     os.utime(complete.path / equation_7, (0, 0))

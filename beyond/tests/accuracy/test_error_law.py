@@ -5,7 +5,10 @@ import pytest
 
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
+from bouncing_ball.periodic.restitution_branch import (
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
 from bouncing_ball_beyond.accuracy.error_law import (
     coefficients,
     law_errors,

@@ -6,7 +6,10 @@ from orbits_found import FOUND, balls, first, found_orbit
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
+from bouncing_ball.periodic.restitution_branch import (
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
 from bouncing_ball_beyond.periodic.branches.curves import Degenerate, curve_through
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t

@@ -9,7 +9,7 @@ from second_code import defect_of, rates_of_release
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.periodic.explicit import restitution_period_doubling
+from bouncing_ball.periodic.restitution_branch import restitution_period_doubling
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 

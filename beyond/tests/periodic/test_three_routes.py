@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball.periodic.orbit import Side
+from bouncing_ball.periodic.restitution_branch import (
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

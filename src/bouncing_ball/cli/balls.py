@@ -28,9 +28,9 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.models import history
 from bouncing_ball.models.damping import Release, restitution_coefficient
-from bouncing_ball.models.history import impacts_of
 from bouncing_ball.models.model import Model, Status
 from bouncing_ball.models.restitution import rigid
+from bouncing_ball.models.simulation import impacts_of
 from bouncing_ball.models.spring_damper import SpringDamper, spring_damper, the_loss
 from bouncing_ball.periodic import calls
 from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Orbit, defect, multipliers

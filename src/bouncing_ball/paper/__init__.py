@@ -28,15 +28,18 @@ Eqs.    what                      where
 ======= ========================= ==================================================================
 1, 3, 4 flight                    ``models.flight.Flight``
 2       impact                    ``models.restitution.RestitutionModel.impact``
-5       from impact to impact     ``models.history.next_impact``
-6       phase of the n-T orbit    ``periodic.explicit.RestitutionBranch.orbit``
-7       its saddle-node           ``periodic.explicit.restitution_saddle_node``
-8       its period doubling       ``periodic.explicit.restitution_period_doubling``
+5       from impact to impact     ``models.simulation.next_impact``
+..      its first line            ``paper.claims.as_printed.landing_defect``
+..      its second line           ``paper.claims.as_printed.bounced_velocity``
+6       phase of the n-T orbit    ``periodic.restitution_branch.RestitutionBranch.orbit``
+7       its saddle-node           ``periodic.restitution_branch.restitution_saddle_node``
+8       its period doubling       ``periodic.restitution_branch.restitution_period_doubling``
 9       rest on the table, Λ_CR   ``models.permanent_contact.RESTITUTION_THRESHOLD``
 ..      where a ball lifts off    ``models.restitution.lift_off_phase``
 10, 11  force of the contact      ``models.spring_damper.force``
 12, 13  motion in contact         ``models.spring_damper.flow``
 ..      with its A and B          ``periodic.continuation.PaperEquations.point``
+..      as printed                ``paper.claims.as_printed.contact``
 14, 15  flight after it           ``periodic.orbit.flight_path``
 16      damping from restitution  ``models.damping.damping_ratio``
 ..      its inverse               ``models.damping.restitution_coefficient``
@@ -44,8 +47,8 @@ Eqs.    what                      where
 18-20   period of the n-T orbit   ``periodic.orbit.Orbit.flight_time``
 21-26   the six, written out      ``periodic.continuation.PaperEquations.residual``
 ..      end of contact, Eq. 23    ``models.spring_damper.SpringDamper.impact``
-..      at a given duration       ``periodic.explicit.branch_point``
-..      their bifurcations        ``periodic.explicit.SpringDamperBranch.bifurcation``
+..      at a given duration       ``periodic.spring_damper_branch.branch_point``
+..      their bifurcations        ``periodic.spring_damper_branch.SpringDamperBranch.bifurcation``
 27      bouncing-off velocity     ``periodic.orbit.Orbit.bounce_velocity``
 28-31   only as printed           ``paper.claims.as_printed.steady_displacement``
 32, 33  permanent contact, Λ_SD   ``models.permanent_contact.permanent_contact_threshold``

@@ -37,8 +37,8 @@ from bouncing_ball.periodic.continuation import (
     default_top,
     follow_branches,
 )
-from bouncing_ball.periodic.explicit import RestitutionBranch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit, defect, multipliers
+from bouncing_ball.periodic.restitution_branch import RestitutionBranch
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),

@@ -18,7 +18,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.model import Model, a_ball, a_single_ball
-from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch, required_orbit
 from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Orbit, Side
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ release='displacement')
     branch_side = Side(chosen("side", side, list(Side)))
     grid = _grid(ball, n=family, amplitude=lam)
     if grid is None:
-        return explicit_branch(ball).required(family, lam, branch_side)
+        return required_orbit(ball, family, lam, branch_side)
     from bouncing_ball.drawing.result import Result
 
     families, amplitudes = grid.row("n"), grid.row("amplitude")

@@ -35,7 +35,7 @@ from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKin
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
 from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.periodic.explicit import SpringDamperBranch, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import (
     Bifurcation,
     Orbit,
@@ -43,6 +43,7 @@ from bouncing_ball.periodic.orbit import (
     release_margin,
     trace_and_determinant,
 )
+from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch
 
 LARGEST_STEP = 0.1
 """Default of the largest step in arclength."""

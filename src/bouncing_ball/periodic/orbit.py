@@ -25,8 +25,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball import datasets
 from bouncing_ball.errors import ModelError, require, shortened
 from bouncing_ball.models.flight import Flight, flight_derivative, table
-from bouncing_ball.models.history import next_impact
 from bouncing_ball.models.model import Model
+from bouncing_ball.models.simulation import next_impact
 from bouncing_ball.numerics.arrays import Batch, as_numbers, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 

@@ -16,9 +16,11 @@ from bouncing_ball.paper.claims.forensics import (
     forensics,
     weightless_orbits,
 )
-from bouncing_ball.periodic import explicit
-from bouncing_ball.periodic.explicit import ImpactMap, branch_point, explicit_branch
+from bouncing_ball.periodic import restitution_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, monodromy
+from bouncing_ball.periodic.restitution_branch import ImpactMap
+from bouncing_ball.periodic.spring_damper_branch import branch_point
 
 ZETA = float(damping_ratio(0.85))
 
@@ -107,11 +109,11 @@ def test_the_stiff_limits_are_holmes_map_and_the_restitution_model(study):
         (HIGH_BOUNCE, ImpactMap.HOLMES),
         (WEIGHTLESS, ImpactMap.EXACT),
     ):
-        doubling = explicit.restitution_period_doubling(n, 0.85, impact_map)
+        doubling = restitution_branch.restitution_period_doubling(n, 0.85, impact_map)
         found = stiff.sel(reading=reading, bound="period doubling").values
         assert found == pytest.approx(doubling, abs=1e-4)  # of the order 1/ϖ
         nodes = stiff.sel(reading=reading, bound="saddle-node").values
-        assert nodes == pytest.approx(explicit.restitution_saddle_node(n, 0.85), abs=1e-4)
+        assert nodes == pytest.approx(restitution_branch.restitution_saddle_node(n, 0.85), abs=1e-4)
 
 
 def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):

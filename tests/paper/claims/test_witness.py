@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from declared_artifacts import read_by
 
-from bouncing_ball.models.history import next_impact
+from bouncing_ball.models.simulation import next_impact
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import witness as witnesses
 from bouncing_ball.paper.claims.claim_tables import witness as rows

@@ -14,8 +14,9 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
-from bouncing_ball.periodic.explicit import branch_point, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit, monodromy
+from bouncing_ball.periodic.spring_damper_branch import branch_point
 from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.

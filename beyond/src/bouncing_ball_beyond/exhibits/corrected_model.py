@@ -17,7 +17,7 @@ from pydantic import Field
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.periodic.explicit import restitution_saddle_node
+from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search

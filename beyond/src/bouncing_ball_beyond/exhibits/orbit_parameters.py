@@ -19,7 +19,7 @@ from bouncing_ball.datasets.parameters import (
     Span,
     Tolerance,
 )
-from bouncing_ball.periodic.explicit import restitution_saddle_node
+from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

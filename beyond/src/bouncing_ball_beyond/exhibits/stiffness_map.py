@@ -40,7 +40,10 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
+from bouncing_ball.periodic.restitution_branch import (
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
 from bouncing_ball_beyond.accuracy.error_law import law_thresholds
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.models.damping import damping_ratio

@@ -35,7 +35,7 @@ import xarray as xr
 
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.periodic.explicit import restitution_saddle_node
+from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import (
     VALID_BELOW,
     curvature_of,

@@ -20,8 +20,9 @@ from bouncing_ball.models.spring_damper import ContactState, SpringDamper, respo
 from bouncing_ball.numerics.corrector import solve_linear
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
-from bouncing_ball.periodic.explicit import branch_point, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit
+from bouncing_ball.periodic.spring_damper_branch import branch_point
 
 VARIABLES = {
     "rows": Variable("rows of the table that are compared", equation="Table 1"),

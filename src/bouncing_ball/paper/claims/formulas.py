@@ -18,9 +18,9 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.history import impacts_of, next_impact
 from bouncing_ball.models.model import Status
 from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.simulation import impacts_of, next_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed

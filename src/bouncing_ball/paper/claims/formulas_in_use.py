@@ -16,15 +16,16 @@ from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.models import permanent_contact as threshold
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.flight import Flight
-from bouncing_ball.models.history import impacts_of, next_impact
 from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.simulation import impacts_of, next_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper import force as force_of
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.periodic import explicit
+from bouncing_ball.periodic import restitution_branch
 from bouncing_ball.periodic.continuation import PaperEquations
-from bouncing_ball.periodic.explicit import ImpactMap, explicit_branch
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit, flight_path, trace_and_determinant
+from bouncing_ball.periodic.restitution_branch import ImpactMap
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
 _RATIOS = np.geomspace(1.0, 1e3, 31)
@@ -33,8 +34,8 @@ _TOLERANCE = 0.01
 _OF_ORBITS = (
     "models.spring_damper.SpringDamper.impact",
     "periodic.continuation.PaperEquations.residual",
-    "periodic.explicit.branch_point",
-    "periodic.explicit.SpringDamperBranch.bifurcation",
+    "periodic.spring_damper_branch.branch_point",
+    "periodic.spring_damper_branch.SpringDamperBranch.bifurcation",
 )
 
 
@@ -140,7 +141,7 @@ def _impacts(rng, r) -> Rows:
             defects=(printed.restitution_law(before, x, r) - left,),
         ),
         "Eq. 4": _used("models.flight.Flight", defects=(flight,)),
-        "Eq. 5": _used("models.history.next_impact", defects=(landing, bounced)),
+        "Eq. 5": _used("models.simulation.next_impact", defects=(landing, bounced)),
         "Eq. 9": _used(
             "models.restitution.lift_off_phase",
             "models.permanent_contact.RESTITUTION_THRESHOLD",
@@ -160,24 +161,24 @@ def _restitution_orbits(rng, r) -> Rows:
     orbit = branch.orbit(n, lam)
     corrected = corrected_period_doubling(n, r)
     node, doubling = (branch.bifurcation(kind, n).amplitude for kind in Bifurcation)
-    holmes = explicit.restitution_period_doubling(n, r, ImpactMap.HOLMES)
+    holmes = restitution_branch.restitution_period_doubling(n, r, ImpactMap.HOLMES)
     return {
         "Eq. 6": _used(
-            "periodic.explicit.RestitutionBranch.orbit",
+            "periodic.restitution_branch.RestitutionBranch.orbit",
             defects=(orbit.phase - phase, orbit.bounce_velocity - velocity),
         ),
         "Eq. 7": _used(
-            "periodic.explicit.restitution_saddle_node",
-            defects=(explicit.restitution_saddle_node(n, r) - fold, node - fold),
+            "periodic.restitution_branch.restitution_saddle_node",
+            defects=(restitution_branch.restitution_saddle_node(n, r) - fold, node - fold),
         ),
         "Eq. 8, Holmes' map": _used(
-            "periodic.explicit.restitution_period_doubling",
+            "periodic.restitution_branch.restitution_period_doubling",
             defects=(holmes - printed.period_doubling(n, r),),
         ),
         "Eq. 8, corrected": _used(
-            "periodic.explicit.restitution_period_doubling",
+            "periodic.restitution_branch.restitution_period_doubling",
             defects=(
-                explicit.restitution_period_doubling(n, r) - corrected,
+                restitution_branch.restitution_period_doubling(n, r) - corrected,
                 doubling - corrected,
             ),
         ),

@@ -12,16 +12,17 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.models.history import next_impact
 from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.simulation import next_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import vanishing
 from bouncing_ball.paper.claims import FORMULA
 from bouncing_ball.periodic.continuation import PaperEquations
-from bouncing_ball.periodic.explicit import RestitutionBranch, branch_point, nearest_excess
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit, difference, trace_and_determinant
+from bouncing_ball.periodic.restitution_branch import RestitutionBranch
+from bouncing_ball.periodic.spring_damper_branch import branch_point, nearest_excess
 
 VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),

@@ -29,13 +29,13 @@ from bouncing_ball.paper.exhibits.printed_table1 import printed_table
 from bouncing_ball.periodic import branches
 from bouncing_ball.periodic.branches import PLACE, branch_dataset, joined, no_branch
 from bouncing_ball.periodic.continuation import NoBranch, OrbitBranch, follow_branches
-from bouncing_ball.periodic.explicit import (
+from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball.periodic.restitution_branch import (
     ImpactMap,
     RestitutionBranch,
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball.periodic.orbit import Bifurcation
 
 VARIABLES = {
     "absence": Variable("why there is no stable range"),

@@ -27,9 +27,9 @@ from bouncing_ball.datasets.parameters import Amplitude, Many, Parameters, Resti
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.flight import flight_derivative, table
-from bouncing_ball.models.history import ImpactSequence, impacts_of
 from bouncing_ball.models.model import Status
 from bouncing_ball.models.restitution import RestitutionModel
+from bouncing_ball.models.simulation import ImpactSequence, impacts_of
 from bouncing_ball.numerics.elementary import reduce_angle
 
 VARIABLES = {

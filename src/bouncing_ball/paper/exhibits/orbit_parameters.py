@@ -26,8 +26,9 @@ from bouncing_ball.datasets.parameters import (
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.explicit import explicit_branch, restitution_saddle_node
+from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Side
+from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 
 # The next frequency ratio that has an orbit is sought among so many, up to the largest, and then
 # so many times between two of them, which gives six digits.

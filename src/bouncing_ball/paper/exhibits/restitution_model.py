@@ -9,14 +9,15 @@ from bouncing_ball.datasets.parameters import Samples, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
-from bouncing_ball.periodic.explicit import (
+from bouncing_ball.periodic.explicit import required_orbit
+from bouncing_ball.periodic.orbit import path
+from bouncing_ball.periodic.restitution_branch import (
     ImpactMap,
     RestitutionBranch,
     period_doubling_lift,
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball.periodic.orbit import path
 
 VARIABLES = {
     "grazing_amplitude": Variable(
@@ -88,7 +89,7 @@ def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
     """
     n = parameters.n
     lam = parameters.amplitude
-    orbit = RestitutionBranch(RestitutionModel(parameters.restitution)).required(n, lam)
+    orbit = required_orbit(RestitutionModel(parameters.restitution), n, lam)
     time = np.linspace(0.0, parameters.periods * 2 * np.pi * n, parameters.samples)
     height, velocity = path(orbit, time)
     return described(

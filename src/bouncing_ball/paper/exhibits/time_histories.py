@@ -10,7 +10,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import ContactRatio, OrbitParameters
-from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.periodic.explicit import required_orbit
 from bouncing_ball.periodic.orbit import Orbit, contact_path, flight_path, path
 
 VARIABLES = {
@@ -49,7 +49,7 @@ def _orbit(parameters: OrbitParameters, ratio: float, release: Release) -> Orbit
         If there is none, or if it is inadmissible.
     """
     contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-    orbit = explicit_branch(contact).required(parameters.n, parameters.amplitude)
+    orbit = required_orbit(contact, parameters.n, parameters.amplitude)
     if not orbit.admissible:
         raise NoOrbitError(
             f"the {parameters.n}-T orbit at Λ = {parameters.amplitude:g} for {contact.label} is "
@@ -114,7 +114,7 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     period = 2 * np.pi * n
     ratios = sorted(parameters.frequency_ratio)
     orbits = [_orbit(parameters, ratio, release) for ratio in ratios]
-    rigid = explicit_branch(RestitutionModel(parameters.restitution)).required(n, lam)
+    rigid = required_orbit(RestitutionModel(parameters.restitution), n, lam)
     corners = [rigid.phase, *(x for one in orbits for x in (one.phase, one.release_phase))]
     phase = np.union1d(np.linspace(0.0, period, parameters.samples), np.mod(corners, period))
     # The start of a contact is at the time 0 and not, by rounding, at the end of the cycle.

@@ -14,8 +14,11 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.periodic.explicit import restitution_period_doubling, restitution_saddle_node
 from bouncing_ball.periodic.orbit import Side, check_index
+from bouncing_ball.periodic.restitution_branch import (
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.impact import impact
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel

@@ -18,14 +18,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import blocks
-from bouncing_ball.periodic.explicit import (
+from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
+from bouncing_ball.periodic.spring_damper_branch import (
     SCAN,
     SCAN_START,
     first_change,
     range_of_excess,
     scan,
 )
-from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     BranchPoint,

@@ -228,8 +228,9 @@ def _cramer(rows):
 
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
-    """The points of :func:`bouncing_ball.periodic.explicit.branch_point`, the solutions of Eqs.
-    23-26, with their derivatives along ε.
+    """The points of the root's
+    :func:`bouncing_ball.periodic.spring_damper_branch.branch_point`, the solutions of Eqs. 23-26,
+    with their derivatives along ε.
 
     Returns
     -------

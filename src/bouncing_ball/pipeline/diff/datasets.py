@@ -296,11 +296,13 @@ def _variable_rows(name: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
         title = name if is_words else old.attrs.get("long_name", name)
         if old.dtype.kind in "fiu":
             before, after = map(float, entries)
-            # A number below a thousandth of the range is compared with this range.
+            # A number below a thousandth of the range is compared with this range. A defect is
+            # not: its size is noise.
             whole = abs(before) if abs(before) > _TINY * span(old) else span(old)
-            if math.isfinite(change := (after - before) / whole):
+            change = (after - before) / (1.0 if budget.scale else whole)
+            if math.isfinite(change):
                 size = abs(change)
-                title = f"{100 * change:+.2g} % in {title}"
+                title = title if budget.scale else f"{100 * change:+.2g} % in {title}"
         told = f"{title}{_place(old, place)}: {_told(*entries)}"
         outcome = Outcome.DRIFTED if share[place] > 1 else Outcome.ROUNDING
         told += count if old.size > 1 and not is_words else ""
@@ -322,7 +324,7 @@ def compare_datasets(record: xr.Dataset, new: xr.Dataset) -> list[Row]:
     >>> for row in compare_datasets(record, new.assign_attrs(n=2)):
     ...     print(f"{row.outcome}: {row.told}")
     changed parameters: n 1 → 2
-    changed parameters: +4.5e-11 % in residual at point = 0: 0 → 4.54747e-13; \
+    changed parameters: residual at point = 0: 0 → 4.54747e-13; \
 1 of 2 entries moved, 0 beyond the budget
     """
     both = (record, new)

@@ -85,8 +85,8 @@ class Batch:
     ...     slope: float | np.ndarray
     ...     level: float | np.ndarray
     >>> lines = Line(np.array([5.0, 10.0]), 0.1)
-    >>> lines.shape, lines[1]
-    ((2,), Line(slope=10, level=0.1))
+    >>> lines.shape, len(lines), lines[1]
+    ((2,), 2, Line(slope=10, level=0.1))
     """
 
     def __repr__(self) -> str:

@@ -293,7 +293,7 @@ class _Curves(NamedTuple):
         whole branch, and the whole branch is the stable side.
         """
         grid = scan(self.contact, self.n)
-        fold = self.root(_saddle, grid, _saddle(self.point(grid)))
+        fold = self.saddle_node()
         grid = np.minimum(grid, np.where(np.isnan(fold), grid[-1], fold))
         return grid, function(self.point(grid), *more)
 

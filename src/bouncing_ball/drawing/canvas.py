@@ -74,13 +74,6 @@ def lay_out(figure: Figure, engine: LayoutEngine) -> None:
         axis.axes.add_artist(marks)
 
 
-def image(axes: Axes, values: Any, extent: tuple[float, float, float, float], **look: Any) -> Any:
-    """Values over an even grid, shape (y, x), as an image with a pixel around each node."""
-    axes.spines[["top", "right"]].set_visible(True)
-    look |= {"origin": "lower", "aspect": "auto", "interpolation": "none"}
-    return axes.imshow(values, extent=extent, **look)
-
-
 def legend_below(
     figure: Figure | SubFigure,
     *groups: Sequence[Any],

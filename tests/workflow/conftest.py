@@ -119,11 +119,24 @@ class Tree:
         jobs = re.findall(r"^(\w+) +1$", done.stdout + done.stderr, re.MULTILINE)
         return {*jobs} - {"all"}
 
-    def planned_files(self, *arguments: str) -> list[str]:
-        """The files under results/figures that a run would make."""
+    def planned_files(self, *arguments: str) -> dict[str, str]:
+        """The files under results/figures that a run would make, with the rule of each."""
         done = self.run("--cores", "1", "--detailed-summary", *arguments)
-        names = [line.split("\t")[0] for line in done.stdout.splitlines()]
-        return [name for name in names if name.startswith("results/figures/")]
+        rows = [line.split("\t") for line in done.stdout.splitlines()]
+        return {row[0]: row[2] for row in rows if row[0].startswith("results/figures/")}
+
+    def needed(self, *targets: str) -> dict[str, set[str]]:
+        """The rules of each target that a run of all of these would execute, with itself."""
+        graph = self.run("--rulegraph", "--", *targets).stdout
+        rules = dict(re.findall(r'^\s*(\d+)\[label = "(\w+)"', graph, re.MULTILINE))
+        edges = [(rules[a], rules[b]) for a, b in re.findall(r"(\d+) -> (\d+)", graph)]
+        found: dict[str, set[str]] = {}
+        for target in targets:
+            new = found[target] = {target}
+            while new:
+                new = {first for first, then in edges if then in new} - found[target]
+                found[target] = found[target] | new
+        return found
 
     def configure(self, *keys, value) -> None:
         """Change one value of the configuration."""

@@ -102,10 +102,12 @@ def test_the_thresholds_are_those_of_a_fine_scan(release):
         expected = np.where(never, NEVER, np.where(there, FOUND, ALWAYS))
         assert np.array_equal(found.status[..., k], expected)
         assert there.any() and np.array_equal(np.isnan(found.threshold[..., k]), ~there)
-        for quantity, orbit in zip(*np.nonzero(there), strict=True):
-            ratio = found.threshold[quantity, orbit, k]
+        ratios = found.threshold[..., k][there]
+        closed = errors(ratios[:, np.newaxis])
+        for one, (quantity, orbit) in enumerate(np.argwhere(there)):
+            ratio = ratios[one]
             # A difference of numbers of order 1.
-            off = abs(errors(ratio)[quantity, orbit]) - tolerance
+            off = abs(closed[quantity, one, orbit]) - tolerance
             last = np.flatnonzero(outside[quantity, orbit])[-1]
             assert abs(off) < 1e-12 or np.isinf(of_fine[quantity, orbit, last])
             assert fine[last] * (1 - 1e-12) <= ratio <= fine[last + 1] * (1 + 1e-12)

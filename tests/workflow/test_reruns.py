@@ -61,10 +61,9 @@ def test_no_file_time_hides_a_change_of_the_code(complete):
     os.utime(complete.path / equation_7, (0, 0))
     again = {"compute_fig02", "draw_fig02", "fig02"}
     complete.run("--cores", "1", "--touch", "fig02")
-    # The other triggers would only add to this.
-    assert complete.planned("fig02", "--rerun-triggers", "mtime") == again
+    # Nor does Snakemake need what it has noted; the other triggers would only add to this.
     shutil.rmtree(complete.path / ".snakemake")
-    assert complete.planned("fig02") == again
+    assert complete.planned("fig02", "--rerun-triggers", "mtime") == again
     dataset = complete.path / "results/figures/fig02.nc"
     before = read_dataset(dataset)
     complete.run("--cores", "1", "results/figures/fig02.nc")

@@ -93,7 +93,7 @@ def test_the_thresholds_are_those_of_a_fine_scan(release):
         return relative_errors(exact, RestitutionModel(0.65), n, amplitude, quantities)
 
     np.testing.assert_array_equal(found.error, np.moveaxis(errors(RATIOS[:, None]), 1, -1))
-    fine = np.geomspace(RATIOS[0], RATIOS[-1], 401)
+    fine = np.geomspace(RATIOS[0], RATIOS[-1], 201)
     of_fine = modulus(np.moveaxis(errors(fine[:, np.newaxis]), 1, -1))
     for k, tolerance in enumerate(tolerances):
         outside = of_fine > tolerance

@@ -4,6 +4,7 @@
 """
 
 import argparse
+import functools
 import inspect
 import math
 import shlex
@@ -99,9 +100,15 @@ class OptionsAreRefused:
 
     commands: Mapping[str, Any]
 
+    @classmethod
+    @functools.cache
+    def cases(cls) -> list[TypedOption]:
+        """The options of the house, for which each command has a parser of its own."""
+        return typed_options(cls.commands)
+
     @given(st.data())
     def test_a_wrong_option_is_refused(self, refused, data):
-        case = data.draw(st.sampled_from(typed_options(self.commands)))
+        case = data.draw(st.sampled_from(self.cases()))
         refuses_a_wrong_option(refused, data.draw, case)
 
     @given(st.data(), UNKNOWN)

@@ -87,7 +87,10 @@ def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they
     assert statuses == ["2"] * len(needs)
     assert re.fullmatch(needed("plot"), without_pictures)
     said = f"bouncing-ball: {needed('pipeline')}\n"
-    assert re.fullmatch(said * len(needs), done.stderr)
+    # On a busy machine a line says that the answer takes long.
+    lines = done.stderr.splitlines(keepends=True)
+    errors = "".join(line for line in lines if "no answer after" not in line)
+    assert re.fullmatch(said * len(needs), errors)
 
 
 def test_without_the_extras_a_wrong_option_is_named():

@@ -21,7 +21,7 @@ from bouncing_ball.periodic.orbit import Orbit, defect, multipliers, path
 
 arguments = arguments_of(bb, Model)
 # Random calls of each function, of all functions in the long test.
-SOME = 8
+SOME = 4
 MANY = 90
 
 

@@ -215,11 +215,13 @@ def checked_bifurcation(contact, n, kind, closed=None):
     return True
 
 
+# Not all of these contacts have both bifurcations.
+@pytest.mark.parametrize(("count", "least"), [(8, 6), pytest.param(20, 16, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", Bifurcation)
-def test_random_bifurcations_agree_with_sixty_digits(kind):
+def test_random_bifurcations_agree_with_sixty_digits(kind, count, least):
     with mpmath.workdps(60):
-        found = [checked_bifurcation(c, n, kind) for c, n, _ in contacts(2, 20, -1, 5)]
-    assert sum(found) > 15
+        found = [checked_bifurcation(c, n, kind) for c, n, _ in contacts(2, count, -1, 5)]
+    assert sum(found) >= least
 
 
 @pytest.mark.parametrize("kind", Bifurcation)

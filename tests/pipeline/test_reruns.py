@@ -4,9 +4,12 @@ That Snakemake follows them is tested in tests/workflow/test_reruns.py.
 """
 
 import copy
+import io
 import os
 import subprocess
 import sys
+import tokenize
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,7 +17,13 @@ from declared_artifacts import SCRIPTS, STUDIES, given_to
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.job import arguments
-from bouncing_ball.pipeline.sources import lines_of, parts_of_note, sources, write_note
+from bouncing_ball.pipeline.sources import (
+    lines_of,
+    parts_of_note,
+    sources,
+    without_remarks,
+    write_note,
+)
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -96,6 +105,7 @@ def digest(tmp_path):
         path = tmp_path / "a.py"
         path.write_bytes(text.encode())
         module.imported.cache_clear()
+        module.reads_docstrings.cache_clear()
         return module.digest_of(path)
 
     return of
@@ -125,6 +135,55 @@ def test_a_docstring_a_comment_and_the_end_of_a_line_are_no_code(digest, old, ne
 )
 def test_what_is_computed_is_code(digest, old, new):
     assert digest(CODE.replace(old, new)) != digest(CODE)
+
+
+STARTS = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.NL, tokenize.ENCODING)
+
+
+def by_tokens(code):
+    """The code without comments, docstrings and empty lines, by Python's own tokenizer."""
+    lines = code.splitlines(keepends=True)
+    tokens = list(tokenize.generate_tokens(io.StringIO(code).readline))
+    before = tokenize.ENCODING
+    remarks = []
+    for token, after in pairwise([*tokens, tokens[-1]]):
+        is_statement = before in STARTS and after.type == tokenize.NEWLINE
+        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and is_statement):
+            remarks.append((token.start, token.end))
+        else:
+            before = token.type
+    for (first, start), (last, end) in reversed(remarks):
+        lines[first - 1 : last] = [lines[first - 1][:start] + lines[last - 1][end:]]
+    return "\n".join(line.rstrip() for line in "".join(lines).splitlines() if line.strip())
+
+
+# The module itself has the hardest texts; all files of code, weekly.
+@pytest.mark.parametrize(
+    "pattern",
+    ["src/*/pipeline/s*.py", pytest.param("**/*.py", marks=pytest.mark.long)],
+)
+def test_remarks_are_those_of_the_tokenizer(pattern):
+    own = ("src", "tests", "workflow", "docs", "beyond", "contacts")
+    files = [path for path in ROOT.glob(pattern) if path.relative_to(ROOT).parts[0] in own]
+    assert files
+    for path in files:
+        code = path.read_text(encoding="utf-8")
+        assert without_remarks(code) == by_tokens(code), path
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "x = (\n    'a'\n)\n",
+        "x = \\\n    'a'\n",
+        "'a'; y = 1\n",
+        'x = \'#\', """\n# no remark\n"""\n',
+        "def f():\n    r'a \\' # why'\n    return 'it\\'s'  # so\n",
+        "'a'  # why\nx = ['b'\n'c']\n",
+    ],
+)
+def test_a_text_that_is_a_value_is_code(code):
+    assert without_remarks(code) == by_tokens(code)
 
 
 @pytest.mark.parametrize(

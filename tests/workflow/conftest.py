@@ -20,6 +20,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -77,8 +78,11 @@ class Tree:
 
     def python_says(self, program: str, *arguments: str) -> str:
         """What a program of Python prints in this tree."""
+        script = self.path / ".snakemake" / "program.py"
+        script.parent.mkdir(exist_ok=True)
+        script.write_text(program, encoding="utf-8")
         done = subprocess.run(
-            [sys.executable, "-c", program, *arguments],
+            [self.python, script, *arguments],
             cwd=self.path,
             env=self.environment(),
             capture_output=True,
@@ -119,11 +123,24 @@ class Tree:
         jobs = re.findall(r"^(\w+) +1$", done.stdout + done.stderr, re.MULTILINE)
         return {*jobs} - {"all"}
 
-    def planned_files(self, *arguments: str) -> list[str]:
-        """The files under results/figures that a run would make."""
+    def planned_files(self, *arguments: str) -> dict[str, str]:
+        """The files under results/figures that a run would make, with the rule of each."""
         done = self.run("--cores", "1", "--detailed-summary", *arguments)
-        names = [line.split("\t")[0] for line in done.stdout.splitlines()]
-        return [name for name in names if name.startswith("results/figures/")]
+        rows = [line.split("\t") for line in done.stdout.splitlines()]
+        return {row[0]: row[2] for row in rows if row[0].startswith("results/figures/")}
+
+    def needed(self, *targets: str) -> dict[str, set[str]]:
+        """The rules of each target that a run of all of these would execute, with itself."""
+        graph = self.run("--rulegraph", "--", *targets).stdout
+        rules = dict(re.findall(r'^\s*(\d+)\[label = "(\w+)"', graph, re.MULTILINE))
+        edges = [(rules[a], rules[b]) for a, b in re.findall(r"(\d+) -> (\d+)", graph)]
+        found: dict[str, set[str]] = {}
+        for target in targets:
+            new = found[target] = {target}
+            while new:
+                new = {first for first, then in edges if then in new} - found[target]
+                found[target] = found[target] | new
+        return found
 
     def configure(self, *keys, value) -> None:
         """Change one value of the configuration."""
@@ -207,14 +224,37 @@ def shared(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def warm() -> Iterator[str]:
-    """A Python that is as quick to start as a fork; elsewhere than on Linux the usual one.
+def warm(shared) -> Iterator[str]:
+    """A Python that is as quick to start as a fork, which the first worker who needs it starts for
+    all; elsewhere than on Linux the usual one.
 
     A fork that runs on is not safe with the libraries of macOS.
     """
     if sys.platform != "linux":
         yield sys.executable
         return
+    folder = shared / "warm"
+    lock = open(shared / "warm.lock", "w")
+    users = open(shared / "warm.users", "w")
+    with lock, users, ExitStack() as server:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        starts = not folder.is_symlink()
+        if starts:
+            folder.symlink_to(server.enter_context(warm_server()))
+        fcntl.flock(users, fcntl.LOCK_SH)
+        fcntl.flock(lock, fcntl.LOCK_UN)
+        yield str(folder.readlink() / "python")
+        fcntl.flock(users, fcntl.LOCK_UN)
+        if starts:
+            # Nobody begins to use it, and those who do end first.
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            fcntl.flock(users, fcntl.LOCK_EX)
+            folder.unlink()
+
+
+@contextmanager
+def warm_server() -> Iterator[Path]:
+    """The folder of a server that runs meanwhile."""
     # A socket's address is short.
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, Path(__file__).with_name("warm.py"), folder]
@@ -225,7 +265,7 @@ def warm() -> Iterator[str]:
                     assert server.poll() is None, "the warm Python did not start"
                     assert time.monotonic() < end, "the warm Python hangs"
                     time.sleep(0.02)
-                yield f"{folder}/python"
+                yield Path(folder)
             finally:
                 server.terminate()
 

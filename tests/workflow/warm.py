@@ -24,11 +24,11 @@ from pathlib import Path
 # What takes the time of a start of Snakemake, or of one of its jobs.
 IMPORTED = (
     *("snakemake.cli", "snakemake.workflow", "snakemake.script", "snakemake.executors.local"),
-    *("snakemake.report.html_reporter", "smart_open", "yte", "nbformat"),
+    *("snakemake.report.html_reporter", "smart_open", "yte"),
     *("xarray.backends.netCDF4_", "pandas", "netCDF4", "pydantic", "jinja2"),
-    *("scipy.optimize.elementwise", "scipy.integrate", "scipy.interpolate", "scipy.special"),
+    *("scipy.optimize.elementwise", "scipy.special"),
     *("matplotlib.pyplot", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
-    *("PIL.Image", "PIL.PngImagePlugin", "scipy.stats"),
+    *("PIL.Image", "PIL.PngImagePlugin"),
 )
 PYTHON = """#!{python} -IS
 # Quicker to import than what they are part of.

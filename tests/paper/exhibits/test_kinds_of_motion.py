@@ -71,7 +71,7 @@ def test_a_ball_that_has_not_reached_its_orbit_up_to_rounding_does_not_repeat():
     # Next to the period doubling a ball takes more impacts than these to lose its last 1e-11.
     parameters = PARAMETERS | {"amplitude": [1.51, 1.515]}
     assert typed(kinds_of_motion)(parameters).impacts.values.tolist() == [1, 0]
-    many = typed(kinds_of_motion)(parameters | {"impacts": 4096})
+    many = typed(kinds_of_motion)(parameters | {"impacts": 1536})
     assert many.impacts.values.tolist() == many.periods.values.tolist() == [1, 1]
 
 

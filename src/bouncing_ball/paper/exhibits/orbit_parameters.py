@@ -111,11 +111,11 @@ class OrbitsOfContacts(NamedTuple):
         contacts = SpringDamper.from_restitution(self.restitution, column, self.release)
         branch = explicit_branch(contacts)
         stable = branch.orbit(self.n, self.amplitudes)
-        if self.admissible:
-            found = stable.admissible
-        else:
-            found = stable.exists | branch.orbit(self.n, self.amplitudes, Side.UNSTABLE).exists
-        return found.any(axis=-1)
+        found = stable.admissible if self.admissible else stable.exists
+        there = found.any(axis=-1)
+        if self.admissible or there.all():
+            return there
+        return there | branch.orbit(self.n, self.amplitudes, Side.UNSTABLE).exists.any(axis=-1)
 
     def next_stiffer(self, ratio: float) -> float:
         """The smallest ϖ above this one, on which there is none, that has one; or infinity."""

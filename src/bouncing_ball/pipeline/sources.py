@@ -7,8 +7,8 @@ compute and draw. A note is written only if one of them changes, and is then new
 has made. Datasets and pictures record the same digests, so that a comparison names the files that
 have changed.
 
-Comments, docstrings and the ends of lines are no code. Only of a module that imports a reader of
-docstrings, such as the claims, whose statements are docstrings, the docstrings count.
+Docstrings, lines that are comments and the ends of lines are no code. Only of a module that imports
+a reader of docstrings, such as the claims, whose statements are docstrings, the docstrings count.
 """
 
 import ast
@@ -37,21 +37,6 @@ _OURS = "bouncing_ball"
 _ON_DEMAND = ("bouncing_ball/__init__.py", "bouncing_ball/drawing/result.py")
 # How a module reads docstrings.
 _READER = r"\bgetdoc\("
-# A comment, a text, a bracket, or a line that is continued. They are found in an eighth of the time
-# of the tokenizer of Python, and each start of the workflow reads all modules.
-_PARTS = re.compile(
-    r"#[^\n]*|[()\[\]{}]|\\\n[ \t\f]*"
-    r'''|[rbuf]{0,2}(?:"""(?:\\.|[^\\])*?"""|"(?:\\.|[^"\\\n])*")'''
-    r"""|[rbuf]{0,2}(?:'''(?:\\.|[^\\])*?'''|'(?:\\.|[^'\\\n])*')""",
-    re.DOTALL | re.IGNORECASE,
-)
-_END_OF_LINE = re.compile(r"[ \t\f]*(?:\n|\Z)")
-
-
-def is_line(code: str, part: re.Match) -> bool:
-    """Whether there is nothing else in the lines of a part of the code."""
-    before = code[code.rfind("\n", 0, part.start()) + 1 : part.start()]
-    return not before.strip() and _END_OF_LINE.match(code, part.end()) is not None
 
 
 @cache
@@ -60,31 +45,43 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
+@cache
+def parsed(code: bytes) -> ast.Module:
+    """The syntax tree of a module."""
+    return ast.parse(code)
+
+
+def statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """The statements of a block, and those in the blocks of each."""
+    for each in body:
+        yield each
+        for part in ("body", "handlers", "orelse", "finalbody", "cases"):
+            yield from statements(getattr(each, part, ()))
+
+
 def without_remarks(code: str) -> str:
-    """The lines of Python code without comments, docstrings and empty lines.
+    """The lines of Python code without docstrings, empty lines and the lines that are comments.
+
+    Comments stay in a module in which a value is a text of several lines.
 
     Examples
     --------
-    >>> print(without_remarks("def f():  # why\\n    'What.'\\n\\n    return '#'\\n"))
+    >>> print(without_remarks("def f():\\n    'What.'\\n\\n    # Why.\\n    return '#'\\n"))
     def f():
         return '#'
     """
-    depth = end = 0
-    continued = -1
-    kept = []
-    for part in _PARTS.finditer(code):
-        mark = part[0]
-        if mark in "([{":
-            depth += 1
-        elif mark in ")]}":
-            depth -= 1
-        elif mark[0] == "\\":
-            continued = part.end()
-        elif mark[0] == "#" or (depth == 0 and is_line(code, part) and continued != part.start()):
-            kept.append(code[end : part.start()])
-            end = part.end()
-    text = "".join([*kept, code[end:]])
-    return "\n".join(line.rstrip() for line in text.splitlines() if line.strip())
+    lines = code.encode().splitlines()
+    for node in statements(parsed(code.encode()).body):
+        if not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
+            continue
+        first, last = node.lineno - 1, node.end_lineno or node.lineno
+        around = lines[first][: node.col_offset] + lines[last - 1][node.end_col_offset :]
+        if isinstance(node.value.value, str) and not around.strip():
+            lines[first:last] = [b""] * (last - first)
+    # A line of a text may begin as a comment does.
+    has_texts = any(mark in line for line in lines for mark in (b'"""', b"'''"))
+    kept = [line.rstrip() for line in lines if has_texts or not line.lstrip().startswith(b"#")]
+    return b"\n".join(line for line in kept if line).decode()
 
 
 @cache
@@ -106,21 +103,13 @@ def files_of_module(name: str) -> list[Path]:
     return files
 
 
-def statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """The statements of a block, and those in the blocks of each."""
-    for each in body:
-        yield each
-        for part in ("body", "handlers", "orelse", "finalbody", "cases"):
-            yield from statements(getattr(each, part, ()))
-
-
 @cache
 def imported(path: Path) -> frozenset[Path]:
     """The files that are read when a file is imported, without what these import."""
     if path.suffix != ".py":
         return frozenset()
     try:
-        tree = ast.parse(path.read_bytes())
+        tree = parsed(path.read_bytes())
     # The job fails with this error, in one line.
     except (SyntaxError, ValueError):
         return frozenset()

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from orbits_found import FOUND, found_orbit
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond
@@ -31,6 +32,16 @@ def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
     top = brentq(lambda at: orbit.contact_path(at)[1], time[k - 1], time[k + 1])
     # A height of order one, with the square of the time's error.
     assert float(orbit.max_height) == pytest.approx(orbit.contact_path(top)[0], abs=1e-13)
+
+
+@pytest.mark.parametrize("case", [case for case in FOUND if case[1] > 1], ids=str)
+def test_a_ball_leaves_each_contact_where_the_flight_to_the_next_impact_begins(case):
+    # Also before a contact that resumes below the table's level.
+    orbit = found_orbit(case)
+    gap, _ = orbit._in_contact(orbit.durations)
+    released = gap + orbit.amplitude * np.sin(orbit.phases + orbit.durations)
+    # The starts of the orbits have eight digits.
+    assert orbit.bounce_height == pytest.approx(released, abs=1e-6)
 
 
 def test_the_distance_of_orbits_is_their_largest_difference():

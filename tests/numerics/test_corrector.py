@@ -69,15 +69,6 @@ def test_a_guess_that_fails_leaves_the_others_alone():
     assert found.point[1].tolist() == [0.0, 0.0]
 
 
-def test_no_step_is_longer_than_the_longest():
-    settings = NewtonSettings(max_iterations=1, longest=0.1)
-    guess = np.array([3.0, 0.0])
-    found = newton(Circle(), guess, plane(np.array([0.0, 1.0]), guess), settings)
-    # Newton's own step, of (9 - 1)/6, is what convergence is judged by.
-    assert found.point == pytest.approx(np.array([2.9, 0.0]), abs=4 * EPS)
-    assert found.step == pytest.approx(8 / 6 / 3.9, rel=1e-14)
-
-
 def test_a_step_too_long_for_its_square_stops_the_iteration_at_the_guess():
     # A slope of 10⁻²⁰⁰: the step to the root of 10⁻²⁰⁰ x - 1 is finite, and its square is not.
     slope = np.array([[1e-200], [1.0]])

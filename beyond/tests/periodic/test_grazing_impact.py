@@ -10,16 +10,17 @@ from scipy.optimize import brentq
 import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.flight import table
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.numerics.corrector import plane
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
+from bouncing_ball_beyond.periodic.orbits.short_steps import ShortSteps, newton_short
 from bouncing_ball_beyond.periodic.orbits.special import Special
 from bouncing_ball_beyond.periodic.orbits.steps import STEPS
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
 SLOW = 3e-3
-NEARBY = NewtonSettings(max_iterations=30, longest=0.01)
+NEARBY = ShortSteps(0.01)
 
 
 def touching(orbit, amplitude, duration, leaving):
@@ -57,7 +58,7 @@ def with_a_slow_impact(orbit, amplitude, duration, leaving):
         np.array([duration, 2 * SLOW / pull]),
         amplitude=amplitude,
     )
-    found = newton(whole, guess, plane(np.eye(guess.size)[3], guess), NEARBY)
+    found = newton_short(whole, guess, plane(np.eye(guess.size)[3], guess), NEARBY)
     assert found.converged
     return orbit_of_point(whole, found.point)
 

@@ -9,9 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import scipy
 
-_TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
 # Largest defect of a solution, relative to (1 + |y|)² because the equations have products of two
@@ -26,11 +24,6 @@ _SMALL = 1e-8
 # A tangent is found by a linear system unless it is nearly at a right angle to the direction along
 # which it is oriented; the reciprocal of this is the cosine.
 _OBLIQUE = 1e3
-# The number of unknowns from which a system is sparse: dense solvers divide a matrix of so many
-# entries among threads.
-_SPARSE = 100
-# The accuracy in the parameter with which folds are located.
-_LOCATED = 1e-12
 
 
 class Problem(Protocol):
@@ -67,13 +60,12 @@ class NewtonSettings(NamedTuple):
 
     ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. Because the
     convergence is quadratic, the point is then as accurate as F is computed. A longer step is also
-    the last one if the next one would be a rounding error. ``longest`` is the greatest length of a
-    step, and ``max_iterations`` the greatest number of steps.
+    the last one if the next one would be a rounding error. ``max_iterations`` is the greatest
+    number of steps.
     """
 
     tolerance: float = 1e-12
     max_iterations: int = 8
-    longest: float = np.inf
 
 
 Equations = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -108,13 +100,19 @@ def newton(
         matrix, left the domain of F, or ended at a point that does not satisfy F(y) = 0.
     """
 
+    return checked(solve(bordered(problem, condition), guess, settings), problem.residual)
+
+
+def bordered(problem: Problem, condition: Condition) -> Equations:
+    """The equations of a problem together with a condition: N + 1 equations in N + 1 unknowns."""
+
     def equations(y):
         value, gradient = condition(y)
         values = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
         matrix = np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
         return values, matrix
 
-    return checked(solve(equations, guess, settings), problem.residual)
+    return equations
 
 
 def checked(found: Correction, residual: Callable[[np.ndarray], np.ndarray]) -> Correction:
@@ -171,10 +169,6 @@ def solve(
         change = solve_linear(matrix, values)
         length = _norm(change)
         going &= np.isfinite(length)
-        if np.isfinite(settings.longest):
-            known = np.where(going, length, 0.0)
-            share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
-            change = share[..., np.newaxis] * change
         moves = (np.abs(change) > _UNCERTAIN * np.abs(y)).any(axis=-1)
         ahead = np.where(going[..., np.newaxis], y - change, y)
         before = size
@@ -210,37 +204,17 @@ def _next_is_rounding(before: np.ndarray, size: np.ndarray) -> np.ndarray:
 def solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solutions (..., N) of linear systems; NaN where a matrix is singular or has NaN entries.
 
-    From 100 unknowns on they are sparse systems, because each equation has few of them. A dense
-    solver would divide each of them among threads, which takes many times as long as one thread.
-
     Examples
     --------
     >>> solve_linear(np.array([[2.0, 0.0], [1.0, 1.0]]), np.array([4.0, 5.0])).tolist()
     [2.0, 3.0]
     """
-    if matrix.shape[-1] >= _SPARSE:
-        systems = zip(
-            matrix.reshape(-1, *matrix.shape[-2:]), right.reshape(-1, right.shape[-1]), strict=True
-        )
-        return np.reshape([_solve_sparse(*system) for system in systems], right.shape)
     try:
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
     except np.linalg.LinAlgError:
         singular = np.linalg.det(matrix) == 0
         matrix = np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix)
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-
-
-def _solve_sparse(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The solution of one sparse system, NaN if its matrix is singular or has NaN entries."""
-    none = np.full(right.shape, np.nan)
-    if not np.isfinite(matrix).all():
-        return none
-    try:
-        return scipy.sparse.linalg.splu(scipy.sparse.csc_array(matrix)).solve(right)
-    except RuntimeError:
-        # The matrix is singular.
-        return none
 
 
 def failure(problem: Problem, found: Correction) -> str:
@@ -321,22 +295,3 @@ def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     of_null = null_vector(jacobian)
     ahead = np.sum(of_null * along, axis=-1, keepdims=True)
     return np.where(turned, np.where(ahead < 0, -of_null, of_null), vector)
-
-
-def solution_at(
-    problem: Problem, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
-) -> tuple[np.ndarray, str]:
-    """The solution with the parameter of a guess, shape (N + 1,), and why there is none, or "".
-
-    At a fold the equations with a fixed parameter are singular. There the solution in the plane
-    across the curve is the same, because the parameter only moves by rounding errors.
-    """
-    axis = np.eye(guess.size)[-1]
-    found = newton(problem, guess, plane(axis, guess), settings)
-    why = failure(problem, found)
-    if why:
-        across = null_vector(problem.jacobian(guess))
-        fold = newton(problem, guess, plane(across, guess), settings)
-        if abs(fold.point[-1] - guess[-1]) <= _LOCATED and not failure(problem, fold):
-            return fold.point, ""
-    return found.point, why

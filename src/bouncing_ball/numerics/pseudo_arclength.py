@@ -25,9 +25,9 @@ import numpy as np
 from bouncing_ball.numerics.branch import Branch, ContinuationError
 from bouncing_ball.numerics.corrector import (
     Problem,
+    failure,
     newton,
     plane,
-    solution_at,
     tangent,
 )
 from bouncing_ball.numerics.steps import Attempt, State, StepControl, Way, WithEvents, end_at
@@ -58,12 +58,13 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     >>> solve_at(Circle(), np.array([1.0, 0.6])).round(12).tolist()
     [0.8, 0.6]
     """
-    point, why = solution_at(problem, guess)
+    found = newton(problem, guess, plane(np.eye(guess.size)[-1], guess))
+    why = failure(problem, found)
     if why:
         raise ContinuationError(
             f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"
         )
-    return point
+    return found.point
 
 
 RowsOf = Callable[[Any], WithEvents]

@@ -15,10 +15,11 @@ import numpy as np
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.arrays import blocks
-from bouncing_ball.numerics.corrector import checked, solve
+from bouncing_ball.numerics.corrector import checked
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
+from bouncing_ball_beyond.periodic.orbits.short_steps import solve_short
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
 
 PHASES = 72
@@ -149,7 +150,7 @@ def _closed(guess: Orbit) -> list[Orbit]:
     """The orbits to which Newton's method leads from a row of guesses, which balls follow."""
     problem = guess.problem()
     with np.errstate(all="ignore"):
-        solved = solve(problem.equations_at, guess.point(problem), PATIENT)
+        solved = solve_short(problem.equations_at, guess.point(problem), PATIENT)
         which = np.flatnonzero(checked(solved, problem.residual).converged)
         if not which.size:
             return []

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from bouncing_ball.numerics.branch import Branch, End
-from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.numerics.corrector import plane
 from bouncing_ball.numerics.events import SpecialPoint
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
 
 CLOSED = "the branch is closed: it comes back to its start"
@@ -37,7 +38,7 @@ def one_turn(found: Followed) -> Followed:
     for k in np.flatnonzero(crosses):
         share = passed[k] / (passed[k] - passed[k + 1])
         guess = y[k] + share * (y[k + 1] - y[k])
-        back = newton(found.problem, guess, plane(along[0], start), PATIENT)
+        back = newton_short(found.problem, guess, plane(along[0], start), PATIENT)
         if back.converged and np.linalg.norm(back.point - start) <= _SAME:
             return replace(found, branch=_up_to_start(found.branch, int(k) + 1))
     return found

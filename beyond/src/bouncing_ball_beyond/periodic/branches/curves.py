@@ -28,7 +28,7 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
-from bouncing_ball.numerics.corrector import Condition, null_vector, solution_at
+from bouncing_ball.numerics.corrector import Condition, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, vanishing
 from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
 from bouncing_ball.numerics.steps import StepControl, WithEvents
@@ -53,6 +53,7 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
 from bouncing_ball_beyond.periodic.orbits.normal_form import coefficient
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import solution_near
 from bouncing_ball_beyond.periodic.orbits.special import Degenerate, Special, passed_by
 from bouncing_ball_beyond.periodic.orbits.steps import BY_DIFFERENCES, PATIENT, STEPS_OF_CURVES
 
@@ -199,7 +200,7 @@ def _explained_end(
 def _special_at(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
     """The special orbit with the second parameter of y."""
     with np.errstate(all="ignore"):
-        point, why = solution_at(problem, y, PATIENT)
+        point, why = solution_near(problem, y, PATIENT)
     if why:
         raise NoOrbitError(f"no special orbit was found near the start of the curve: {why}")
     return point

@@ -14,7 +14,7 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
-from bouncing_ball.numerics.corrector import newton, solution_at, tangent
+from bouncing_ball.numerics.corrector import tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
@@ -36,6 +36,7 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
 from bouncing_ball_beyond.periodic.orbits.halves import halves, turns_apart, turns_of_half, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short, solution_near
 from bouncing_ball_beyond.periodic.orbits.special import Coordinates, Degenerate, Special
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT, STEPS
 
@@ -210,7 +211,7 @@ def point_near(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
         If Newton's method does not converge.
     """
     with np.errstate(all="ignore"):
-        point, why = solution_at(problem, guess, PATIENT)
+        point, why = solution_near(problem, guess, PATIENT)
     if why:
         k = problem.impacts
         raise NoOrbitError(
@@ -322,7 +323,7 @@ def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> B
     if located or not abs(np.arcsinh(bound) - last[-1]) < AT_BOUND:
         return branch
     at = _coordinate(within, bound, last)
-    point, why = solution_at(equations, np.array([*last[:-1], at]), PATIENT)
+    point, why = solution_near(equations, np.array([*last[:-1], at]), PATIENT)
     return branch if why else _ended_at(branch, point, limits_of(equations, within))
 
 
@@ -433,7 +434,7 @@ def _onto_limit(tested: WithEvents, branch: Branch, within: Window) -> Branch | 
         return None
     guess = last + step * ahead
     guess[-1] = at
-    point, why = solution_at(problem, guess, PATIENT)
+    point, why = solution_near(problem, guess, PATIENT)
     if why or np.linalg.norm(point - guess) > _BENT * step:
         return None
     tests = [each for each in events if each.name != BOUND]
@@ -498,7 +499,7 @@ def _up_to_halving(equations: OrbitEquations, branch: Branch) -> Branch | None:
     means = (row.reshape(2, k).mean(axis=0) for row in rows)
     guess = half.point(*means, **equations.values(last))
     kind = Bifurcation.PERIOD_DOUBLING
-    found = newton(half, guess, lambda y: half.bifurcation(kind, y), PATIENT)
+    found = newton_short(half, guess, lambda y: half.bifurcation(kind, y), PATIENT)
     if not (found.converged and np.linalg.norm(found.point - guess) < _NEAR):
         return None
     _, halving = twice(half, found.point)

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, suggesting
-from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.numerics.corrector import plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import point_near
@@ -35,6 +35,7 @@ from bouncing_ball_beyond.periodic.orbits.balls import Path
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.paths import place_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short
 from bouncing_ball_beyond.periodic.orbits.special import Special, flight_margin
 from bouncing_ball_beyond.periodic.orbits.steps import NEARBY
 
@@ -268,7 +269,7 @@ def _one_more(grazing: Grazing, slow: float) -> Orbit:
     )
     axis = np.eye(guess.size)[2 * after + 1]
     with np.errstate(all="ignore"):
-        found = newton(more, guess, plane(axis, guess), NEARBY)
+        found = newton_short(more, guess, plane(axis, guess), NEARBY)
     if not found.converged:
         raise NoOrbitError(
             f"no orbit with {more.impacts} impacts was found beside the grazing flight: residual "

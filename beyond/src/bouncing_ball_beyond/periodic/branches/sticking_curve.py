@@ -13,7 +13,7 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End
-from bouncing_ball.numerics.corrector import newton, plane, tangent
+from bouncing_ball.numerics.corrector import plane, tangent
 from bouncing_ball_beyond.periodic.branches.point_by_point import (
     OTHER,
     AllPoints,
@@ -25,6 +25,7 @@ from bouncing_ball_beyond.periodic.branches.point_by_point import (
 from bouncing_ball_beyond.periodic.orbits.domain_limits import domain_limits
 from bouncing_ball_beyond.periodic.orbits.ends import Window, bound_in_words
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short
 from bouncing_ball_beyond.periodic.orbits.special import sticking
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
 
@@ -98,7 +99,7 @@ def _limit(equations: OrbitEquations, guess: np.ndarray, given: int) -> np.ndarr
         ahead = tangent(one.jacobian(start), np.eye(start.size)[-1])
         for apart in _APART * 4.0 ** np.arange(_LONGER):
             beside = start + apart * np.array([-1.0, 1.0])[:, np.newaxis] * ahead
-            found = newton(one, beside, plane(np.stack([ahead, ahead]), beside), PATIENT)
+            found = newton_short(one, beside, plane(np.stack([ahead, ahead]), beside), PATIENT)
             if not found.converged.all():
                 raise ContinuationError("Newton's method finds no orbit there")
             if not _rests(one, found.point).all():

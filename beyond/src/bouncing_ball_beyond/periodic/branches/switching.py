@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
+from bouncing_ball.numerics.corrector import Correction, plane, tangent
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
@@ -19,6 +19,7 @@ from bouncing_ball_beyond.periodic.orbits.halves import turns_of_half, twice
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.paths import name_of, place_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short
 from bouncing_ball_beyond.periodic.orbits.stability import is_stable
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
 
@@ -69,7 +70,7 @@ def doubled(
     whole, at = twice(equations, y)
     direction = apart(equations, y)
     guess = at + np.asarray(aside)[..., np.newaxis] * direction
-    return whole, newton(whole, guess, plane(direction, guess), PATIENT)
+    return whole, newton_short(whole, guess, plane(direction, guess), PATIENT)
 
 
 def switch(doubling: Orbit, along: str | Path = LAMBDA, aside: float = ASIDE) -> Orbit:
@@ -175,7 +176,7 @@ def sides(fold: Orbit, along: str | Path) -> Sides:
     leaves = tangent(equations.jacobian(here), axis)
     beside = here + _SIDE * np.array([1.0, -1.0])[:, np.newaxis] * leaves
     with np.errstate(all="ignore"):
-        found = newton(equations, beside, plane(np.stack([leaves, leaves]), beside), PATIENT)
+        found = newton_short(equations, beside, plane(np.stack([leaves, leaves]), beside), PATIENT)
     rises = found.point[:, -1] > here[-1]
     stable = is_stable(*equations.trace_and_determinant(found.point)) & found.converged
     is_fold = bool(found.converged.all() and rises[0] == rises[1])

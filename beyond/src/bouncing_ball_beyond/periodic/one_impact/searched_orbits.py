@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.corrector import checked, newton, solve, tangent
+from bouncing_ball.numerics.corrector import checked, newton, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
 from bouncing_ball_beyond.models.instant import Instant
@@ -27,6 +27,7 @@ from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball_beyond.periodic.orbits.ends import ENDS, AtMargin, Window, ends_of_one_impact
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import solve_short
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations
 from bouncing_ball_beyond.periodic.orbits.steps import EXTENDED, IN_ROUNDS, STEPS_OF_SEARCHES
 
@@ -132,7 +133,7 @@ def _solved(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
         if not todo.size:
             break
         fixed, unknowns = problem.take(todo).fixed(y[todo])
-        found = checked(solve(fixed.equations_at, unknowns, IN_ROUNDS), fixed.residual)
+        found = checked(solve_short(fixed.equations_at, unknowns, IN_ROUNDS), fixed.residual)
         y[todo, : fixed.size] = found.point
         todo = todo[~found.converged]
     y[todo] = np.nan

@@ -21,11 +21,12 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.flight import table
-from bouncing_ball.numerics.corrector import checked, solve
+from bouncing_ball.numerics.corrector import checked
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.periodic.orbits.legs import Legs
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits.short_steps import solve_short
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
 
 # The Jacobian is a central difference; its error only affects the number of steps.
@@ -97,6 +98,6 @@ def lost_release(equations: OrbitEquations, y: np.ndarray) -> np.ndarray | None:
     slowest = int(np.argmin(rise_of_release(legs)))
     with np.errstate(all="ignore"):
         lost = _LostRelease(equations, slowest)
-        found = checked(solve(lost.equations_at, y, PATIENT), lost.residual)
+        found = checked(solve_short(lost.equations_at, y, PATIENT), lost.residual)
     near = bool(found.converged) and np.linalg.norm(found.point - y) < _NEAR
     return found.point if near else None

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from bouncing_ball.numerics.corrector import NewtonSettings
 from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball_beyond.periodic.orbits.short_steps import ShortSteps
 
 STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps of a branch, over the phases, the velocities and arsinh of the parameter. A branch ends
@@ -22,13 +23,13 @@ STEPS_OF_SEARCHES = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_an
 """Steps of a branch on which special orbits are sought. They are long, because only the order of
 these orbits is wanted, each of which is located."""
 
-PATIENT = NewtonSettings(max_iterations=30, longest=0.3)
+PATIENT = ShortSteps(0.3)
 """Newton's method from a guess that is not the last point of a branch."""
 
-NEARBY = NewtonSettings(max_iterations=30, longest=0.01)
+NEARBY = ShortSteps(0.01)
 """Newton's method from a guess that is nearer to its orbit than other orbits are."""
 
-IN_ROUNDS = NewtonSettings(max_iterations=5, longest=0.5)
+IN_ROUNDS = ShortSteps(0.5, max_iterations=5)
 """A round of Newton's method for many orbits at once, of which those that have converged are left
 out of the next round. Next to a fold the first step may be long."""
 

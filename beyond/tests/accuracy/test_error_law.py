@@ -16,7 +16,7 @@ from bouncing_ball_beyond.accuracy.error_law import (
 )
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import errors
-from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball_beyond.exhibits.random_orbits import half_next_to_saddle_node, random_orbits
 from bouncing_ball_beyond.models.damping import (
     LINEAR,
     Release,
@@ -88,17 +88,11 @@ def remainders(n, zeta, lam, omega, release):
     return left, array(remainder_scale(*given)) * small_parameter(*given)
 
 
-# Half of the orbits are next to the saddle-node, at positions even in ln p.
-NEXT_TO_FOLD = -8.0
-
-
 def factors(seed, size, release):
     """|error - law|/(S η) of random orbits with ϖ from 1 to 10⁴."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     r = SpringDamper(1.0, zeta, release).restitution
-    low = restitution_saddle_node(n, r)
-    near = low + 10 ** rng.uniform(NEXT_TO_FOLD, 0, size) * (lam - low)
-    lam = np.where(rng.random(size) < 0.5, lam, near)
+    lam = half_next_to_saddle_node(n, r, lam, rng)
     left, bound = remainders(n, zeta, lam, 10 ** rng.uniform(0, 4, size), release)
     return left / bound
 

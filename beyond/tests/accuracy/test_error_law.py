@@ -19,7 +19,9 @@ from bouncing_ball_beyond.accuracy.error_law import (
 )
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import errors
-from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball_beyond.exhibits.random_orbits import half_next_to_saddle_node, random_orbits
+from bouncing_ball_beyond.models.contact_model import ContactModel
+from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import (
     LINEAR,
     Release,
@@ -30,6 +32,7 @@ from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
 RELEASES = LINEAR
 every_release = pytest.mark.parametrize("release", RELEASES)
@@ -91,17 +94,11 @@ def remainders(n, zeta, lam, omega, release):
     return left, array(remainder_scale(*given)) * small_parameter(*given)
 
 
-# Half of the orbits are next to the saddle-node, at positions even in ln p.
-NEXT_TO_FOLD = -8.0
-
-
 def factors(seed, size, release):
     """|error - law|/(S η) of random orbits with ϖ from 1 to 10⁴."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     r = SpringDamper(1.0, zeta, release).restitution
-    low = restitution_saddle_node(n, r)
-    near = low + 10 ** rng.uniform(NEXT_TO_FOLD, 0, size) * (lam - low)
-    lam = np.where(rng.random(size) < 0.5, lam, near)
+    lam = half_next_to_saddle_node(n, r, lam, rng)
     left, bound = remainders(n, zeta, lam, 10 ** rng.uniform(0, 4, size), release)
     return left / bound
 
@@ -157,6 +154,28 @@ def test_at_the_saddle_node_the_height_is_right_to_the_order_three_halves(releas
     np.testing.assert_allclose(size[0], 0.5, atol=0.05)
     # The apparent restitution has no root in its error, and keeps the second order.
     np.testing.assert_allclose([left[2], size[2]], [2, 1], atol=0.05)
+
+
+@every_release
+def test_the_corrected_model_is_of_the_first_order_at_its_own_saddle_node(release):
+    """Two saddle-nodes that differ by O(γ²) are roots that differ by O(γ) where one of them is; at
+    that of the restitution model the height is right to the order 3/2 only.
+    """
+    n, r = (axis.ravel() for axis in np.meshgrid([1, 2, 3], np.linspace(0.2, 0.9, 8)))
+    zeta = damping_ratio(r, release)
+    left = []
+    for ratio in RATIOS:
+        contact = SpringDamper(np.full(r.shape, ratio), zeta, release)
+        own = np.maximum(
+            n_t.saddle_node(ContactModel(contact), n).amplitude,
+            n_t.saddle_node(CorrectedModel(Signature(contact)), n).amplitude,
+        )
+        # Next to a fold the height changes with the root of the distance.
+        places = (own * (1 + 1e-13), restitution_saddle_node(n, r) * (1 + 1e-12))
+        left.append([np.abs(errors(contact, n, lam)[1][0]) for lam in places])
+    at_own, at_other = np.log(np.divide(*left)) / np.log(RATIOS[1] / RATIOS[0])
+    np.testing.assert_allclose(np.median(at_own), 1.0, atol=0.05)
+    np.testing.assert_allclose(np.median(at_other), 1.5, atol=0.05)
 
 
 @every_release

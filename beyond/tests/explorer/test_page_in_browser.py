@@ -11,13 +11,15 @@ import re
 import shlex
 from functools import partial
 from pathlib import Path
-from urllib.parse import urlencode
+from urllib.parse import parse_qsl, urlencode
 
 import numpy as np
 import pytest
 
+import bouncing_ball_beyond as bb
 from bouncing_ball.pipeline.job import typed
-from bouncing_ball_beyond.accuracy.errors import QUANTITIES
+from bouncing_ball_beyond.accuracy.errors import QUANTITIES, as_deviation, relative_errors
+from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball_beyond.explorer.document import BOUND, to_html
 from bouncing_ball_beyond.models.contact_model import ContactModel
@@ -78,6 +80,20 @@ COUNTED = [
     "tab=design&m=20&f=50&acc=0.57&k=789568&r=0.69&n=1",
 ]
 
+# A case of which nothing is the page's default.
+ROUND_TRIP = "#r=0.65&w=82.18&a=1.03&n=2&release=force&side=unstable&t=3"
+
+
+def near_threshold():
+    """A contact on each side of the last one within 1 %, in both tabs."""
+    ball = bb.rigid(restitution=0.65)
+    found = bb.error_thresholds(ball, amplitude=1.0, quantities=["max_height"])
+    last = found.error_threshold.sel(simple="restitution").item()
+    for w in (last * 1.00001, last / 1.00001):
+        yield "#" + urlencode({"r": 0.65, "w": w, "a": 1})
+        k = 0.02 * (2 * math.pi * 50 * w) ** 2
+        yield "#" + urlencode({"tab": "design", "m": 20, "f": 50, "k": k, "acc": 1, "r": 0.65})
+
 
 @pytest.fixture(scope="module")
 def seen(browse, tmp_path_factory):
@@ -99,6 +115,8 @@ def seen(browse, tmp_path_factory):
     observer = folder / "observer.html"
     script = OBSERVER.replace("STATES", json.dumps(list(states())))
     script = script.replace("PHYSICAL", json.dumps(list(physical_states())))
+    script = script.replace("ROUND_TRIP", json.dumps(ROUND_TRIP))
+    script = script.replace("NEAR_THRESHOLD", json.dumps(list(near_threshold())))
     script = script.replace("TOO_LONG", json.dumps(TOO_LONG))
     script = script.replace("COUNTED", json.dumps([f"#{one}" for one in COUNTED]))
     observer.write_text(script, encoding="utf-8")
@@ -182,6 +200,48 @@ def test_the_address_the_slider_and_typed_values_are_one_state(seen):
     }  # fmt: skip
     assert seen["valid"]["refused"] == "" and seen["valid"]["verdict"] and seen["valid"]["shown"]
     assert "left out: a = 0 (in its place 0.8)." in seen["still"]["refused"]
+
+
+def test_a_case_is_kept_in_physical_units_and_back(seen):
+    design, orbit, stage, again, last = seen["roundTrip"]
+    assert orbit["hash"] == last["hash"] == ROUND_TRIP
+    assert [one["refused"] for one in seen["roundTrip"]] == [""] * 5
+    assert "w=82.18&a=1.03" in stage["hash"] and design["hash"] == again["hash"]
+    given = dict(parse_qsl(design["hash"][1:]))
+    assert given.items() >= {"acc": "1.03", "r": "0.65", "n": "2", "release": "force"}.items()
+    mass, frequency, stiffness = (float(given[name]) for name in ("m", "f", "k"))
+    assert math.sqrt(stiffness / (mass / 1000)) / (2 * math.pi * frequency) == pytest.approx(
+        82.18, rel=1e-12
+    )
+
+
+def test_a_verdict_is_by_the_error_that_it_names(seen):
+    within, by_contact, beyond, beyond_too = seen["nearThreshold"]
+    paper = "Errors here are relative to the simple model, as in Eqs. 37 and 38; "
+    paper += "relative to the contact, that of the restitution model is +1.01 %."
+    for one in (within, beyond):
+        assert one["verdict"].endswith(paper)
+        assert one["definition"].endswith("relative to the model's q, as in Eqs. 37 and 38")
+        words = shlex.split(one["command"])
+        ratio = float(words[words.index("--frequency-ratio") + 1])
+        contact = SpringDamper.from_restitution(0.65, ratio)
+        exact, *simple = exact_and_simple_models(contact)
+        errors = relative_errors(exact, simple, 1, 1.0, list(QUANTITIES))
+        for k, kind in enumerate(("errors", "corrected_errors")):
+            for name, error in zip(QUANTITIES, errors[k], strict=True):
+                assert float(one["values"][f"{kind} {name}"]) == pytest.approx(error, abs=1e-10)
+    # As many digits as show on which side of the tolerance the error is.
+    assert within["good"] == "true" and "-0.99999 %, within 1 %." in within["verdict"]
+    assert beyond["good"] == "false" and "-1.00001 %, beyond 1 %" in beyond["verdict"]
+    # The same contacts by the deviation, for which a slightly stiffer one is needed.
+    design = "Errors here are relative to the contact, as in the command design; "
+    for one, same in ((by_contact, within), (beyond_too, beyond)):
+        assert one["good"] == "false" and "+1.01 %, beyond 1 %" in one["verdict"]
+        assert design in one["verdict"]
+        assert one["definition"].endswith("to the contact's q_SD, as in the command design")
+        error = float(same["values"]["errors max_height"])
+        expected = float(as_deviation(error))
+        assert float(one["values"]["errors max_height"]) == pytest.approx(expected, abs=1e-10)
 
 
 KINDS = {

@@ -15,7 +15,7 @@ from typing import Any
 
 import xarray as xr
 
-from bouncing_ball.errors import ModelError, printable
+from bouncing_ball.errors import ModelError, extra, printable
 
 PICTURES = (".pdf", ".png", ".svg")
 """Suffixes of the figures that users request."""
@@ -150,7 +150,8 @@ def require_readable(path: str | Path) -> None:
 def _require_small(path: str | Path) -> None:
     """Refuse a dataset whose arrays would not fit into memory, before one of them is read."""
     # Imported here, because the library itself needs no netCDF.
-    from netCDF4 import Dataset
+    with extra("pipeline"):
+        from netCDF4 import Dataset
 
     with Dataset(path) as header:
         sizes = [math.prod(each.shape) for each in header.variables.values()]

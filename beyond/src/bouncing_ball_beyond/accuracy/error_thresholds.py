@@ -29,7 +29,7 @@ from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.docstrings import as_in
-from bouncing_ball_beyond.models.given_ball import a_known_ball
+from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 
 
@@ -73,7 +73,7 @@ def error_thresholds(
     >>> found.error_threshold.values.round(3).tolist()
     [[82.177], [2.29]]
     """
-    given = a_known_ball(ball)
+    given = a_ball(ball)
     if not isinstance(given, RestitutionModel):
         raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
     family = checked("n", n, FAMILY)

@@ -22,7 +22,7 @@ from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitErrors, OrbitOnContact
-from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball_beyond.exhibits.random_orbits import half_next_to_saddle_node, random_orbits
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature
@@ -198,6 +198,7 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     span = sample.frequency_ratio
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
+    lam = half_next_to_saddle_node(n, contact.restitution, lam, rng)
     left, _ = _left_by_law(n, contact, lam)
     instant = Signature(contact)()
     bound = error_law.remainder_scale(n, instant, lam)
@@ -232,7 +233,8 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     For random orbits it has the measured ``order`` (model, quantity, sample) between the two ϖ in
     ``order_frequency_ratio`` (pair,); ``law_order`` (place, quantity, sample) of what the law
     leaves, and ``node_order`` (quantity, sample) of ``node_error``; and ``law_remainder``
-    (quantity, law_sample), which is |error - law|/(S η) and at most 1 by the law.
+    (quantity, law_sample), which is |error - law|/(S η) and at most 1 by the law. Half of these
+    orbits are next to the saddle-node (:func:`.half_next_to_saddle_node`).
     The bound was fitted to other orbits (:mod:`~bouncing_ball_beyond.accuracy.error_law`).
     """
     n = parameters.n

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bouncing_ball.periodic.explicit import restitution_saddle_node
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
@@ -47,3 +48,29 @@ def random_orbits(
     lam = low + rng.uniform(*places, size) * (high - low)
     zeta = damping_ratio(r, release)
     return n, zeta, lam, rng
+
+
+# The smallest share of the distance from the saddle-node, as a power of ten.
+_NEAREST = -8.0
+
+
+def half_next_to_saddle_node(
+    n: np.ndarray, restitution: np.ndarray, amplitude: np.ndarray, generator: np.random.Generator
+) -> np.ndarray:
+    """Amplitudes of which a random half is moved next to the saddle-node of the restitution model.
+
+    What is left of the distance from it is a share between 10⁻⁸ and 1, uniform in its logarithm.
+    Even draws from the stable range hardly meet the saddle-node, where errors of the height change
+    their order.
+
+    Examples
+    --------
+    >>> n, r = np.ones(1000, dtype=int), np.full(1000, 0.5)
+    >>> lam = half_next_to_saddle_node(n, r, np.full(1000, 1.3), np.random.default_rng(1))
+    >>> share = (lam - np.pi / 3) / (1.3 - np.pi / 3)
+    >>> bool(np.all((share > 0.9e-8) & (share <= 1))), round(float(np.mean(share < 1)), 1)
+    (True, 0.5)
+    """
+    low = restitution_saddle_node(n, restitution)
+    near = low + 10 ** generator.uniform(_NEAREST, 0, amplitude.shape) * (amplitude - low)
+    return np.where(generator.random(amplitude.shape) < 0.5, amplitude, near)

@@ -26,10 +26,10 @@ function refuse(text) {
 const PATIENCE = 200;
 let counting = 0, count = () => {};
 
-function show(hash) {
+function show(hash, kept = DEFAULTS) {
   clearTimeout(counting);
   count = () => {};
-  const {state, refused} = parse(hash), why = impossible(state);
+  const {state, refused} = parse(hash, kept), why = impossible(state);
   current = state;
   for (const [name, value] of Object.entries(state)) setControl(name, value);
   for (const tab of CHOICES.tab) {
@@ -104,9 +104,9 @@ function setControl(name, value) {
 }
 
 function change(name, value) {
-  const next = hashOf({...current, [name]: value});
-  history.replaceState(null, "", next);
-  show(next);
+  const next = name === "tab" ? onTab(current, value) : {...current, [name]: value}, hash = hashOf(next);
+  history.replaceState(null, "", hash);
+  show(hash, next);
 }
 
 document.querySelectorAll("input[type=number]").forEach(typed => typed.addEventListener("input", () => {

@@ -17,11 +17,19 @@ const percent = x => !Number.isFinite(x) ? "none"
   : x > 0 && x < 1e-5 ? "less than 0.001 %"
     : `${nearest(100 * x, x < 0.995 ? 2 : String(Math.trunc(100 * x)).length)} %`;
 
-// An error with its sign, as in `bouncing-ball design`.
-const signed = x => {
+// An error with its sign, as in `bouncing-ball design`; next to the tolerance it has as many digits
+// as tell the two apart.
+function signed(x, tolerance) {
   const size = percent(Math.abs(x));
-  return !Number.isFinite(x) || x === 0 || size.startsWith("less") ? size : (x > 0 ? "+" : "-") + size;
-};
+  if (!Number.isFinite(x) || x === 0 || size.startsWith("less")) return size;
+  const sign = x > 0 ? "+" : "-";
+  if (size === percent(tolerance))
+    for (let digits = 3; digits < 15; digits++) {
+      const found = nearest(100 * Math.abs(x), digits);
+      if (found !== nearest(100 * tolerance, digits)) return `${sign}${found} %`;
+    }
+  return sign + size;
+}
 // Two values that are compared, in as many digits as show that they differ.
 function inPlaceOf(predicted, exact, unit) {
   const error = exact ? Math.abs(predicted / exact - 1) : 1;

@@ -32,11 +32,11 @@ const modelsOf = ({model, r, w}) => Object.fromEntries(
   [["restitution", {r}], ["spring-damper", {contact: contactOf(r, w, "displacement")}]]
     .filter(([name]) => model === "both" || model === name));
 
-// The state of a hash, and what in it was no value: that keeps its default. A scene is a state of
-// the stage by its name.
-function parse(hash) {
+// The state of a hash, and what in it was no value: that has its default. Names that are not in the
+// hash have the values of `kept`. A scene is a state of the stage by its name.
+function parse(hash, kept = DEFAULTS) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
-  const state = {...DEFAULTS, ...(scene && {tab: "stage", ...scene.state})}, refused = [];
+  const state = {...kept, ...(scene && {tab: "stage", ...scene.state})}, refused = [];
   const tab = given.get("tab") ?? state.tab;
   if (given.has("scene") && !scene)
     refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
@@ -47,16 +47,33 @@ function parse(hash) {
       : range && text.trim() !== "" && value >= range[0] && value <= range[1]
         && (!WHOLE.includes(name) || Number.isInteger(value)))
       state[name] = name in CHOICES ? text : value;
-    else refused.push(`${name} = ${text}`
-      + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
+    else {
+      refused.push(`${name} = ${text}` + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
+      if (name in DEFAULTS) state[name] = DEFAULTS[name];
+    }
   }
   return {state, refused};
 }
 
+// ϖ = √(k/m)/Ω of a mass in g, a frequency in Hz and a stiffness in N/m, and the stiffness of a ϖ.
+const frequencyRatioOf = ({m, f, k}) => Math.sqrt(k / (m / 1000)) / (2 * Math.PI * f);
+const stiffnessOf = ({m, f, w}) => m / 1000 * (2 * Math.PI * f * w) ** 2;
+
+// The same case on another tab: ϖ and Λ become a stiffness and an acceleration, for the mass and the
+// frequency that there were, and back. A value that belongs to the case already keeps its digits.
+function onTab(state, tab) {
+  if (tab === "design" && state.tab !== "design")
+    return {...state, tab, acc: state.a, k: frequencyRatioOf(state) === state.w ? state.k : stiffnessOf(state)};
+  if (tab !== "design" && state.tab === "design")
+    return {...state, tab, a: state.acc, w: stiffnessOf(state) === state.k ? state.w : frequencyRatioOf(state)};
+  return {...state, tab};
+}
+
 // The contact of the physical tab in SI units, and its dimensionless groups.
-function caseOf({release, r, m, k, f}) {
+function caseOf(state) {
+  const {release, r, m, k, f} = state;
   const mass = m / 1000, time = 1 / (2 * Math.PI * f), length = GRAVITY * time ** 2;
-  const contact = contactOf(r, Math.sqrt(k / mass) * time, release);
+  const contact = contactOf(r, frequencyRatioOf(state), release);
   return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact};
 }
 
@@ -98,9 +115,10 @@ function asked(state) {
   if (state.tab === "orbit")
     return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100};
   const one = caseOf(state);
-  // `bouncing-ball design` asks for the orbit that is stable next to the saddle-node.
+  // `bouncing-ball design` asks for the orbit that is stable next to the saddle-node, and its errors
+  // are deviations.
   return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,
-    tolerance: state.t / 100};
+    errorOf: deviation, tolerance: state.t / 100};
 }
 
 function commandOf(state) {

@@ -60,7 +60,9 @@ def a_known_ball(ball: Any) -> Any:
     """
     given = a_ball(ball)
     if not given.is_known:
-        raise ParameterError("{duration} needs {speed}")
+        raise ParameterError(
+            "{duration} needs {speed}: the r and D of a free impact are those of a speed"
+        )
     return given
 
 

@@ -72,7 +72,7 @@ def orbit_of_motion(
     Orbit
       impacts               2
       periods               2
-      law                   0.5
+      restitution           0.5
       amplitude             1.6
       phase                 [0.403915 1.19435]
       contact_duration      [0 0]

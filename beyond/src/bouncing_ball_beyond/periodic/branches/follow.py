@@ -250,7 +250,8 @@ def _value(balls: Balls, name: str, value: Any) -> float:
 def _check_orbit(orbit: Any) -> None:
     if not isinstance(orbit, Orbit):
         kind = type(orbit).__name__
-        raise ParameterError("follow needs an orbit of bouncing_ball, not {}", kind)
+        hint = ": give one of them" if kind == "list" else ""
+        raise ParameterError(f"follow needs an orbit of bouncing_ball, not {{}}{hint}", kind)
     if orbit.shape:
         raise ParameterError("follow needs a single orbit, not {}", str(orbit.size))
     if not orbit.exists:

@@ -8,7 +8,7 @@ they are called relative, which means relative to the table: δ = z - w.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -81,9 +81,13 @@ class Orbit(OrbitImpacts):
     def __repr__(self) -> str:
         counts = ("n",) if self.impacts == 1 else ("impacts", "periods")
         kind = ("kind",) if self.kind else ()
-        names = (*kind, *counts, "law", *OBSERVABLES)
-        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
-        return "\n".join([type(self).__name__, *values])
+        # Called as in the ball: "restitution", or "law" of a contact.
+        law = fields(self.model)[0].name
+        named = {law: self.law} | {name: getattr(self, name) for name in OBSERVABLES}
+        named = {name: getattr(self, name) for name in (*kind, *counts)} | named
+        return "\n".join(
+            [type(self).__name__, *(f"  {name:<22}{in_words(x)}" for name, x in named.items())]
+        )
 
     def _landing_gap(self) -> np.ndarray:
         """δ of the flights at the impacts with which they end, shape (..., k)."""

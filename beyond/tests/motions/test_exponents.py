@@ -33,6 +33,10 @@ def test_the_sum_of_the_exponents_of_a_chaotic_ball_counts_its_impacts():
     ball = bouncing_ball_beyond.rigid(restitution=0.9)
     found = bouncing_ball_beyond.lyapunov_exponent(ball, amplitude=2.5, impacts=400)
     assert found.kind.item() == "chaotic"
+    # Another start came to rest on the table after 11,268 impacts.
+    words = found.in_words.item()
+    assert words.startswith("chaotic in all 400 impacts for which it was followed")
+    assert "more may show a long transient" in words
     motion = bouncing_ball_beyond.motion_of(ball, amplitude=2.5, impacts=400)
     start = {"phase": float(motion.end_phase), "velocity": float(motion.end_velocity)}
     followed = bouncing_ball_beyond.simulate(ball, amplitude=2.5, impacts=401, **start)

@@ -11,7 +11,6 @@ from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps, Range
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings, Written, without_step
 from bouncing_ball_contacts.engines.given_step import AtStep
-from bouncing_ball_contacts.engines.scheme import Scheme
 
 
 def line(name: str, *columns: str) -> str:
@@ -228,7 +227,7 @@ def _retuned_as(given: DesignAnswer, at: AtStep) -> str:
     """The parameters with the retuned damping, of an engine whose steps damp."""
     case = given.found.case
     engine = case.given.engine
-    if engine is None or at.retuned is None or engine.scheme is not Scheme.COMPENSATED:
+    if engine is None or at.retuned is None or not engine.scheme.is_compensated:
         return ""
     if at.speed is not None:
         return ""

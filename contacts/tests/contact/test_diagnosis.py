@@ -84,6 +84,8 @@ def test_engines_of_physx_lead_to_what_is_known(refusal):
         assert engine_named(name) is ENGINES["physx"]
     with refusal(ModelError, "a drop of 0.2 m: docs/bounces.md has the bounces of PhysX"):
         engine_named("Unity")
+    with refusal(ModelError, "simscape has no time step of its own, and its contact is a law"):
+        engine_named("Simscape")
 
 
 def test_parameters_of_physx_are_read_at_a_step():

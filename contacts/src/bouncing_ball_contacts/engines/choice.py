@@ -95,11 +95,23 @@ ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ROWS}
 
 # Programs that have the contacts of another one.
 _SAME = dict.fromkeys(("isaac", "isaac-sim", "isaacsim", "isaac-lab", "isaaclab"), "physx")
-_OF_UNITY = (
-    "no contact is written for unity: its materials have no stiffness, its restitution is a number "
-    "(bounciness), and nothing bounces below bounceThreshold, by default 2 m/s, a drop of 0.2 m: "
-    "docs/bounces.md has the bounces of PhysX, which is its engine"
-)
+# What is known of programs for which nothing is written.
+_KNOWN = {
+    "unity": (
+        "no contact is written for unity: its materials have no stiffness, its restitution is a "
+        "number (bounciness), and nothing bounces below bounceThreshold, by default 2 m/s, a drop "
+        "of 0.2 m: docs/bounces.md has the bounces of PhysX, which is its engine"
+    )
+} | {
+    name: (
+        f"{name} has no time step of its own, and its contact is a law, without an engine: {law}, "
+        "which needs a contact time and an impact speed"
+    )
+    for name, law in (
+        ("adams", "adams-impact or adams-impact-linear"),
+        ("simscape", "simscape-contact"),
+    )
+}
 
 
 def engine_named(name: str) -> Engine:
@@ -118,8 +130,8 @@ def engine_named(name: str) -> Engine:
     'physx'
     """
     plain = str(name).casefold()
-    if plain == "unity":
-        raise ModelError(f"{_OF_UNITY}; contacts are written for {', '.join(ENGINES)}")
+    if known := _KNOWN.get(plain):
+        raise ModelError(f"{known}; contacts are written for {', '.join(ENGINES)}")
     own = plain if plain in ENGINES else name
     return one_of("engine", _SAME.get(plain, own), ENGINES)
 

@@ -156,4 +156,8 @@ def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:
     # Hertz contacts are written, and not read.
     rows = (row for row in engine.laws.values() if row.needs_speed)
     # The laws of an engine differ in the name of their damping.
-    return next((row for row in rows if row.names[1] in parameters), engine)
+    found = next((row for row in rows if row.names[1] in parameters), engine)
+    if found is not engine and engine.names[1] in parameters:
+        both = f"{engine.names[1]} and {found.names[1]}"
+        raise ModelError(f"{both} are the dampings of two contacts of {name}: give one of them")
+    return found

@@ -277,8 +277,11 @@ def _with_points(rows: list[tuple[int, str]]) -> list[tuple[int, str]]:
         # A mark at the end of a line is no further column.
         parts = ((at, line.strip(mark).split(mark)) for at, line in rows)
         return [(at, ",".join(_point(cell) for cell in cells)) for at, cells in parts]
-    numbers = [line.strip() for _, line in rows if not any(map(str.isalpha, line))]
-    if numbers and all(map(_DECIMAL_COMMA.fullmatch, numbers)):
+    headings = [line for _, line in rows if any(map(str.isalpha, line))]
+    numbers = [line.strip() for _, line in rows if line not in headings]
+    # A comma in a heading is one between columns, also if all numbers of a file are whole.
+    has_one_column = not any("," in line for line in headings)
+    if has_one_column and numbers and all(map(_DECIMAL_COMMA.fullmatch, numbers)):
         return [(at, _point(line)) for at, line in rows]
     return rows
 
@@ -380,6 +383,11 @@ def _columns(path: Path, rows: list[tuple[int, str]]) -> tuple[dict[str, np.ndar
             )
         for (name, factor), cell in zip(titles, cells, strict=True):
             found[name].append(_cell(path, at, name, cell, factor))
+        if "drop_height" in found and found["rebound_height"][-1] > found["drop_height"][-1]:
+            back, drop = (f"{found[f'{name}_height'][-1]:g} m" for name in ("rebound", "drop"))
+            raise ModelError(
+                f"{path}, line {at}: the rebound of {back} is above the drop of {drop}"
+            )
     if not found[wanted[0]]:
         raise ModelError(f"{path} has no line of numbers")
     return {name: np.array(values) for name, values in found.items()}, [at for at, _ in rows[1:]]

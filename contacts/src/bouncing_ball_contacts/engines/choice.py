@@ -21,8 +21,8 @@
   them with a material that is not compliant. A step is one of implicit Euler, and the contact is
   found ahead, both spring and damper, in a step after which the ball would be inside. With the
   solver TGS the contact has the steps of the solver's iterations, so that the text to paste has the
-  solver PGS. A contact is found within ``contactOffset``, by default 2 cm, and a ball must not move
-  farther than that in a step. Source: the code of PhysX 5.
+  solver PGS. A contact is found within ``contactOffset``, in PhysX by default 2 cm of each shape: a
+  ball that moves farther than that in a step may not be found ahead. Source: the code of PhysX 5.
 
 The other rows are in :mod:`~bouncing_ball_contacts.engines.mujoco`,
 :mod:`~bouncing_ball_contacts.engines.granular` and :mod:`~bouncing_ball_contacts.engines.drake`.
@@ -94,7 +94,8 @@ ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ROWS}
 
 
 # Programs that have the contacts of another one.
-_SAME = dict.fromkeys(("isaac", "isaac-sim", "isaacsim", "isaac-lab", "isaaclab"), "physx")
+_ISAAC = ("isaac", "isaac-sim", "isaacsim", "isaac-lab", "isaaclab")
+_SAME = dict.fromkeys(("physx", *_ISAAC), "physx")
 # What is known of programs for which nothing is written.
 _KNOWN = {
     "unity": (
@@ -132,8 +133,7 @@ def engine_named(name: str) -> Engine:
     plain = str(name).casefold()
     if known := _KNOWN.get(plain):
         raise ModelError(f"{known}; contacts are written for {', '.join(ENGINES)}")
-    own = plain if plain in ENGINES else name
-    return one_of("engine", _SAME.get(plain, own), ENGINES)
+    return one_of("engine", _SAME.get(plain, name), ENGINES)
 
 
 def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:

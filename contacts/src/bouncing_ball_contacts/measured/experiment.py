@@ -231,6 +231,9 @@ def read(file: str | Path, **options: Any) -> Experiment:
     except (OSError, UnicodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not a text in UTF-8"
         raise ModelError(f"{path} cannot be read: {why}") from None
+    if path.parent == DATA:
+        # A file of the package is known by its name.
+        path = Path(path.name)
     head, rows = _parts(path, lines)
     rows = _with_points(rows)
     if rows and _is_number(rows[0][1].split(",")[0]):

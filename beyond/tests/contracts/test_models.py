@@ -25,6 +25,7 @@ from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.laws.signature import Signature
+from bouncing_ball_beyond.models.laws.stepped import AdamsImpact, SimscapeContact
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.branches.following import orbits_along
@@ -44,6 +45,8 @@ HERTZ = {
     "kuwabara-kono": KuwabaraKono(2e3, 0.008),
     "sharing": Sharing(15.0, 0.1),
     "elasto-backlash": ElastoBacklash(15.0, 0.1),
+    "adams-impact": AdamsImpact(2e3, 4.0, 0.02),
+    "simscape-contact": SimscapeContact(225.0, 3.0, 0.02),
     "hardening spring": runpy.run_path(str(Path(__file__).with_name("hardening_spring.py")))["LAW"],
 }
 # Of contacts and their derivatives: roundings, but for the laws without a closed form,
@@ -66,7 +69,7 @@ MODELS = {
     "one's own": OWN["MODEL"],
 }
 # Other laws of the same model: one of them is tried often, and the others weekly.
-SELDOM = ("kuwabara-kono", "elasto-backlash", "sharing")
+SELDOM = ("kuwabara-kono", "elasto-backlash", "sharing", "adams-impact", "simscape-contact")
 # Of these some tests take seconds, and "tsuji" and "corrected" are of the same kinds.
 SLOW = (*SELDOM, "corrected, kuwabara-kono", "hardening spring")
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]

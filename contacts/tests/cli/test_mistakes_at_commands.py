@@ -28,6 +28,10 @@ fit croquet --frequency "50 mm"
     --frequency = 50 mm is in millimeter, not in Hz: write it as '50 Hz'
 fit croquet --law hertz
     unrecognized arguments: --law hertz: it is an option of law-orbit, law-limits,
+fit croquet --leave-out 99
+    croquet.csv has no line 99 with numbers to leave out
+fit croquet --intervals
+    croquet.csv has no column interval or time
 fit croquet golf_ball
     unrecognized arguments: golf_ball: see bouncing-ball fit --help
 design BALL TABLE --cor 0.7

@@ -125,7 +125,19 @@ BALL --json --plot
 -m 20
     unrecognized arguments: -m 20; did you mean --mass?
 --mass "1/2 kg" --stiffness 1e6 --restitution 0.8
-    --mass = 1/2 kg is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
+    --mass = 1/2 kg is a fraction: write '0.5 kg'
+BALL --engine mujoco --time-step 1/250
+    --time-step = 1/250 is a fraction: write '0.004'
+BALL --engine mujoco --time-step "250 Hz"
+    --time-step = 250 Hz is a rate: did you mean '0.004 s'?
+BALL --engine mujoco --time-step 125fps
+    --time-step = 125fps is a rate: did you mean '0.008 s'?
+CROSSLEY --set relaxation_time=0.01
+    relaxation_time and hunt_crossley_dissipation are the dampings of two contacts of drake: give
+BALL --engine adams
+    adams has no time step of its own, and its contact is a law, without an engine: adams-impact
+--mass "20 g" --from isaaclab --set compliantContactStiffness=1e5
+    compliantContactDamping is missing: the parameters of physx are compliantContactStiffness and
 --mass "20 µg" --frequency "50 Hz" --acceleration "1000000000 g" --stiffness 1e6 --restitution 0.8
     Λ = 1000000000.0 is not below 1e+08
 --mass "20 g" --stiffness "1,500 N/m" --restitution 0.8

@@ -8,7 +8,7 @@ import pytest
 from asked_contacts import answered
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball_contacts.engines.choice import engine_named
+from bouncing_ball_contacts.engines.choice import ENGINES, engine_named
 
 DRAKE = {"point_contact_stiffness": 1e6, "relaxation_time": 0.1, "time_step": 1e-3}
 
@@ -79,7 +79,21 @@ def test_a_step_that_is_too_long_is_named():
     assert np.isfinite(fine.mean) and "a contact takes 3.32 steps" in text
 
 
-@pytest.mark.parametrize("name", ["isaac", "PhysX", "unity"])
-def test_engines_of_physx_lead_to_what_is_known(name, refusal):
-    with refusal(ModelError, "a drop of 0.2 m: docs/bounces.md has its bounces"):
-        engine_named(name)
+def test_engines_of_physx_lead_to_what_is_known(refusal):
+    for name in ("isaac", "PhysX", "Isaac-Sim", "isaaclab"):
+        assert engine_named(name) is ENGINES["physx"]
+    with refusal(ModelError, "a drop of 0.2 m: docs/bounces.md has the bounces of PhysX"):
+        engine_named("Unity")
+    with refusal(ModelError, "simscape has no time step of its own, and its contact is a law"):
+        engine_named("Simscape")
+
+
+def test_parameters_of_physx_are_read_at_a_step():
+    values = {"compliantContactStiffness": 1e4, "compliantContactDamping": 0.0}
+    asked = {"mass": 0.5, "from_engine": "physx", "parameters": values, "restitution": 0.9}
+    answer = answered(**asked, time_step=1 / 1000)
+    # Implicit Euler without damping, as PhysX has it; the step that is named is short enough.
+    assert answer.at_step.mean == pytest.approx(0.8014, abs=2.5e-4)
+    (text,) = answer.diagnosis[1:]
+    (step,) = map(float, re.findall(r"from \d+ on, at (\S+) s, r is within 0.01", text))
+    assert answered(**asked, time_step=step).at_step.error <= 0.0101

@@ -136,7 +136,7 @@ def test_a_solref_that_no_simulation_has_is_refused_with_what_was_meant(solref, 
 @pytest.mark.parametrize(
     ("given", "says"),
     [
-        ({"engine": "MuJoCo"}, "genesis; did you mean mujoco?"),
+        ({"engine": "MuJoCo"}, "physx; did you mean mujoco?"),
         ({"mass": None}, "mass is missing"),
         ({"measured_restitution": 0.7}, "contradict each other"),
         (

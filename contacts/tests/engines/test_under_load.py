@@ -18,6 +18,7 @@ from installed_engines import only_if_installed
 from bouncing_ball.errors import ModelError
 from bouncing_ball_contacts import Contact, EngineSetup, write_contact
 from bouncing_ball_contacts.contact.describe import describe_contact
+from bouncing_ball_contacts.engines.least_error import stiffness_of_least_error
 
 G = 9.80665
 SAMPLE = 1 / 256
@@ -354,3 +355,15 @@ def test_parameters_with_an_impedance_do_in_a_drop_what_mujoco_does(solref, soli
     long = int(100 * settings.steps) + 2000
     heights, _ = RUN["mujoco"](Trial(settings, 0.5, 0.0, 0.0, long, gravity=G))
     assert -heights[-1] == pytest.approx(drop.depth_at_rest, rel=2e-3)
+
+
+def test_softer_contacts_are_not_tried_once_no_ball_rebounds():
+    tried = []
+
+    def found(stiffness, steps):
+        tried.append(steps)
+        return np.full(3, max(0.0, 0.4 - 0.02 * steps))
+
+    # The error of a ball that stays is r = 0.5, less than twice the least error of 0.26.
+    assert stiffness_of_least_error(found, 0.5, 6.4e5) == 1e4
+    assert 20 <= max(tried) <= 21

@@ -100,6 +100,17 @@ def test_units_are_those_of_the_heading(tmp_path):
     assert found.durations[0] == 250e-6 and np.isnan(found.durations[1])
 
 
+def test_whole_numbers_in_two_columns_are_no_decimal_commas(tmp_path):
+    path = write(tmp_path, "drop_height [cm],rebound_height [cm]\n100,49\n50,18\n")
+    assert read(path).restitutions == pytest.approx([0.7, 0.6], rel=1e-12)
+
+
+def test_a_rebound_above_its_drop_is_named_by_its_line(tmp_path, refusal):
+    path = write(tmp_path, "drop_height [cm],rebound_height [cm]\n100,49\n50,60\n")
+    with refusal(ModelError, "line 3: the rebound of 0.6 m is above the drop of 0.5 m"):
+        read(path)
+
+
 def test_a_list_of_intervals_needs_no_heading(tmp_path):
     path = write(tmp_path, "0.8\n0.4\n0.2\n")
     assert read(path, intervals=True).restitutions.tolist() == [0.5, 0.5]

@@ -16,6 +16,11 @@ from bouncing_ball_beyond.models.laws.hertzian import (
     Tsuji,
 )
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh
+from bouncing_ball_beyond.models.laws.stepped import (
+    AdamsImpact,
+    LinearAdamsImpact,
+    SimscapeContact,
+)
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
 
@@ -33,7 +38,8 @@ def by_name(*laws: type[ContactLaw]) -> dict[str, type[ContactLaw]]:
 
 
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
-LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash)
+_STEPPED = (AdamsImpact, LinearAdamsImpact, SimscapeContact)
+LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash, *_STEPPED)
 """The laws by their names on the command line and in calls."""
 
 

@@ -12,7 +12,6 @@ from bouncing_ball_contacts.engines.engine import Engine, without_step
 from bouncing_ball_contacts.engines.given_step import AtStep
 from bouncing_ball_contacts.engines.impacts import steps_for
 from bouncing_ball_contacts.engines.physical import Physical
-from bouncing_ball_contacts.engines.scheme import Scheme
 
 # The r of the change that is named if none is asked for, and how closely an r is met.
 _SOME = 0.5
@@ -77,8 +76,7 @@ def _text(value: float | list[float]) -> str:
 
 def _by_step(engine: Engine, ball: Physical, release: Release, at: AtStep) -> str:
     """A clause on the step: it is too long for the stiffness."""
-    scheme = Scheme.IMPLICIT if engine.scheme is Scheme.COMPENSATED else engine.scheme
-    enough = steps_for(scheme, ball.damping_ratio, release, _NEAR)
+    enough = steps_for(engine.scheme.uncompensated, ball.damping_ratio, release, _NEAR)
     step = float(f"{ball.contact_time(release) / enough:.2g}")
     return (
         f"the time step of {at.time_step:g} s changes r to {at.span}: a contact takes "

@@ -52,6 +52,10 @@ _PARTS = {
     "N*s/m": {"N s": "N s/m", "Ns": "N s/m", "N*s": "N s/m", "kN s": "kN s/m"},
     "m/s^2": {"m/s": "m/s^2"},
 }
+# Rates in Hz, of which a time was meant: a time step.
+_RATES = {"Hz": 1.0, "hz": 1.0, "kHz": 1e3, "fps": 1.0, "FPS": 1.0}
+# The rest of a fraction, behind its numerator.
+_OVER = re.compile(r"/\s*(\d+\.?\d*)\s*(?![\d/])(.*)")
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -171,6 +175,8 @@ write it as '50 Hz'
         raise wrong(_not_one_number(value, unit))
     if why:
         meant = _spelling(unit, kind)
+        if kind.name == "s" and unit in _RATES and plain > 0:
+            raise wrong(f"is a rate: did you mean '{1 / (plain * _RATES[unit]):.12g} s'?")
         if why == _PER_TIME:
             raise wrong(f"{why}: write '{value} Hz' or '{value} rad/s'")
         raise wrong(f"{why}: did you mean '{value} {meant}'?" if meant else f"{why}: {example}")
@@ -187,8 +193,14 @@ def _not_one_number(value: str, rest: str) -> str:
     >>> _not_one_number("0", ",65")
     "has a comma: write '0.65' with a decimal point, or without the comma"
     >>> _not_one_number("1", "/2 kg")
+    "is a fraction: write '0.5 kg'"
+    >>> _not_one_number("20", " ± 1 g")
     'is not one number and a unit: write numbers such as 1500, 0.5 or 1e6'
     """
+    fraction = _OVER.fullmatch(rest)
+    if fraction is not None and float(fraction[1]) > 0:
+        quotient = f"{float(value) / float(fraction[1]):.12g} {fraction[2]}".rstrip()
+        return f"is a fraction: write '{quotient}'"
     if rest[0] == "," and rest.count(",") == 1:
         return f"has a comma: write '{value}.{rest[1:]}' with a decimal point, or without the comma"
     return "is not one number and a unit: write numbers such as 1500, 0.5 or 1e6"

@@ -16,6 +16,13 @@
 * *Newton*, SolverSemiImplicit and SolverFeatherstone: ke = k in N/m and kd = c in N s/m, averaged
   over both shapes. The damper acts while the ball approaches only, and a step is one of
   semi-implicit Euler. Newton computes with single precision.
+* *PhysX*, in Isaac Sim and Isaac Lab as well: the compliant contact of a material, with k in N/m
+  and c in N s/m. Two materials of the same numbers have these numbers together, and so has one of
+  them with a material that is not compliant. A step is one of implicit Euler, and the contact is
+  found ahead, both spring and damper, in a step after which the ball would be inside. With the
+  solver TGS the contact has the steps of the solver's iterations, so that the text to paste has the
+  solver PGS. A contact is found within ``contactOffset``, in PhysX by default 2 cm of each shape: a
+  ball that moves farther than that in a step may not be found ahead. Source: the code of PhysX 5.
 
 The other rows are in :mod:`~bouncing_ball_contacts.engines.mujoco`,
 :mod:`~bouncing_ball_contacts.engines.granular` and :mod:`~bouncing_ball_contacts.engines.drake`.
@@ -74,19 +81,37 @@ _ROWS = (
     proportional("newton-semi-implicit", ("ke", "kd"), (Release.APPROACH,), Scheme.SEMI_IMPLICIT),
     NEWTON_MUJOCO,
     GENESIS,
+    proportional(
+        "physx",
+        ("compliantContactStiffness", "compliantContactDamping"),
+        (Release.FORCE,),
+        Scheme.COMPENSATED_AHEAD,
+        was_run=False,
+    ),
 )
 ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ROWS}
 """The engines by name."""
 
 
-_OF_PHYSX = (
-    "restitution is a number, and nothing bounces below bounceThresholdVelocity, by default 2 m/s, "
-    "a drop of 0.2 m: docs/bounces.md has its bounces"
-)
-# Names that users give, and what is known of these engines, for which nothing is written.
-_KNOWN = {"physx": f"no contact is written for physx, whose {_OF_PHYSX}"} | {
-    name: f"no contact is written for {name}, which has the contacts of PhysX: its {_OF_PHYSX}"
-    for name in ("isaac", "isaac-sim", "isaaclab", "unity")
+# Programs that have the contacts of another one.
+_ISAAC = ("isaac", "isaac-sim", "isaacsim", "isaac-lab", "isaaclab")
+_SAME = dict.fromkeys(("physx", *_ISAAC), "physx")
+# What is known of programs for which nothing is written.
+_KNOWN = {
+    "unity": (
+        "no contact is written for unity: its materials have no stiffness, its restitution is a "
+        "number (bounciness), and nothing bounces below bounceThreshold, by default 2 m/s, a drop "
+        "of 0.2 m: docs/bounces.md has the bounces of PhysX, which is its engine"
+    )
+} | {
+    name: (
+        f"{name} has no time step of its own, and its contact is a law, without an engine: {law}, "
+        "which needs a contact time and an impact speed"
+    )
+    for name, law in (
+        ("adams", "adams-impact or adams-impact-linear"),
+        ("simscape", "simscape-contact"),
+    )
 }
 
 
@@ -102,10 +127,13 @@ def engine_named(name: str) -> Engine:
     --------
     >>> engine_named("mujoco").releases
     (<Release.FORCE: 'force'>,)
+    >>> engine_named("Isaac-Sim").name
+    'physx'
     """
-    if known := _KNOWN.get(str(name).casefold()):
+    plain = str(name).casefold()
+    if known := _KNOWN.get(plain):
         raise ModelError(f"{known}; contacts are written for {', '.join(ENGINES)}")
-    return one_of("engine", name, ENGINES)
+    return one_of("engine", _SAME.get(plain, name), ENGINES)
 
 
 def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:
@@ -128,4 +156,8 @@ def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:
     # Hertz contacts are written, and not read.
     rows = (row for row in engine.laws.values() if row.needs_speed)
     # The laws of an engine differ in the name of their damping.
-    return next((row for row in rows if row.names[1] in parameters), engine)
+    found = next((row for row in rows if row.names[1] in parameters), engine)
+    if found is not engine and engine.names[1] in parameters:
+        both = f"{engine.names[1]} and {found.names[1]}"
+        raise ModelError(f"{both} are the dampings of two contacts of {name}: give one of them")
+    return found

@@ -54,23 +54,23 @@ class DropInSteps:
 
 
 class Fall(NamedTuple):
-    """Balls at the first step that begins inside: the heights of their drops, x and v."""
+    """Balls at the first step in contact: the heights of their drops, x and v."""
 
     drops: np.ndarray
     place: np.ndarray
     velocity: np.ndarray
 
     @classmethod
-    def of(cls, size: float, height: float, gravity: float, *, half_steps: bool) -> "Fall":
+    def of(cls, step: Step, height: float, gravity: float, *, half_steps: bool) -> "Fall":
         """Falls from about a height, which meet the wall at all instants within a step."""
         g = gravity
-        h = size
+        h = step.size
         drops = height + math.sqrt(2 * g * height) * h * np.linspace(-0.5, 0.5, _SAMPLES)
         # A drop of less than a step.
         drops = np.maximum(drops, _LEAST * height)
         # x_n = drop - g h² n(n + 2a)/2 and v_n = -g h (n - 1/2 + a), with a = 1/2 or 0.
         late = 0.0 if half_steps else 0.5
-        n = np.ceil(np.sqrt(late * late + 2 * drops / (g * h * h)) - late)
+        n = np.ceil(np.sqrt(late * late + 2 * drops / (g * h * h)) - late) - step.ahead
         x = drops - g * h * h * n * (n + 2 * late) / 2
         # A ball at exactly the level of the wall is not yet in contact.
         x = np.where(x == 0, -np.finfo(float).tiny, x)
@@ -104,7 +104,7 @@ def restitutions_in_steps(
     >>> bool(abs(found - 1).max() < 1e-3)
     True
     """
-    fall = Fall.of(step.size, height, gravity, half_steps=half_steps)
+    fall = Fall.of(step, height, gravity, half_steps=half_steps)
     most = patience(contact_steps)
     x, v = until_outside(step, fall.place, fall.velocity, most, gravity)
     return fall.restitutions(x, v, step.size, gravity)
@@ -136,7 +136,7 @@ def drop_in_steps(
     >>> bool(abs(drop.peak_force.most / (2.0 * 2.0 * 1e3) - 1) < 0.01), drop.depth_at_rest
     (True, 1e-05)
     """
-    fall = Fall.of(step.size, height, gravity, half_steps=half_steps)
+    fall = Fall.of(step, height, gravity, half_steps=half_steps)
     deepest = -fall.place
     hardest = np.zeros_like(deepest)
     last = fall.place, fall.velocity

@@ -14,11 +14,6 @@ _DEPTHS = 10
 # Falls and contacts until the ball is at its top, with a margin.
 _FALLS = 2.2
 _CONTACTS = 3
-# The last lines of each script. The first bounce ends where the ball falls again.
-_END = """
-inside = next(k for k, z in enumerate(heights) if z < 0)
-print(f"dropped from @height@ m it rises to {sorted(heights[inside:])[-1]:.4g} m")
-"""
 
 
 def drop_script(settings: EngineSettings, radius: float | None, gravity: float) -> str:
@@ -48,12 +43,14 @@ def drop_script(settings: EngineSettings, radius: float | None, gravity: float) 
         "start": size + drop.height,
         "top": 2 * (size + drop.height),
         "time_step": settings.time_step,
+        # At this step the ball is in contact.
+        "fall": math.ceil(fall / settings.time_step) + 1,
         "steps": math.ceil(lasts),
     }
-    texts = {name: repr(value) for name, value in numbers.items()}
+    texts = {name: f"{value:.12g}" for name, value in numbers.items()}
     recipe = settings.snippet
     if settings.name == "lammps":
         # The units come before the box.
         recipe = recipe.split("\n", 1)[1]
-    text = text_to_paste(f"{settings.name}-drop") + _END
+    text = text_to_paste(f"{settings.name}-drop")
     return filled(text, texts | {"recipe": recipe}) + "\n"

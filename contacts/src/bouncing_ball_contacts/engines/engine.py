@@ -202,12 +202,12 @@ class Engine:
         ModelError
             See :meth:`read`; or if the time step is not positive.
         """
-        if self.scheme is Scheme.SEMI_IMPLICIT or _STEP not in parameters:
+        if not self.scheme.is_implicit or _STEP not in parameters:
             return self.read(parameters, mass)
         step = parameters[_STEP]
         require(0 < step < math.inf, step, _STEP, "a positive number of s")
         found = self.read(without_step(parameters), mass)
-        if self.scheme is not Scheme.COMPENSATED:
+        if not self.scheme.is_compensated:
             return found
         m, k, c = found
         return Physical(m, *(value * m for value in represented(k / m, c / m, step)))
@@ -216,7 +216,7 @@ class Engine:
         """Sentences on how the contact with these parameters differs from a spring and damper."""
         if _STEP in parameters:
             return ()
-        limit = (_LIMIT,) if self.scheme is Scheme.COMPENSATED else ()
+        limit = (_LIMIT,) if self.scheme.is_compensated else ()
         return (*limit, *self.remarks(parameters))
 
     def at_step_of(
@@ -256,7 +256,7 @@ class Engine:
         of its steps, and sentences on how the engine changes the parameters.
         """
         values, remarks = self.kept_stable(parameters, time_step)
-        if self.scheme is Scheme.COMPENSATED:
+        if self.scheme.is_compensated:
             values = {**values, _STEP: time_step}
         contact = self.contact(values, mass)
         law = self.law(values, contact.mass)
@@ -422,7 +422,7 @@ class Written:
     def parameters(self, time_step: float) -> EngineParameters:
         """The engine's parameters with which it has this contact at a time step in s."""
         contact = self.contact
-        if self.engine.scheme is Scheme.COMPENSATED:
+        if self.engine.scheme.is_compensated:
             m, k, c = contact
             both = compensated(k / m, c / m, time_step)
             contact = Physical(m, *(twelve_digits(x * m) for x in both))

@@ -343,7 +343,7 @@ def at_step(
         is_stable=has_stable_steps(scheme, zeta, step),
     )
     # A compensated scheme is told the contact that was asked for, with another damping.
-    tuned = wanted if scheme is Scheme.COMPENSATED else contact
+    tuned = wanted if scheme.is_compensated else contact
     omega = tuned.angular_frequency
     ratio = None
     if not found.is_within:

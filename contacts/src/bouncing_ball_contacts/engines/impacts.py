@@ -49,8 +49,8 @@ def restitution_in_steps(
     steps : float
         N, the number of steps in a contact.
     fraction : array_like
-        Time, in steps and in (0, 1], from meeting the wall to the first step that begins in
-        contact.
+        Time, in steps and in (0, 1], from meeting the wall to the first step that begins inside.
+        If contacts are found ahead, the step before is in contact as well.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def impacts_in_steps(
     duration = free_duration(float(damping_ratio), release)
     linear = _linear_step(scheme, float(damping_ratio), release, float(step))
     start = np.asarray(fraction, dtype=float).ravel()
-    state = np.stack([-step * start, -np.ones_like(start)])
+    state = np.stack([step * (linear.ahead - start), -np.ones_like(start)])
     if duration / step < FEWEST:
         place, velocity = state
         x, v = until_outside(linear, place, velocity, patience(duration / step))

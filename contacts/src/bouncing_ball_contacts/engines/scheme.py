@@ -12,9 +12,12 @@ each contact is equivalent to one of these maps:
 * *compensated implicit Euler*: the same with parameters that take back the damping of the step, in
   place of 1 and 2ζ. Drake's linear contact (SAP), and Bullet's springs, which are constraints with
   ``cfm`` and ``erp``.
+* both with *contacts found ahead*: PhysX' compliant contact.
 
-A ball is in contact during a step if x < 0 before this step. A contact with the force release only
-pushes, and a damper that acts on approach only is left out of the steps that begin with v ≥ 0.
+A ball is in contact during a step if x < 0 before this step. If contacts are found ahead, it is in
+contact as well if it would be at x < 0 after a step without contact, x + hv < 0. A contact with the
+force release only pushes, and a damper that acts on approach only is left out of the steps that
+begin with v ≥ 0.
 
 The compensation follows from the rates μ of a contact ``x″ = -c x′ - k x``, ``μ² + c μ + k = 0``:
 its motion is a sum of ``exp(μt)``. Implicit Euler with a step h multiplies each part by
@@ -30,6 +33,8 @@ The compensated positions are those of an exact contact, which begins in the mid
 before the first one in contact: up to half a step before or after the ball meets the wall. The
 damper therefore acts for up to half a step more or less, so that r has the errors ``±ζhr``, and a
 mean error of second order in h. The force release, where v is greatest, adds a second order only.
+A contact that is found ahead begins one step earlier, so that the mean of r has the factor
+``1 - 2ζh`` to first order.
 """
 
 from collections.abc import Callable
@@ -83,3 +88,27 @@ class Scheme(StrEnum):
     SEMI_IMPLICIT = "semi-implicit Euler"
     IMPLICIT = "implicit Euler"
     COMPENSATED = "compensated implicit Euler"
+    AHEAD = "implicit Euler with contacts found ahead"
+    COMPENSATED_AHEAD = "compensated implicit Euler with contacts found ahead"
+
+    @property
+    def is_implicit(self) -> bool:
+        """Whether the force is that at the end of the step."""
+        return self is not Scheme.SEMI_IMPLICIT
+
+    @property
+    def is_compensated(self) -> bool:
+        """Whether the parameters take back the damping of the step."""
+        return self in (Scheme.COMPENSATED, Scheme.COMPENSATED_AHEAD)
+
+    @property
+    def is_ahead(self) -> bool:
+        """Whether a ball that would be inside after a step without contact is in contact."""
+        return self in (Scheme.AHEAD, Scheme.COMPENSATED_AHEAD)
+
+    @property
+    def uncompensated(self) -> "Scheme":
+        """The scheme with k and c as they are."""
+        if not self.is_compensated:
+            return self
+        return Scheme.AHEAD if self.is_ahead else Scheme.IMPLICIT

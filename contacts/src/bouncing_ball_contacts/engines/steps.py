@@ -1,15 +1,16 @@
 r"""One time step of an engine for a ball in contact, and balls that are followed by such steps.
 
 An engine adds gravity to the velocity v of a ball, ``v - gh`` with its step h, then the contact
-acts, if the ball is at x < 0 before the step, and moves the ball with the velocity v⁺ that results,
-``x⁺ = x + h v⁺``. A contact is therefore one function, which gives v⁺. All stiffnesses and dampings
-are per unit of mass, in units of any time and length.
+acts, if the ball is at x < 0 before the step, or if contacts are found ahead and it would be there
+after the step, and moves the ball with the velocity v⁺ that results, ``x⁺ = x + h v⁺``. A contact
+is therefore one function, which gives v⁺. All stiffnesses and dampings are per unit of mass, in
+units of any time and length.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol, Self
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 
@@ -32,12 +33,17 @@ class Step(Protocol):
     @property
     def size(self) -> float: ...
 
+    @property
+    def ahead(self) -> int:
+        """How many steps before the first one that begins at x < 0 are in contact: 0 or 1."""
+        ...
+
     def depth_at_rest(self, gravity: float) -> float:
         """The penetration at which the contact carries a ball at rest."""
         ...
 
     def velocity(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
-        """v⁺ of balls at x < 0 with the velocity v ``before``, and ``free`` v - gh without contact.
+        """v⁺ of balls in contact, with the velocity v ``before``, and v - gh where it is ``free``.
 
         All arrays have the same shape.
         """
@@ -75,9 +81,9 @@ class LinearStep:
         ModelError
             If no engine with this scheme has the release.
         """
-        if not release.is_linear and scheme is not Scheme.SEMI_IMPLICIT:
+        if not release.is_linear and scheme.is_implicit:
             raise ModelError(f"no scheme is known for {scheme} with the release {release}")
-        if scheme is Scheme.COMPENSATED:
+        if scheme.is_compensated:
             stiffness, damping = compensated(stiffness, damping, size)
         return cls(scheme, stiffness, damping, release, size)
 
@@ -86,14 +92,13 @@ class LinearStep:
         return gravity / self.stiffness
 
     @property
-    def is_implicit(self) -> bool:
-        """Whether the force is that at the end of the step."""
-        return self.scheme is not Scheme.SEMI_IMPLICIT
+    def ahead(self) -> int:
+        return int(self.scheme.is_ahead)
 
     def grip(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
         """y at the start of a step, or in implicit steps that after a step without contact."""
         lag = self.damping / self.stiffness
-        if self.is_implicit:
+        if self.scheme.is_implicit:
             return place + (self.size + lag) * free
         rate = before if self.release.is_linear else np.minimum(before, 0.0)
         return place + lag * rate
@@ -101,7 +106,7 @@ class LinearStep:
     def _held(self, place: np.ndarray, before: np.ndarray, free: np.ndarray) -> np.ndarray:
         """v⁺ of balls on which the contact acts, also where it pulls."""
         h = self.size
-        if self.is_implicit:
+        if self.scheme.is_implicit:
             slowing = 1 + h * self.damping + h * h * self.stiffness
             return (free - h * self.stiffness * place) / slowing
         return free - h * self.stiffness * self.grip(place, before, free)
@@ -152,6 +157,7 @@ class HuntCrossleyStep:
     stiffness: float
     damping: float
     size: float
+    ahead: ClassVar[int] = 0
 
     def depth_at_rest(self, gravity: float) -> float:
         return gravity / self.stiffness
@@ -180,6 +186,7 @@ class ImpedanceStep:
 
     law: Impedance
     size: float
+    ahead: ClassVar[int] = 0
 
     def depth_at_rest(self, gravity: float) -> float:
         # In units of g the weight is 1, and so is the force of the law that carries it.
@@ -203,6 +210,7 @@ class InstantStep:
 
     restitution: float
     size: float
+    ahead: ClassVar[int] = 0
 
     def depth_at_rest(self, gravity: float) -> float:
         """0: the ball lies at the surface."""
@@ -258,10 +266,11 @@ def steps_inside(
     x = place
     v = velocity
     for _ in range(most):
-        inside = x < 0
+        free = v - step.size * gravity
+        # Without contact x + h free is the place after the step.
+        inside = np.minimum(x, x + step.ahead * step.size * free) < 0
         if not inside.any():
             return
-        free = v - step.size * gravity
         after = step.velocity(x, v, free)
         force = np.where(inside, after - free, 0.0) / step.size
         v = np.where(inside, after, v)

@@ -231,6 +231,9 @@ def read(file: str | Path, **options: Any) -> Experiment:
     except (OSError, UnicodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not a text in UTF-8"
         raise ModelError(f"{path} cannot be read: {why}") from None
+    if path.parent == DATA:
+        # A file of the package is known by its name.
+        path = Path(path.name)
     head, rows = _parts(path, lines)
     rows = _with_points(rows)
     if rows and _is_number(rows[0][1].split(",")[0]):
@@ -277,8 +280,11 @@ def _with_points(rows: list[tuple[int, str]]) -> list[tuple[int, str]]:
         # A mark at the end of a line is no further column.
         parts = ((at, line.strip(mark).split(mark)) for at, line in rows)
         return [(at, ",".join(_point(cell) for cell in cells)) for at, cells in parts]
-    numbers = [line.strip() for _, line in rows if not any(map(str.isalpha, line))]
-    if numbers and all(map(_DECIMAL_COMMA.fullmatch, numbers)):
+    headings = [line for _, line in rows if any(map(str.isalpha, line))]
+    numbers = [line.strip() for _, line in rows if line not in headings]
+    # A comma in a heading is one between columns, also if all numbers of a file are whole.
+    has_one_column = not any("," in line for line in headings)
+    if has_one_column and numbers and all(map(_DECIMAL_COMMA.fullmatch, numbers)):
         return [(at, _point(line)) for at, line in rows]
     return rows
 
@@ -380,6 +386,11 @@ def _columns(path: Path, rows: list[tuple[int, str]]) -> tuple[dict[str, np.ndar
             )
         for (name, factor), cell in zip(titles, cells, strict=True):
             found[name].append(_cell(path, at, name, cell, factor))
+        if "drop_height" in found and found["rebound_height"][-1] > found["drop_height"][-1]:
+            back, drop = (f"{found[f'{name}_height'][-1]:g} m" for name in ("rebound", "drop"))
+            raise ModelError(
+                f"{path}, line {at}: the rebound of {back} is above the drop of {drop}"
+            )
     if not found[wanted[0]]:
         raise ModelError(f"{path} has no line of numbers")
     return {name: np.array(values) for name, values in found.items()}, [at for at, _ in rows[1:]]

@@ -120,6 +120,13 @@ class ForceLaw(Batch, ABC):
         """Whether the force has kinks, where :meth:`kink` changes its sign."""
         return False
 
+    @property
+    def is_smooth_by_speed(self) -> bool:
+        """Whether r, D and the other numbers of a free impact are smooth functions of its speed. By
+        default they are not if the force has kinks at given depths.
+        """
+        return not self.has_kink or self.lag is not None
+
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """A function of p and p′ that changes its sign where the continuous force has a kink, of
         the shape to which the arguments broadcast.

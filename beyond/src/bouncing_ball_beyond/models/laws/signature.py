@@ -108,7 +108,7 @@ def _unending(name: str, speed: float) -> ModelError:
 
 def _width(law: ForceLaw) -> float:
     """Width of a panel of the interpolation, in ln v."""
-    return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
+    return _WIDTH if law.is_smooth_by_speed else _WIDTH / _PARTS
 
 
 @lru_cache(maxsize=4096)

@@ -111,19 +111,6 @@ def sine_and_versine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     return double * (_ONE - tangent * half), double * half
 
 
-def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """sin x and cos x; the cosine has an absolute error of the order of rounding.
-
-    Examples
-    --------
-    >>> sine, cosine = sine_and_cosine([0.0, np.pi])
-    >>> abs(sine.round(15)).tolist(), cosine.tolist()
-    ([0.0, 0.0], [1.0, -1.0])
-    """
-    sine, versine = sine_and_versine(angle)
-    return sine, _ONE - versine
-
-
 def exponential(x: ArrayLike) -> np.ndarray:
     """e^x for x ≤ 709, and e^709 above; 0 where e^x is below 2^-1022.5.
 

@@ -31,7 +31,6 @@ from bouncing_ball.models.spring_damper import flow as linear_flow
 from bouncing_ball.numerics.elementary import (
     arctangent,
     exponential,
-    sine_and_cosine,
     sine_and_versine,
 )
 from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
@@ -178,7 +177,8 @@ class ClosedFormMotion(ContactMotion):
 
     def __call__(self, time: np.ndarray) -> Derivatives:
         angles = np.array([self.damped * time, time])
-        (sine, slow_sine), (cosine, slow_cosine) = sine_and_cosine(angles)
+        (sine, slow_sine), versines = sine_and_versine(angles)
+        cosine, slow_cosine = _ONE - versines
         decay = exponential(-self.decay * time)
         a = self.a * decay
         b = self.b * decay
@@ -217,7 +217,7 @@ class ClosedFormMotion(ContactMotion):
         ratio = np.where(inside, ratio, 0.0)
         rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
         now = time + arctangent(self.cosine, self.sine)
-        below = inside & (sine_and_cosine(now)[0] < ratio)
+        below = inside & (sine_and_versine(now)[0] < ratio)
         # The result precedes the crossing by more than the rounding error of the crossing.
         wait = np.mod(rising - now, 2 * np.pi) - 1e-9
         # Rounding must not postpone a crossing at the present time by a full turn.

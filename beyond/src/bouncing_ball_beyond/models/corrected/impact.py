@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.elementary import sine_and_cosine
+from bouncing_ball.numerics.elementary import sine_and_versine
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
 
@@ -69,7 +69,8 @@ def impact(
     (2.0, 1.0)
     """
     lam, psi, p = (np.asarray(x, dtype=float) for x in (amplitude, phase, arrival))
-    sine, cosine = sine_and_cosine(psi)
+    sine, versine = sine_and_versine(psi)
+    cosine = 1 - versine
     x = lam * cosine
     y = lam * sine
     speed = x - p
@@ -101,9 +102,10 @@ def meeting(
     (0.75, -2.0)
     """
     lam, phi, z = (np.asarray(x, dtype=float) for x in (amplitude, phase, velocity))
-    delay = signature(lam * sine_and_cosine(phi)[1] - z).delay
+    delay = signature(lam * (1 - sine_and_versine(phi)[1]) - z).delay
     for _ in range(0 if signature.is_constant else _ITERATIONS):
-        sine, cosine = sine_and_cosine(phi + delay)
+        sine, versine = sine_and_versine(phi + delay)
+        cosine = 1 - versine
         instant = signature(lam * cosine - (z - delay))
         # The speed changes by the load.
         slope = 1 - instant.d_delay * (1 - lam * sine)
@@ -129,4 +131,4 @@ def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
     """
     delay = hit.instant.delay
     phase = hit.phase - delay
-    return phase, hit.arrival + delay - np.asarray(amplitude) * sine_and_cosine(phase)[1]
+    return phase, hit.arrival + delay - np.asarray(amplitude) * (1 - sine_and_versine(phase)[1])

@@ -16,7 +16,7 @@ from bouncing_ball.paper.claims.formulas import (
     formulas,
     measured_restitution,
 )
-from bouncing_ball.periodic.explicit import SpringDamperBranch
+from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch
 from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {"samples": 16, "seed": 2011}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from circle import Circle
 
 from bouncing_ball.numerics.corrector import (
     NewtonSettings,
@@ -14,16 +15,6 @@ from bouncing_ball.numerics.corrector import (
 )
 
 EPS = np.finfo(float).eps
-
-
-class Circle:
-    """x² + p² = 1."""
-
-    def residual(self, y):
-        return np.sum(y * y, axis=-1, keepdims=True) - 1
-
-    def jacobian(self, y):
-        return 2 * y[..., np.newaxis, :]
 
 
 def test_newton_converges_to_the_intersection_with_a_plane():

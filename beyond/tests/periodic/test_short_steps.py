@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from circle import Circle
 
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball_beyond.periodic.orbits.short_steps import (
@@ -11,16 +12,6 @@ from bouncing_ball_beyond.periodic.orbits.short_steps import (
 )
 
 EPS = np.finfo(float).eps
-
-
-class Circle:
-    """x² + p² = 1."""
-
-    def residual(self, y):
-        return (y * y).sum(axis=-1, keepdims=True) - 1
-
-    def jacobian(self, y):
-        return 2 * y[..., np.newaxis, :]
 
 
 def test_no_step_is_longer_than_the_longest_and_its_direction_stays():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from circle import Circle
 from one_branch import continue_branch
 
 from bouncing_ball_beyond.periodic.orbits.domain_limits import DomainLimit, domain_limits
@@ -22,16 +23,6 @@ def test_the_limit_of_a_sign_is_bisected():
     for ends in (0.0, 1.0), (1.0, 0.0):
         found = event.locate(Line(), *(np.full(2, p) for p in ends))
         assert found.point == pytest.approx(np.full(2, 0.3), abs=1e-15)
-
-
-class Circle:
-    """The branch x² + p² = 1."""
-
-    def residual(self, y):
-        return np.sum(y * y, axis=-1, keepdims=True) - 1
-
-    def jacobian(self, y):
-        return 2 * y[..., np.newaxis, :]
 
 
 def test_the_limits_of_a_domain_are_found_to_the_last_digit():

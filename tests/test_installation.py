@@ -7,6 +7,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 import yaml
 
 import bouncing_ball
@@ -67,6 +68,7 @@ def refusals(commands):
     )
 
 
+@pytest.mark.long
 def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they_need():
     assert {"matplotlib", "snakemake", "yaml"} <= {*ABSENT}
     needs = [["diff", ".", "."], ["explain", "fig08.png"]]

@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -18,6 +19,7 @@ def test_the_catalog_finds_its_files_and_the_environment_that_they_name():
     assert environment and (ROOT / environment[1]).is_file()
 
 
+@pytest.mark.long
 def test_the_small_run_makes_what_its_page_says(fresh):
     page = (fresh.path / ".test" / "README.md").read_text(encoding="utf-8")
     (line,) = re.findall(r"^snakemake (.*)$", page, re.MULTILINE)

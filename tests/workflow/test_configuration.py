@@ -6,6 +6,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -31,6 +33,7 @@ def test_a_configuration_that_is_no_text_of_yaml_gives_one_line(complete):
         path.write_bytes(kept)
 
 
+@pytest.mark.long
 def test_results_are_a_folder_or_a_link_to_one(fresh, tmp_path):
     results = fresh.path / "results"
     assert not results.exists()
@@ -55,6 +58,7 @@ def test_the_package_of_another_checkout_is_refused(fresh, tmp_path):
     assert str(fresh.path / "src") in said
 
 
+@pytest.mark.long
 def test_a_python_whose_path_has_a_space_is_refused(fresh, tmp_path):
     venv = tmp_path / "a venv"
     (venv / "bin").mkdir(parents=True)

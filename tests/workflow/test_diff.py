@@ -80,6 +80,7 @@ def test_a_drifted_record_turns_diff_red_and_is_replaced_by_accept(recorded, mon
     assert recorded.git("status", "--porcelain") == ""
 
 
+@pytest.mark.long
 def test_a_study_that_fails_is_listed_and_all_else_is_made_and_compared(recorded):
     page = recorded.path / "results" / "diff" / "index.html"
     page.parent.mkdir()

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import pytest
 import yaml
 
 SNAKEFILE = """\
@@ -64,6 +65,7 @@ with logged(snakemake):
 """
 
 
+@pytest.mark.long
 def test_a_house_has_its_own_configuration_results_and_record(fresh):
     house = replace(fresh, path=fresh.path / "other", package=str(fresh.path / "src"))
     whole = yaml.safe_load((fresh.path / "config/config.yaml").read_text(encoding="utf-8"))

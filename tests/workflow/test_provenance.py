@@ -4,6 +4,8 @@ import os
 import subprocess
 from pathlib import Path
 
+import pytest
+
 from bouncing_ball.pipeline.artifact_files import CARRIERS
 from bouncing_ball.pipeline.provenance import explain, read_provenance
 from bouncing_ball.pipeline.sources import LIBRARIES
@@ -22,6 +24,7 @@ def test_every_artifact_carries_its_provenance(pristine):
         assert list(made["versions"]) == ["python", *LIBRARIES]
 
 
+@pytest.mark.long
 def test_another_configuration_is_named_and_its_command_gives_the_file(complete, monkeypatch):
     path = Path("results/figures/fig11.nc")
     monkeypatch.chdir(complete.path)

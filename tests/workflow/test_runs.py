@@ -1,5 +1,6 @@
 """Runs as a user sees them: targets by name, reproducible bytes, interruptions."""
 
+import os
 import re
 import shutil
 import signal
@@ -59,6 +60,7 @@ def test_a_run_touches_no_tracked_file(pristine, cloned):
     assert after == before
 
 
+@pytest.mark.long
 def test_a_killed_run_is_resumed_without_loss(fresh, pristine):
     names = ("fig11", "fig16", "fig12")
     files = [f"results/figures/{name}.nc" for name in names]
@@ -84,6 +86,7 @@ def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
     assert [name for name in after if after[name] != expected[name]] == []
 
 
+@pytest.mark.long
 def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
     values = {"elastic": 0.9, "plastic": 0.5}
 
@@ -96,7 +99,6 @@ def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
     # At the same time, each with its own results and its own comparison, of this artifact alone.
     with ThreadPoolExecutor() as pool:
         done = dict(zip(values, pool.map(run, values), strict=True))
-    last = "diff: the results differ from the record (exit status 1), see results/diff/index.html"
     for name, restitution in values.items():
         results = tmp_path / name / "results"
         assert read_dataset(results / "figures" / "fig11.nc").attrs["restitution"] == restitution
@@ -110,6 +112,8 @@ def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
         (cause,) = [line for line in lines if line.startswith("fig11: ")]
         assert cause.startswith(f"fig11: parameter changed, restitution 0.65 → {restitution}")
         assert lines[-1] == "1 with changed parameters. The results differ from the record."
+        page = os.path.relpath(results / "diff" / "index.html", fresh.path)
+        last = f"diff: the results differ from the record (exit status 1), see {page}"
         assert done[name].returncode == 1 and done[name].stderr.splitlines()[-1] == last
     assert not (fresh.path / "results").exists()
 

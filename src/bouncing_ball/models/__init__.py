@@ -7,7 +7,8 @@
 :mod:`.restitution`          impacts with a restitution coefficient (Eqs. 2, 9)
 :mod:`.spring_damper`        contacts with a spring and a damper (Eqs. 10-13, 23)
 :mod:`.permanent_contact`    the thresholds Λ_CR and Λ_SD (Eqs. 9, 28-36)
-:mod:`.history`              balls over time, from impact to impact
+:mod:`.simulation`           balls from impact to impact: the Poincaré map (Eq. 5)
+:mod:`.history`              balls over time: the calls ``simulate``, ``history``, ``drop``
 ============================ ==========================================================
 
 All quantities are dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, phases in radians. The

@@ -115,6 +115,13 @@ def orbits(
     amplitude : float
         Excitation amplitude Λ > 0.
 
+    Returns
+    -------
+    list of Orbit
+        Whether each is ``stable`` and ``admissible`` is among its numbers. On a stiff contact,
+        nϖ > 600, those of the longest contacts are not searched: a contact that lasts for a
+        hundred of its free oscillations is no impact.
+
     Raises
     ------
     NoOrbitError

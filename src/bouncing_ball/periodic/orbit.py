@@ -205,7 +205,8 @@ class Orbit(Batch):
 
         The apex of a flight is at z_b + z′_b²/2, by Eq. 14 from the height z_b of the release. If
         it reaches Λ, it is the greatest height, because a ball in contact is below the table and
-        thus below Λ. Otherwise the table may lift the ball higher during a long contact.
+        thus below Λ. Otherwise the table may lift the ball higher during a long contact. In an
+        orbit that is not admissible the ball may be above the table in contact, which is left out.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
         top = np.array(self.bounce_height + rising * rising / 2 + np.zeros(self.shape))

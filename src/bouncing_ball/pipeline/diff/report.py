@@ -6,6 +6,7 @@ beside it, whatever was compared; a run begins by removing both.
 """
 
 import base64
+import os
 from collections import Counter
 from collections.abc import Collection, Mapping
 from io import BytesIO
@@ -182,4 +183,6 @@ def write_reports(
     print(text, end="", flush=True)
     if not comparison.outcome.status:
         return ""
-    return f"diff: the results differ from the record (exit status 1), see {PAGE}"
+    # A run with `--directory` has a page of its own.
+    page = os.path.relpath(PAGE, house)
+    return f"diff: the results differ from the record (exit status 1), see {page}"

@@ -273,6 +273,11 @@ def test_the_start_is_corrected_at_a_fixed_parameter():
     assert branch.points[0] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
 
 
+def test_a_branch_may_start_at_a_fold():
+    start = np.array([0.0, 1.0])
+    assert solve_at(CIRCLE, start).tolist() == start.tolist()
+
+
 def circle_arc(control):
     event = Event("end", lambda y: y[..., 0] + 0.5, terminal=True)
     return along(CIRCLE, 1.0, 0.0, events=[event], control=control)

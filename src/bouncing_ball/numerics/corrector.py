@@ -129,10 +129,20 @@ def checked(found: Correction, residual: Callable[[np.ndarray], np.ndarray]) -> 
     """
     if not found.converged.any():
         return found
+    return found._replace(converged=found.converged & satisfies(residual, found.point))
+
+
+def satisfies(residual: Callable[[np.ndarray], np.ndarray], y: np.ndarray) -> np.ndarray:
+    """Whether points satisfy equations, up to what rounding leaves of them.
+
+    Examples
+    --------
+    >>> satisfies(lambda y: y - 4, np.array([[4.0], [4.0 + 1e-8]])).tolist()
+    [True, False]
+    """
     with np.errstate(all="ignore"):
-        defect = np.abs(residual(found.point)).max(axis=-1)
-        largest = _DEFECT * (1 + _norm(found.point)) ** 2
-    return found._replace(converged=found.converged & (defect <= largest))
+        defect = np.abs(residual(y)).max(axis=-1)
+        return defect <= _DEFECT * (1 + _norm(y)) ** 2
 
 
 def solve(

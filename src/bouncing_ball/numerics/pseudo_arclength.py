@@ -28,6 +28,7 @@ from bouncing_ball.numerics.corrector import (
     failure,
     newton,
     plane,
+    satisfies,
     tangent,
 )
 from bouncing_ball.numerics.steps import Attempt, State, StepControl, Way, WithEvents, end_at
@@ -60,6 +61,10 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     """
     found = newton(problem, guess, plane(np.eye(guess.size)[-1], guess))
     why = failure(problem, found)
+    # At a fold the parameter does not select the solution, which is the guess.
+    is_solution = satisfies(problem.residual, guess) and np.isfinite(problem.jacobian(guess)).all()
+    if why and is_solution:
+        return guess
     if why:
         raise ContinuationError(
             f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"

@@ -120,10 +120,14 @@ def _double_quotient(
     stiffness = (omega * omega)[short]
     power = s * s / 2
     total = power + 0j
-    before, of_poles, of_all = np.zeros_like(s), np.ones_like(s), np.ones_like(total)
+    before = np.zeros_like(s)
+    of_poles = np.ones_like(s)
+    of_all = np.ones_like(total)
     for k in range(1, _TERMS):
         # h_k of λ₊ and λ₋ alone, which are the roots of λ² + 2ζϖλ + ϖ² = 0, and then of all three.
-        before, of_poles = of_poles, -loss * of_poles - stiffness * before
+        following = -loss * of_poles - stiffness * before
+        before = of_poles
+        of_poles = following
         of_all = nu * of_all + of_poles
         power = power * s / (k + 2)
         total = total + of_all * power

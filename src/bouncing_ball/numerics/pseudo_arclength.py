@@ -61,15 +61,14 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     """
     found = newton(problem, guess, plane(np.eye(guess.size)[-1], guess))
     why = failure(problem, found)
+    if not why:
+        return found.point
     # At a fold the parameter does not select the solution, which is the guess.
-    is_solution = satisfies(problem.residual, guess) and np.isfinite(problem.jacobian(guess)).all()
-    if why and is_solution:
+    if satisfies(problem.residual, guess) and np.isfinite(problem.jacobian(guess)).all():
         return guess
-    if why:
-        raise ContinuationError(
-            f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"
-        )
-    return found.point
+    raise ContinuationError(
+        f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"
+    )
 
 
 RowsOf = Callable[[Any], WithEvents]

@@ -93,7 +93,8 @@ release='displacement')
         return required_orbit(ball, family, lam, branch_side)
     from bouncing_ball.drawing.result import Result
 
-    families, amplitudes = grid.row("n"), grid.row("amplitude")
+    families = grid.row("n")
+    amplitudes = grid.row("amplitude")
     found = explicit_branch(ball.row(grid)).orbit(families, amplitudes, branch_side)
     names = [name for name in OBSERVABLES if name != "amplitude"]
     columns = {name: getattr(found, name) for name in (*names, "stable", "admissible")}

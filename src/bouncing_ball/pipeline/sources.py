@@ -74,7 +74,8 @@ def without_remarks(code: str) -> str:
     for node in statements(parsed(code.encode()).body):
         if not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
             continue
-        first, last = node.lineno - 1, node.end_lineno or node.lineno
+        first = node.lineno - 1
+        last = node.end_lineno or node.lineno
         around = lines[first][: node.col_offset] + lines[last - 1][node.end_col_offset :]
         if isinstance(node.value.value, str) and not around.strip():
             lines[first:last] = [b""] * (last - first)

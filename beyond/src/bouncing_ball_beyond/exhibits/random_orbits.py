@@ -9,6 +9,9 @@ from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
+# The smallest share of the distance from the saddle-node, as a power of ten.
+_NEAREST = -8.0
+
 
 def random_orbits(
     size: int, seed: int | Sequence[int], release: Release, places: tuple[float, float] = (0.0, 1.0)
@@ -48,10 +51,6 @@ def random_orbits(
     lam = low + rng.uniform(*places, size) * (high - low)
     zeta = damping_ratio(r, release)
     return n, zeta, lam, rng
-
-
-# The smallest share of the distance from the saddle-node, as a power of ten.
-_NEAREST = -8.0
 
 
 def half_next_to_saddle_node(

@@ -46,7 +46,8 @@ from bouncing_ball.periodic.orbit import (
 from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch
 
 LARGEST_STEP = 0.1
-"""Default of the largest step in arclength."""
+"""Default of the largest step in arclength: half of that of the paper's figures, for contacts of
+which nothing is known beforehand."""
 # The places of φ, z′_i, ϖτ_b and Λ in y.
 _MEASURED = [0, 1, 2, 6]
 # A branch ends at this speed of the impact or this flight time, and not at 0. Where the orbit
@@ -230,7 +231,9 @@ class PaperEquations:
         return Orbit(self.contact, self.n, amplitude, phase, duration, impact)
 
     def point(self, orbit: Orbit) -> np.ndarray:
-        """y of orbits, of their shape with a last axis."""
+        """y of orbits, of their shape with a last axis: A and B of Eq. 12 follow from the start of
+        the contact, Eqs. 21 and 22.
+        """
         omega = self.contact.frequency_ratio
         zeta = self.contact.damping_ratio
         lam = np.asarray(orbit.amplitude)

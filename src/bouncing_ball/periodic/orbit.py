@@ -55,6 +55,9 @@ _SAME = 1e-6
 _WITHIN = np.union1d(np.linspace(0, 1, 160)[1:], np.geomspace(1e-6, 1, 160))
 _NO_MAXIMUM = 1.0
 
+Values = Any
+"""A number for a single orbit, and an array for a row of them; no type of numpy is both."""
+
 
 class Side(StrEnum):
     """Side of the saddle-node on which an orbit lies; another name raises ModelError."""
@@ -133,11 +136,11 @@ class Orbit(Batch):
     """
 
     model: Model
-    n: Any
-    amplitude: Any
-    phase: Any
-    contact_duration: Any
-    impact_velocity: Any
+    n: Values
+    amplitude: Values
+    phase: Values
+    contact_duration: Values
+    impact_velocity: Values
 
     def __repr__(self) -> str:
         values = (
@@ -153,12 +156,12 @@ class Orbit(Batch):
         return np.broadcast_shapes(self.model.shape, *map(np.shape, numbers))
 
     @property
-    def exists(self) -> Any:
+    def exists(self) -> Values:
         """Whether there is an orbit."""
         return np.isfinite(self.phase)
 
     @property
-    def flight_time(self) -> Any:
+    def flight_time(self) -> Values:
         """T, the time from the release to the next impact.
 
         It is τ_2 - τ_b = 2πn - D, because τ_i = 0 (Eq. 18), τ_2 = τ_i + 2πn (Eq. 19) and D = τ_b;
@@ -167,40 +170,40 @@ class Orbit(Batch):
         return 2 * np.pi * self.n - self.contact_duration
 
     @property
-    def release_phase(self) -> Any:
+    def release_phase(self) -> Values:
         """The table's phase φ + τ_b at the release."""
         return self.phase + self.contact_duration
 
     @property
-    def bounce_velocity(self) -> Any:
+    def bounce_velocity(self) -> Values:
         """Absolute velocity at the release, z′_b = z′_i + 2πn - τ_b (Eq. 27)."""
         return self.impact_velocity + self.flight_time
 
     @property
-    def relative_impact_velocity(self) -> Any:
+    def relative_impact_velocity(self) -> Values:
         """δ′ = z′_i - w′_i at the start of contact, negative."""
         return self.impact_velocity - table(self.phase, self.amplitude)[0]
 
     @property
-    def relative_bounce_velocity(self) -> Any:
+    def relative_bounce_velocity(self) -> Values:
         """δ′ = z′_b - w′_b at the release, positive."""
         return self.bounce_velocity - table(self.release_phase, self.amplitude)[0]
 
     @property
-    def apparent_restitution(self) -> Any:
+    def apparent_restitution(self) -> Values:
         """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17); NaN where the impact grazes."""
         closing = np.asarray(self.relative_impact_velocity)
         return -self.relative_bounce_velocity / np.where(closing == 0, np.nan, closing)
 
     @property
-    def bounce_height(self) -> Any:
+    def bounce_height(self) -> Values:
         """Absolute height z_b at the release, from which the flight leads back to Λ sin φ."""
         _, landing = table(self.phase, self.amplitude)
         mean_velocity = (self.bounce_velocity + self.impact_velocity) / 2
         return landing - mean_velocity * self.flight_time
 
     @property
-    def max_height(self) -> Any:
+    def max_height(self) -> Values:
         """Greatest absolute height z over the orbit, in flight or in contact: max z of Eq. 37.
 
         The apex of a flight is at z_b + z′_b²/2, by Eq. 14 from the height z_b of the release. If
@@ -220,7 +223,7 @@ class Orbit(Batch):
         return top[()]
 
     @property
-    def stable(self) -> Any:
+    def stable(self) -> Values:
         """Whether both multipliers lie inside the unit circle: asymptotic stability.
 
         By Jury's conditions ``|det| < 1`` and ``1 ∓ tr + det > 0``. A determinant that is 1 up to
@@ -231,7 +234,7 @@ class Orbit(Batch):
         return inside & np.all([kind.test(trace, determinant) > 0 for kind in Bifurcation], axis=0)
 
     @property
-    def admissible(self) -> Any:
+    def admissible(self) -> Values:
         """Whether the simulated ball follows the orbit, without an earlier release or landing.
 
         The events of the simulation are certified. The result is False where there is no orbit.
@@ -273,7 +276,7 @@ def _highest(
 # The motion.
 
 
-def contact_path(orbit: Orbit, time: ArrayLike) -> tuple[Any, Any]:
+def contact_path(orbit: Orbit, time: ArrayLike) -> tuple[Values, Values]:
     """Height z and velocity z′ at times 0 ≤ s ≤ τ_b in the contact (Eqs. 12 and 13)."""
     start = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
     gap, rate = orbit.model.in_contact(np.asarray(time), *start)
@@ -281,7 +284,7 @@ def contact_path(orbit: Orbit, time: ArrayLike) -> tuple[Any, Any]:
     return gap + level, rate + of_table
 
 
-def flight_path(orbit: Orbit, time: ArrayLike) -> tuple[Any, Any]:
+def flight_path(orbit: Orbit, time: ArrayLike) -> tuple[Values, Values]:
     """Height and velocity in the flight, at times τ since the impact.
 
     In the paper, with the release at τ_b and the bouncing-off velocity z′_b ::
@@ -294,7 +297,7 @@ def flight_path(orbit: Orbit, time: ArrayLike) -> tuple[Any, Any]:
     return orbit.bounce_height + (orbit.bounce_velocity + velocity) / 2 * since, velocity
 
 
-def path(orbit: Orbit, time: ArrayLike) -> tuple[Any, Any]:
+def path(orbit: Orbit, time: ArrayLike) -> tuple[Values, Values]:
     """Height and velocity at any time since the impact, with the period 2πn.
 
     At the time of an impact without duration, the velocity is that after the impact.

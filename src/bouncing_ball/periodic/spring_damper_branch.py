@@ -383,7 +383,7 @@ class SpringDamperBranch:
         return branch_point(self._searched(search, n, amplitude), self.model, n).orbit
 
     def bifurcation(self, kind: Bifurcation, n: ArrayLike) -> Orbit:
-        """The orbits at a bifurcation.
+        """The orbits at a bifurcation: Eqs. 23-26 with a multiplier at 1 or at -1.
 
         Examples
         --------

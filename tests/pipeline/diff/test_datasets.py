@@ -20,7 +20,7 @@ from bouncing_ball.pipeline.diff.datasets import (
     pointwise,
     span,
 )
-from bouncing_ball.pipeline.diff.outcome import Outcome
+from bouncing_ball.pipeline.diff.outcome import Outcome, Whole
 
 
 @pytest.fixture(scope="module")
@@ -152,6 +152,27 @@ def test_another_form_of_a_variable_is_a_changed_structure(change, told):
     rows = differing(record, change(record))
     assert told in [row.told for row in rows]
     assert {row.outcome for row in rows} == {Outcome.STRUCTURE}
+
+
+def test_words_come_first_and_then_a_defect_that_exceeds_its_budget():
+    def dataset(last, name):
+        columns = {
+            "height": ("t", [1.0, last], {"budget": 1e-10}),
+            "residual": ("t", [0.0, 0.01 * last], {"budget": 1e-12, "scale": "1"}),
+            "verdict": ("claim", ["right", "right" if last == 2 else "wrong"]),
+        }
+        return xr.Dataset(columns, coords={"claim": ["one", name]})
+
+    rows = Whole("", tuple(differing(dataset(2.0, "two"), dataset(3.0, "two")))).moved
+    assert [row.name for row in rows] == ["verdict", "residual", "height"]
+    new = xr.Dataset(coords={"claim": ["one", "fold", "two"]}).merge(
+        dataset(2.0, "two").drop_dims("claim")
+    )
+    rows = Whole("", tuple(differing(dataset(2.0, "two"), new))).moved
+    assert (
+        rows[0].told
+        == "claim: text, claim: 2 (coordinate) → text, claim: 3 (coordinate); new: fold"
+    )
 
 
 def test_a_budget_that_is_raised_with_the_change_allows_nothing():

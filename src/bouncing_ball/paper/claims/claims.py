@@ -90,6 +90,8 @@ def _row(
     explained_by = name_of(claim.explanation) if claim.explanation else ""
     needs_none = finding.verdict not in (Verdict.DIFFERS, Verdict.CONTRADICTED)
     return {
+        # First, as the comparison of two datasets tells their words in this order.
+        "verdict": finding.verdict,
         "item": claim.item,
         "statement": claim.statement,
         "remark": claim.remark,

@@ -3,9 +3,10 @@
 Every dataset has the parameters among its attributes, and every dataset and picture its provenance:
 the digests of the code that made it, the versions of the libraries, and the files it was made from.
 A parameter that changed is the cause by itself. Otherwise the causes are other inputs, other code,
-and other versions of the libraries that compute and draw. Of code, the files that the present
-change touches come first, which are not committed or not in the main branch; then those that differ
-since the record was made. If these are many, the age of the record says more than their names.
+and other versions of the libraries that compute and draw. Of code, the files are named that the
+present change touches, which are not committed or not in the main branch, and the others counted
+that differ since the record was made. If the present change touches none, the others are named; if
+these are many, the age of the record says more than their names.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -13,13 +14,13 @@ from typing import Any
 
 from bouncing_ball.pipeline.diff.datasets import attribute_rows
 from bouncing_ball.pipeline.diff.outcome import Outcome
+from bouncing_ball.pipeline.diff.texts import some
 from bouncing_ball.pipeline.provenance import git
 from bouncing_ball.pipeline.sources import REPOSITORY, changed_files
 
 _LIBRARIES = ("numpy", "scipy", "matplotlib")
 _MAIN = ("origin/HEAD", "origin/main", "main", "master")
-# More names of artifacts than these are counted, and more files of code name none.
-_NAMED = 4
+# Of more files of code none is named, unless the present change touches it.
 _FILES = 10
 
 
@@ -36,34 +37,21 @@ def touched_files() -> frozenset[str]:
 
 def suspects(made: Sequence[Mapping[str, Any]], touched: Collection[str]) -> list[str]:
     """The files of code that made an artifact and differ, if its parameters do not: those of the
-    present change first, and of many files only these.
+    present change, or if there are none all of a few.
 
     ``made`` is the provenance in the record and the new one.
 
     Examples
     --------
     >>> made = [{"code": f"{digest} a.py\\n{digest} b.py"} for digest in ("1f0e", "2a2a")]
-    >>> suspects(made, {"b.py", "c.py"})
-    ['b.py', 'a.py']
+    >>> suspects(made, {"b.py", "c.py"}), suspects(made, {"c.py"})
+    (['b.py'], ['a.py', 'b.py'])
     """
     if made[0].get("parameters") != made[1].get("parameters"):
         return []
     files = changed_files(*(side.get("code", "") for side in made))
-    first = [file for file in files if file in touched]
-    others = [file for file in files if file not in touched]
-    return first if len(files) > _FILES else first + others
-
-
-def some(names: Sequence[str]) -> str:
-    """The first names, and how many there are more.
-
-    Examples
-    --------
-    >>> some(["fig05", "fig06", "fig08", "fig09", "fig10"])
-    'fig05, fig06, fig08, fig09 and 1 more'
-    """
-    more = len(names) - _NAMED
-    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+    of_change = [file for file in files if file in touched]
+    return of_change or (files if len(files) <= _FILES else [])
 
 
 def causes(
@@ -83,8 +71,8 @@ def causes(
     Examples
     --------
     >>> made = [{"versions": {"numpy": number}} for number in ("2.2.0", "2.3.1")]
-    >>> causes(made, ["a.py"], ["fig14"])
-    ['made from fig14', 'changed code, a.py', 'other numpy, 2.2.0 → 2.3.1']
+    >>> causes(made, [], ["fig14"])
+    ['made from fig14', 'other numpy, 2.2.0 → 2.3.1']
     """
     parameters = [side.get("parameters", {}) for side in made]
     if changed := attribute_rows(parameters, Outcome.PARAMETERS):
@@ -92,8 +80,10 @@ def causes(
         return [f"parameter{'s' if len(changed) > 1 else ''} changed, {told}"]
     found = [f"made from {some(inputs)}"] if inputs else []
     files = changed_files(*(side.get("code", "") for side in made))
+    others = len(files) - len(code)
     if code:
-        found.append(f"changed code, {some(code)}")
+        since = f", and {others} more since the record" if others else ""
+        found.append(f"changed code, {some(code)}{since}")
     elif files and not inputs:
         since = f"{made[0].get('commit')}..HEAD"
         age = git(REPOSITORY, "rev-list", "--count", "--end-of-options", since) or "many"

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.variables import IGNORED, ROUNDING, Budget
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row
-from bouncing_ball.pipeline.diff.texts import excerpt
+from bouncing_ball.pipeline.diff.texts import excerpt, some
 from bouncing_ball.pipeline.provenance import TEXTUAL, parameters_of
 
 # Number of samples by which a point may slide along a curve.
@@ -222,6 +222,24 @@ def _form(data: xr.Dataset, name: str) -> str:
     return ", ".join([kind, *sizes]) + (" (coordinate)" if name in data.coords else "")
 
 
+def _labels(name: str, record: xr.Dataset, new: xr.Dataset) -> str:
+    """The labels that only one of two coordinates has.
+
+    Examples
+    --------
+    >>> record, new = (xr.Dataset(coords={"claim": x}) for x in (["law", "map"], ["law", "fold"]))
+    >>> _labels("claim", record, new)
+    '; new: fold; gone: map'
+    """
+    if not all(name in data.dims and data[name].dtype.kind in "OSUT" for data in (record, new)):
+        return ""
+    old, now = (data[name].values.tolist() for data in (record, new))
+    added = [label for label in now if label not in old]
+    lost = [label for label in old if label not in now]
+    named = {"new": added, "gone": lost}
+    return "".join(f"; {word}: {some(labels)}" for word, labels in named.items() if labels)
+
+
 def attribute_rows(
     both: Sequence[Mapping[Any, Any]], outcome: Outcome, about: str = ""
 ) -> list[Row]:
@@ -246,16 +264,18 @@ def attribute_rows(
 
 
 def _place(variable: xr.DataArray, index: Sequence[int]) -> str:
-    """Coordinates of an entry, or its indices where a dimension has none.
+    """Coordinates of an entry, or its indices where a dimension has none; a coordinate has no place
+    along itself.
 
     Examples
     --------
     >>> _place(xr.DataArray([[1.0, 2.0]], {"t": [0.0, 0.5]}, ("case", "t")), (0, 1))
     ' at case = 0, t = 0.5'
     """
-    labels = [variable[name].values[k] for name, k in zip(variable.dims, index, strict=True)]
-    texts = [f"{x:.6g}" if isinstance(x, float) else str(x) for x in labels]
-    named = [f"{name} = {text}" for name, text in zip(variable.dims, texts, strict=True)]
+    places = zip(variable.dims, index, strict=True)
+    others = [(name, k) for name, k in places if name != variable.name]
+    labels = [(name, variable[name].values[k]) for name, k in others]
+    named = [f"{name} = {f'{x:.6g}' if isinstance(x, float) else x}" for name, x in labels]
     return f" at {', '.join(named)}" if named else ""
 
 
@@ -296,13 +316,15 @@ def _variable_rows(name: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
         title = name if is_words else old.attrs.get("long_name", name)
         if old.dtype.kind in "fiu":
             before, after = map(float, entries)
-            # A number below a thousandth of the range is compared with this range. A defect is
-            # not: its size is noise.
+            # A number below a thousandth of the range is compared with this range. Of a defect
+            # this would be noise: it is as large as it exceeds its budget.
             whole = abs(before) if abs(before) > _TINY * span(old) else span(old)
-            change = (after - before) / (1.0 if budget.scale else whole)
-            if math.isfinite(change):
+            change = (after - before) / whole
+            if budget.scale:
+                size = float(share[place])
+            elif math.isfinite(change):
                 size = abs(change)
-                title = title if budget.scale else f"{100 * change:+.2g} % in {title}"
+                title = f"{100 * change:+.2g} % in {title}"
         told = f"{title}{_place(old, place)}: {_told(*entries)}"
         outcome = Outcome.DRIFTED if share[place] > 1 else Outcome.ROUNDING
         told += count if old.size > 1 and not is_words else ""
@@ -339,7 +361,8 @@ def compare_datasets(record: xr.Dataset, new: xr.Dataset) -> list[Row]:
             rows += attribute_rows(attributes, Outcome.STRUCTURE, f" of {name}")
         if forms[0] != forms[1]:
             told = f"{name}: {' → '.join(form or 'nothing' for form in forms)}"
-            rows.append(Row(name, Outcome.STRUCTURE, told))
+            labels = _labels(name, record, new)
+            rows.append(Row(name, Outcome.STRUCTURE, told + labels, is_words=bool(labels)))
             continue
         for row in _variable_rows(name, record, new):
             is_secondary = is_other and row.outcome is not Outcome.IDENTICAL

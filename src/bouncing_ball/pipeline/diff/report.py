@@ -16,9 +16,9 @@ from urllib.parse import quote
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.errors import escaped, printable
 from bouncing_ball.pipeline.artifact_files import DATASET
-from bouncing_ball.pipeline.diff.causes import some
 from bouncing_ball.pipeline.diff.compare import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Outcome, Whole
+from bouncing_ball.pipeline.diff.texts import some
 from bouncing_ball.pipeline.run import PAGE
 
 _SENTENCES = (
@@ -67,9 +67,8 @@ def told_files(artifact: Whole) -> list[Whole]:
 def headline(comparison: Whole) -> list[str]:
     r"""The files of code in which the causes may be, and a line for each artifact that differs.
 
-    A file comes first if it is the first suspect of more artifacts, and then if it made more of
-    them. A line has the cause and what
-    moved most, of words everything.
+    A file comes first if it made more of them. A line has the cause and what moved most, of words
+    everything.
 
     Examples
     --------
@@ -82,10 +81,7 @@ def headline(comparison: Whole) -> list[str]:
     two: other; +9 % in phase; and 1 more
     """
     count = Counter(file for artifact in comparison.moved for file in artifact.code)
-    # The files of the present change are the first ones of each artifact.
-    first = Counter(artifact.code[0] for artifact in comparison.moved if artifact.code)
-    ranked = sorted(count, key=lambda file: (-first[file], -count[file]))
-    named = [f"{file} ({count[file]})" for file in ranked]
+    named = [f"{file} ({number})" for file, number in count.most_common()]
     lines = [f"changed code (artifacts made by it that differ): {some(named)}"] if named else []
     for artifact in comparison.moved:
         rows = [row for file in told_files(artifact) for row in file.moved]

@@ -1,6 +1,7 @@
 """The comparison of texts line by line: words exactly, numbers as far as their data allow."""
 
 import re
+from collections.abc import Sequence
 from decimal import Decimal
 from difflib import SequenceMatcher
 from itertools import takewhile, zip_longest
@@ -13,6 +14,8 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d{1,4})?")
 
 # Of longer texts, lines that occur often are not matched; it would take as long as for ever.
 _LONG = 4000
+# More names in a list than these are counted.
+_NAMED = 4
 # Characters of a line that are shown, and of those some before the difference.
 _SHOWN = 60
 _BEFORE = 20
@@ -52,6 +55,18 @@ def may_be_rounding(old: str, new: str) -> bool:
     return NUMBER.split(old) == NUMBER.split(new) and all(
         map(_same_to_the_last_digit, NUMBER.findall(old), NUMBER.findall(new))
     )
+
+
+def some(names: Sequence[str]) -> str:
+    """The first names, and how many there are more.
+
+    Examples
+    --------
+    >>> some(["fig05", "fig06", "fig08", "fig09", "fig10"])
+    'fig05, fig06, fig08, fig09 and 1 more'
+    """
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def excerpt(record: str | None, new: str | None) -> str:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from bouncing_ball.pipeline.artifact_files import DATASET
+
 
 class Outcome(StrEnum):
     """The result of comparing an artifact, a file or a part of a file with the record.
@@ -97,8 +99,15 @@ class Whole:
 
     @property
     def place(self) -> tuple[bool, int, float]:
-        """The place among others, which is that of the first part that differs."""
-        return self.moved[0].place
+        """The place among others, which is that of the first part that is told."""
+        return self.told[0].place
+
+    @property
+    def told(self) -> list[Any]:
+        """The parts whose differences are told: of an artifact its dataset, if this differs,
+        because pictures and tables say the same.
+        """
+        return [part for part in self.moved if part.name.endswith(DATASET)] or self.moved
 
     @property
     def moved(self) -> list[Any]:

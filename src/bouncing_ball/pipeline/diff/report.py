@@ -15,7 +15,6 @@ from urllib.parse import quote
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.errors import escaped, printable
-from bouncing_ball.pipeline.artifact_files import DATASET
 from bouncing_ball.pipeline.diff.compare import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Outcome, Whole
 from bouncing_ball.pipeline.diff.texts import some
@@ -56,14 +55,6 @@ def sentence(comparison: Whole) -> str:
     return f"{', '.join(named)}. {_SENTENCES[comparison.outcome.status]}"
 
 
-def told_files(artifact: Whole) -> list[Whole]:
-    """The files of an artifact whose differences are told.
-
-    Pictures and tables say the same as their dataset, so that they are left out if it differs.
-    """
-    return [file for file in artifact.moved if file.name.endswith(DATASET)] or artifact.moved
-
-
 def headline(comparison: Whole) -> list[str]:
     r"""The files of code in which the causes may be, and a line for each artifact that differs.
 
@@ -84,7 +75,7 @@ def headline(comparison: Whole) -> list[str]:
     named = [f"{file} ({number})" for file, number in count.most_common()]
     lines = [f"changed code (artifacts made by it that differ): {some(named)}"] if named else []
     for artifact in comparison.moved:
-        rows = [row for file in told_files(artifact) for row in file.moved]
+        rows = [row for file in artifact.told for row in file.moved]
         # The cause has told some of them.
         told = [row for row in rows if row.told and row.told not in artifact.cause]
         shown = [row for row in told if row.is_words][:_NAMED] or told[:1]
@@ -146,7 +137,6 @@ def differences_html(comparison: Whole) -> str:
         comparison=comparison,
         sentence=sentence(comparison),
         headline=headline(comparison),
-        told_files=told_files,
         anchor=lambda name: quote(escaped(name)),
         small=_small,
     )

@@ -300,6 +300,14 @@ def test_a_picture_that_other_code_has_drawn_from_the_same_data_names_this_code(
     assert pair.artifact("fig05").cause == "changed code, drawing/style.py"
 
 
+def test_a_picture_of_data_that_other_code_moved_within_their_budgets_names_this_code(pair):
+    data = pair.dataset("fig05").assign_attrs(provenance_code=code("1f0e", "orbit.py"))
+    pair.write("fig05", data, "record")
+    pair.move(by=1e-14, provenance_code=code("2a2a", "orbit.py"))
+    pair.draw(PNG, Image.new("RGB", (12, 9), "black"))
+    assert pair.artifact("fig05").cause == "changed code, orbit.py"
+
+
 def test_a_white_picture_is_no_picture_by_another_matplotlib(pair):
     with Image.open(pair.record / PNG) as picture:
         size = picture.size

@@ -133,8 +133,10 @@ class _Comparison:
         rows = [row.told for file in moved for row in file.parts if row.outcome is whole.outcome]
         if not moved or whole.outcome.rank >= Outcome.STALE.rank:
             return replace(whole, cause=rows[0] if moved else "")
-        # Of the first file that differs, which is the dataset or else a picture.
-        made = self.made[next((file.name for file in moved if file.name in self.made), "")]
+        # Of the first file that is not identical: a dataset that moved within its budgets, too, may
+        # be why a picture changed.
+        other = [file.name for file in whole.parts if file.outcome is not Outcome.IDENTICAL]
+        made = self.made[next((name for name in other if name in self.made), "")]
         code = suspects(made, self.touched)
         inputs = [x for x in self.inputs(name) if not self.dataset(x).outcome.agrees and x != name]
         kind = _KINDS.get(PurePosixPath(moved[0].name).suffix, "the text changed")

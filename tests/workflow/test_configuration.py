@@ -11,15 +11,20 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_a_wrong_configuration_stops_the_workflow_and_changes_no_file(complete):
+def test_a_wrong_configuration_stops_the_workflow_and_changes_no_file_but_an_earlier_page(complete):
+    page = complete.path / "results/diff/index.html"
+    page.parent.mkdir(exist_ok=True)
+    page.write_text("<p>Everything agrees.</p>", encoding="utf-8")
     before = {k: (complete.path / k).stat().st_mtime_ns for k in complete.contents()}
-    del before["config/config.yaml"]
+    before.pop("config/config.yaml")
+    before = {name: time for name, time in before.items() if not name.startswith("results/diff/")}
     # Snakemake itself would take the last one without a word.
     with (complete.path / "config/config.yaml").open("a") as file:
         file.write("release: force\n")
     assert complete.refusal().startswith("config/config.yaml: duplicate key 'release' in line ")
     after = {k: (complete.path / k).stat().st_mtime_ns for k in before}
     assert after == before
+    assert not page.exists()
 
 
 def test_a_configuration_that_is_no_text_of_yaml_gives_one_line(complete):

@@ -8,6 +8,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+from bouncing_ball.pipeline.run import remove_reports
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
 # Snakemake starts jobs with the path of Python without quotes.
@@ -48,6 +49,7 @@ def here(path):
     try:
         read_yaml(path)
     except ConfigurationError as error:
+        remove_reports()
         sys.exit(f"{path}: {error}")
     return path
 
@@ -59,7 +61,11 @@ def check(model):
     try:
         check_configuration(map(os.path.relpath, workflow.configfiles), config, model)
     except ConfigurationError as error:
-        sys.exit(error)
+        from bouncing_ball.pipeline.diff.causes import code_in_place_of
+
+        remove_reports()
+        typed = workflow.config_settings.config
+        sys.exit(f"{error}{'' if typed else code_in_place_of(workflow.configfiles)}")
 
 
 # What the dataset of an artifact says of itself.

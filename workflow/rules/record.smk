@@ -7,7 +7,6 @@ from bouncing_ball.pipeline.run import (
     lines_by_reason,
     names_of_artifacts,
     not_made,
-    remove_reports,
     requested,
 )
 

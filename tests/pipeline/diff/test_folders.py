@@ -14,10 +14,11 @@ from PIL import Image
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.pipeline.diff import causes as module
 from bouncing_ball.pipeline.diff import compare
-from bouncing_ball.pipeline.diff.causes import touched_files
+from bouncing_ball.pipeline.diff.causes import code_in_place_of, touched_files
 from bouncing_ball.pipeline.diff.compare import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Outcome
 from bouncing_ball.pipeline.diff.report import differences_html, to_terminal
+from bouncing_ball.pipeline.sources import REPOSITORY
 
 ROOT = Path(__file__).resolve().parents[3]
 PNG = "figures/fig05.png"
@@ -291,6 +292,20 @@ def test_the_present_change_is_what_is_not_committed_or_not_in_the_main_branch(
     for name in ("edited.py", "new one.py"):
         (tmp_path / name).write_text("new", encoding="utf-8")
     assert touched_files() - {""} == {"committed.py", "edited.py", "new one.py"}
+
+
+def test_where_code_has_changed_and_the_configuration_has_not_its_refusal_names_the_code(
+    monkeypatch,
+):
+    files = [REPOSITORY / "config" / "config.yaml"]
+    code = "src/bouncing_ball/models/flight.py"
+    for touched, said in (
+        ({code, "tests/x.py"}, f"\nThe configuration has not changed, but code has: {code}"),
+        ({code, "config/config.yaml"}, ""),
+        ({"tests/x.py"}, ""),
+    ):
+        monkeypatch.setattr(module, "touched_files", lambda found=touched: frozenset(found))
+        assert code_in_place_of(files) == said
 
 
 def test_a_picture_that_other_code_has_drawn_from_the_same_data_names_this_code(pair):

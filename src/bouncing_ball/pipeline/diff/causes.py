@@ -9,7 +9,9 @@ that differ since the record was made. If the present change touches none, the o
 these are many, the age of the record says more than their names.
 """
 
+import os
 from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from bouncing_ball.pipeline.diff.datasets import attribute_rows
@@ -33,6 +35,18 @@ def touched_files() -> frozenset[str]:
     changed = git(REPOSITORY, "diff", "--name-only", "-z", base) or ""
     new = git(REPOSITORY, "ls-files", "--others", "--exclude-standard", "-z") or ""
     return frozenset(f"{changed}{new}".split("\0"))
+
+
+def code_in_place_of(configuration: Collection[Path]) -> str:
+    """A line on the code that the present change touches, if it touches none of the files of a
+    configuration, whose values a change of the code may have made impossible; otherwise nothing.
+    """
+    touched = touched_files()
+    files = {os.path.relpath(path, REPOSITORY) for path in configuration}
+    code = sorted(file for file in touched if "/src/" in f"/{file}")
+    if not code or files & touched:
+        return ""
+    return f"\nThe configuration has not changed, but code has: {some(code)}"
 
 
 def suspects(made: Sequence[Mapping[str, Any]], touched: Collection[str]) -> list[str]:

@@ -96,6 +96,12 @@ def test_what_is_no_orbit_is_refused(refusal):
         bb.orbit_near(RIGID, amplitude=1.6, phases=[1.0, 2.0], velocities=[-3.0])
 
 
+@pytest.mark.parametrize("given", [{"impacts": 2}, {"impacts": 2, "periods": 2}, {"periods": 2}])
+def test_orbit_points_to_the_search_of_orbits_with_several_impacts(given):
+    with pytest.raises(TypeError, match=r"orbits\(\) finds those with several impacts"):
+        bb.orbit(RIGID, amplitude=1.6, **given)
+
+
 def test_an_orbit_is_true_if_it_exists(refusal):
     fold, doubling = bb.limits(bb.spring_damper(damping_ratio=0.9, frequency_ratio=0.5), 1)
     assert bool(fold) == fold.exists and bool(doubling) == doubling.exists

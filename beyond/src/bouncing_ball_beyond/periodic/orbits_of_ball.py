@@ -4,8 +4,10 @@ and orbits with several impacts.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from functools import wraps
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,6 +41,8 @@ from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 if TYPE_CHECKING:
     from bouncing_ball_beyond.drawing.result import Result
 
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
 
 IMPACTS = count(100)
 """The range of the number of impacts of an orbit that is sought."""
@@ -54,6 +58,22 @@ class TwoLimits(NamedTuple):
         return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
 
 
+def _pointing_to_orbits(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """A call that says who finds orbits with several impacts."""
+
+    @wraps(call)
+    def checked(*given: _Given.args, **named: _Given.kwargs) -> _Found:
+        if "impacts" in named or "periods" in named:
+            raise TypeError(
+                "orbit() finds an n-T orbit, with one impact: orbits() finds those with several "
+                "impacts and periods"
+            )
+        return call(*given, **named)
+
+    return checked
+
+
+@_pointing_to_orbits
 @suggesting
 @as_in(calls.orbit)
 def orbit(

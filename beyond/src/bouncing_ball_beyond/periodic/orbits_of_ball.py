@@ -108,13 +108,16 @@ release='displacement')
     if _is_grid(given, family, lam):
         # Imported here, because a single orbit needs no labels, and importing xarray takes longer
         # than computing the orbit.
+        from bouncing_ball_beyond.periodic.branches.observables import columns
         from bouncing_ball_beyond.periodic.places import dataset_of_places
+
+        names = [name for name in OBSERVABLES if name != "amplitude"]
 
         def found(one: Ball, n: Any, amplitude: Any) -> dict[str, Any]:
             model = one.at_orbit(n, amplitude, branch_side)
-            return _observables(n_t.orbit(model, n, amplitude, branch_side))
+            return columns(n_t.orbit(model, n, amplitude, branch_side), *names)
 
-        none = _observables(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan))
+        none = columns(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan), *names)
         return dataset_of_places("orbit", given, {"n": family, "amplitude": lam}, found, none)
     model = given.at_orbit(family, lam, branch_side)
     return n_t.require_orbit(model, family, lam, branch_side)
@@ -301,12 +304,6 @@ def permanent_contact(ball: Ball) -> float | Result:
 def _is_grid(ball: Ball, *arguments: Any) -> bool:
     """Whether an argument or a parameter of the ball is an array."""
     return any(is_array(value) for value in (*arguments, *ball.parameters.values()))
-
-
-def _observables(orbit: Orbit) -> dict[str, Any]:
-    """The observables of orbits except Λ, and whether they are stable and admissible."""
-    values = {name: getattr(orbit, name) for name in OBSERVABLES if name != "amplitude"}
-    return values | {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
 
 
 def _both_limits(ball: Ball, n: Any) -> dict[str, Any]:

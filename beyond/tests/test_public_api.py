@@ -39,6 +39,10 @@ class TestPublicFace(PublicFace):
     bb = bb
 
 
+def test_only_public_names_are_listed():
+    assert dir(bb) == sorted([*bb.__all__, "__version__"])
+
+
 def test_help_shows_the_way_in():
     text = pydoc.render_doc(bb, renderer=pydoc.plaintext)
     for call in ("bouncing_ball_beyond.orbit(", "bouncing_ball_beyond.follow(", "contact_law("):

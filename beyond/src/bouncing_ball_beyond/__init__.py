@@ -111,4 +111,5 @@ _MODULES = {
 
 __all__ = list(_MODULES)
 
-__getattr__, __dir__ = first_use(__name__, _MODULES, globals())
+# Of the names that are known already, only the version is public.
+__getattr__, __dir__ = first_use(__name__, _MODULES, {"__version__": __version__})

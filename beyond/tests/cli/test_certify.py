@@ -1,5 +1,6 @@
 """``certify``: proved digits, and one line for what cannot be proved."""
 
+import importlib
 import re
 import shlex
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import bouncing_ball_beyond
+from bouncing_ball.errors import ModelError
 
 PAGE = (Path(__file__).parents[2] / "docs" / "proofs.md").read_text(encoding="utf-8")
 GIVEN = ("certify", "--restitution", "0.85", "--frequency-ratio", "10")
@@ -65,9 +67,12 @@ def test_the_command_prints_what_the_page_shows(said):
 
 def test_without_the_library_of_balls_it_says_what_to_install(refused, monkeypatch):
     # A module that is None cannot be imported; those that need it are imported again.
-    for name in [name for name in sys.modules if name.startswith("bouncing_ball_beyond.proofs.")]:
-        if not name.endswith("installed"):
-            monkeypatch.delitem(sys.modules, name)
+    proofs = "bouncing_ball_beyond.proofs"
+    for name in [name for name in sys.modules if f"{name}.".startswith(f"{proofs}.")]:
+        monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "flint", None)
     status, line = refused(*GIVEN)
     assert status == 2 and line.endswith('pip install . "./beyond[proofs]"')
+    for module in (proofs, f"{proofs}.balls", f"{proofs}.certificates"):
+        with pytest.raises(ModelError, match="flint is not installed: install the extra 'proofs'"):
+            importlib.import_module(module)

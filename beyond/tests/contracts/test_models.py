@@ -28,7 +28,7 @@ from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.laws.stepped import AdamsImpact, SimscapeContact
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.branches.following import orbits_along
+from bouncing_ball_beyond.periodic.branches.following import orbits_on
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import SearchedOrbits
@@ -137,7 +137,7 @@ def test_an_orbit_solves_its_equations(some):
     system = PaperUnknowns.of(orbit)
     y = system.point(orbit)
     assert np.max(np.abs(system.residual(y))) < 100 * EPS * size
-    assert orbits_along(system, y).distance(orbit) < 100 * EPS * size
+    assert orbits_on(system, y).distance(orbit) < 100 * EPS * size
 
 
 def test_the_jacobian_is_the_derivative_of_the_equations(some):

@@ -253,7 +253,7 @@ def test_the_error_of_an_exponent_is_told_by_motions_that_have_settled():
     """A nearly elastic ball gains speed for hundreds of impacts: areas contract by e in 25."""
     both = bouncing_ball_beyond.rigid(restitution=[0.98, 0.9])
     found = {
-        k: bouncing_ball_beyond.lyapunov_exponent(both, amplitude=2.0, velocity=-8.0, impacts=k)
+        k: bouncing_ball_beyond.motion_of(both, amplitude=2.0, velocity=-8.0, impacts=k)
         for k in (500, 600, 1000)
     }
     short, some, long = (each.sel(restitution=0.98) for each in found.values())
@@ -271,7 +271,7 @@ def test_the_error_of_an_exponent_is_told_by_motions_that_have_settled():
 def exponents_of_forty_balls():
     """Of both restitutions at once, which takes little longer than of one."""
     phases = np.random.default_rng(7).uniform(-3, 3, 40)
-    return bouncing_ball_beyond.lyapunov_exponent(
+    return bouncing_ball_beyond.motion_of(
         bouncing_ball_beyond.rigid(restitution=[0.9, 0.98, 0.99]),
         amplitude=2.0, phase=phases, velocity=-3.0, impacts=2000,
     )  # fmt: skip

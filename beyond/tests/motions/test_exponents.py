@@ -30,20 +30,34 @@ def test_the_sum_of_the_exponents_of_a_chaotic_ball_counts_its_impacts():
     """In the restitution model areas shrink by r² at each impact, so that the sum is 2 ln r times
     the number of impacts per period; the number comes from a simulation of its own.
     """
-    ball = bouncing_ball_beyond.rigid(restitution=0.9)
-    found = bouncing_ball_beyond.lyapunov_exponent(ball, amplitude=2.5, impacts=400)
+    ball = bouncing_ball_beyond.rigid(restitution=0.98)
+    found = bouncing_ball_beyond.lyapunov_exponent(ball, amplitude=2.0, impacts=400)
     assert found.kind.item() == "chaotic"
-    # Another start came to rest on the table after 11,268 impacts.
     words = found.in_words.item()
     assert words.startswith("chaotic in all 400 impacts for which it was followed")
     assert "more may show a long transient" in words
-    motion = bouncing_ball_beyond.motion_of(ball, amplitude=2.5, impacts=400)
+    motion = bouncing_ball_beyond.motion_of(ball, amplitude=2.0, impacts=400)
     start = {"phase": float(motion.end_phase), "velocity": float(motion.end_velocity)}
-    followed = bouncing_ball_beyond.simulate(ball, amplitude=2.5, impacts=401, **start)
+    followed = bouncing_ball_beyond.simulate(ball, amplitude=2.0, impacts=401, **start)
     rate = 400 / (float(followed.time[-1]) / (2 * math.pi))
-    assert float(found.exponent_sum) == pytest.approx(2 * math.log(0.9) * rate, rel=1e-12)
+    assert float(found.exponent_sum) == pytest.approx(2 * math.log(0.98) * rate, rel=1e-12)
     total = float(found.lyapunov_exponent + found.second_exponent)
     assert total == pytest.approx(float(found.exponent_sum), rel=1e-14)
+
+
+@pytest.mark.parametrize("impacts", [400, 2000])
+def test_a_transient_has_no_exponent(impacts):
+    """Another start at r = 0.9 and Λ = 2.5 comes to rest on the table after 11,268 impacts."""
+    ball = bouncing_ball_beyond.rigid(restitution=[0.6, 0.9])
+    found = bouncing_ball_beyond.lyapunov_exponent(ball, amplitude=2.5, impacts=impacts)
+    locked, transient = (found.sel(restitution=r) for r in (0.6, 0.9))
+    assert locked.kind.item() == "locked" and locked.reason.item() == ""
+    assert transient.kind.item() == "undecided" and "transient" in transient.reason.item()
+    for name in ("lyapunov_exponent", "lyapunov_error", "second_exponent"):
+        assert np.isnan(transient[name]) and not np.isnan(locked[name])
+    motion = bouncing_ball_beyond.motion_of(ball, amplitude=2.5, impacts=impacts)
+    assert motion.kind.values.tolist() == ["locked", "chaotic"]
+    assert 0.3 < float(motion.lyapunov_exponent.sel(restitution=0.9)) < 0.5
 
 
 def test_a_ball_that_forgets_has_two_exponents_of_minus_infinity():

@@ -74,7 +74,7 @@ def test_shares_are_those_of_balls_one_by_one():
 
 def test_the_exponent_is_that_of_the_motion():
     lam = [1.0, 2.0]
-    ball = bb.rigid(restitution=0.85)
+    ball = bb.rigid(restitution=0.95)
     found = bb.lyapunov_exponent(ball, amplitude=lam, phase=1.1, impacts=500)
     assert found.kind.values.tolist() == ["orbit", "chaotic"]
     both = bb.motion_of(ball, amplitude=lam, phase=1.1, impacts=500)

@@ -10,7 +10,7 @@ from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.branches.following import orbits_along
+from bouncing_ball_beyond.periodic.branches.following import orbits_on
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
@@ -81,7 +81,7 @@ def test_the_last_admissible_orbit_grazes_the_table(release):
     inside = partial(is_admissible, system.equations)
     found = domain_limits(system, lambda y: inside(system.inner(y)), system.point(orbit))
     assert len(found) == 1
-    at = orbits_along(system, found[0])
+    at = orbits_on(system, found[0])
     start = float(at.contact_duration)
     lowest = minimize_scalar(
         lambda time: float(at.path(time)[0] - at.amplitude * np.sin(at.phase + time)),

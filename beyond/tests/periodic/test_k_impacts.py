@@ -6,6 +6,7 @@ import pytest
 import bouncing_ball_beyond as bb
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball_beyond.periodic import k_impacts
+from bouncing_ball_beyond.periodic.one_impact import n_t
 
 RIGID = bb.rigid(restitution=0.5)
 SPRING = bb.spring_damper(restitution=0.85, frequency_ratio=10.0)
@@ -96,6 +97,12 @@ def test_what_is_no_orbit_is_refused(refusal):
         bb.orbit_near(RIGID, amplitude=1.6, phases=[1.0, 2.0], velocities=[-3.0])
 
 
+@pytest.mark.parametrize("given", [{"impacts": 2}, {"impacts": 2, "periods": 2}, {"periods": 2}])
+def test_orbit_points_to_the_search_of_orbits_with_several_impacts(given):
+    with pytest.raises(TypeError, match=r"orbits\(\) finds those with several impacts"):
+        bb.orbit(RIGID, amplitude=1.6, **given)
+
+
 def test_an_orbit_is_true_if_it_exists(refusal):
     fold, doubling = bb.limits(bb.spring_damper(damping_ratio=0.9, frequency_ratio=0.5), 1)
     assert bool(fold) == fold.exists and bool(doubling) == doubling.exists
@@ -103,7 +110,7 @@ def test_an_orbit_is_true_if_it_exists(refusal):
     one = bb.orbit(RIGID, amplitude=1.2)
     assert one
     with refusal(ModelError, "several orbits are neither true nor false: see their exists"):
-        bool(one.in_a_row())
+        bool(n_t.orbits(RIGID, 1, 1.2))
 
 
 def test_attributes_are_suggested_as_keywords_are():
@@ -126,4 +133,4 @@ def test_an_editor_completes_what_a_user_needs_of_an_orbit():
     names = dir(one)
     assert not any(name.startswith("_") for name in names)
     assert {"phase", "max_height", "is_stable", "multipliers", "to_dataset", "plot"} <= set(names)
-    assert len(names) <= 40 and "in_a_row" not in names and one.in_a_row().size == 1
+    assert len(names) <= 40 and "flat" not in names

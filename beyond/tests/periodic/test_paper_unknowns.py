@@ -13,7 +13,7 @@ from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.branches.following import orbits_along
+from bouncing_ball_beyond.periodic.branches.following import orbits_on
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
@@ -120,7 +120,7 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, margins):
     # Where impact velocity and flight vanish the ball just stays on the table.
     # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
     # the impact velocity meets its margin of 1e-4.
-    end = orbits_along(system, branch.points[-1])
+    end = orbits_on(system, branch.points[-1])
     expected = float(permanent_contact_threshold(omega, damping_ratio(r)))
     assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
     assert float(end.flight_time) < 1e-2
@@ -151,4 +151,4 @@ def test_the_branch_ends_where_the_ball_no_longer_leaves_the_table():
     # beyond, the contact would have ended earlier and r_a is negative. The
     # branch then turns in Λ without a saddle-node of the return map.
     system, branch = follow_unstable_side(1, 10.0, 0.85, 0.9)
-    assert np.all(orbits_along(system, branch.points).apparent_restitution >= -1e-6)
+    assert np.all(orbits_on(system, branch.points).apparent_restitution >= -1e-6)

@@ -15,7 +15,6 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     branch_point,
-    nearest_excess,
     orbits_of_points,
 )
 
@@ -168,17 +167,3 @@ def test_many_points_are_the_same_as_single_ones():
 def test_overdamped_contacts_are_refused(zeta, refusal):
     with refusal(ModelError, f"ζ = {zeta}", "not below 1"):
         branch_point(0.0, SpringDamper(10.0, zeta), 1)
-
-
-# The nearest point of the branch.
-
-
-def test_the_nearest_point_is_the_foot_of_the_normal():
-    contact = SpringDamper(10.0, 0.05)
-    point = branch_point(0.02, contact, 1)
-    # One step normal to the curve in the plane (Λ cos φ, Λ sin φ).
-    normal = np.array([-point.d_y, point.d_x]) / np.hypot(point.d_x, point.d_y)
-    x = point.x + 1e-4 * normal[0]
-    y = point.y + 1e-4 * normal[1]
-    assert float(nearest_excess(contact, 1, x, y, np.array(0.021))) == pytest.approx(0.02, abs=1e-4)
-    assert float(nearest_excess(contact, 1, x, y, np.array(0.02))) == pytest.approx(0.02, abs=1e-9)

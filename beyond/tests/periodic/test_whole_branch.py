@@ -1,47 +1,24 @@
-"""Whole branches of n-T orbits, one at a time and several side by side."""
+"""Whole branches of n-T orbits, and why there is none."""
 
 import numpy as np
 import pytest
 
 import bouncing_ball_beyond
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.branches.following import Followed
-from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch, whole_branches
+from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball_beyond.periodic.orbits import ends
-
-CASES = [(1, 1e4), (2, 10.0), (1, 2.0), (3, 2.0), (1, 1.0), (2, 0.9)]
-TOP = 1.4
 
 
 @pytest.mark.parametrize(
-    "release", [Release.DISPLACEMENT, pytest.param(Release.FORCE, marks=pytest.mark.long)]
+    ("ratio", "n", "why"),
+    [(1.5, 2, "the branch begins at Λ = 0.99476"), (0.5, 1, "was found to start from")],
 )
-def test_a_branch_is_the_same_alone_and_beside_others(release):
-    n, ratios = (np.array(column) for column in zip(*CASES, strict=True))
-    contacts = SpringDamper.from_restitution(0.7, ratios, release)
-    together = whole_branches(ContactModel(contacts), n, TOP)
-    assert whole_branches(ContactModel(contacts[0]), [], TOP) == []
-    for k, beside in enumerate(together):
-        alone = ContactModel(contacts[k])
-        if not isinstance(beside, Followed):
-            with pytest.raises((NoOrbitError, ContinuationError)) as error:
-                whole_branch(alone, int(n[k]), TOP)
-            assert str(error.value) == str(beside)
-            continue
-        found = whole_branch(alone, int(n[k]), TOP)
-        assert np.array_equal(beside.branch.points, found.branch.points)
-        assert np.array_equal(beside.branch.tangents, found.branch.tangents)
-        pairs = zip(beside.branch.special, found.branch.special, strict=True)
-        assert all(one.name == other.name for one, other in pairs)
-        pairs = zip(beside.branch.special, found.branch.special, strict=True)
-        assert all(np.array_equal(one.point, other.point) for one, other in pairs)
-        assert (beside.branch.start, beside.branch.end) == (found.branch.start, found.branch.end)
-    assert any(isinstance(each, Followed) for each in together)
-    assert not all(isinstance(each, Followed) for each in together)
+def test_without_an_orbit_to_start_from_it_says_why(ratio, n, why, refusal):
+    model = ContactModel(SpringDamper.from_restitution(0.7, ratio))
+    with refusal(NoOrbitError, f"no {n}-T orbit up to Λ = 0.6", why):
+        whole_branch(model, n, 0.6)
 
 
 def test_a_branch_is_kept_where_a_doubling_is_announced_next_to_its_end():

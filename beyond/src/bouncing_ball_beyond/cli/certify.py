@@ -6,7 +6,6 @@ from bouncing_ball.errors import count
 from bouncing_ball.models.spring_damper import spring_damper
 from bouncing_ball_beyond.cli.periodic import Answer
 from bouncing_ball_beyond.periodic import orbits_of_ball
-from bouncing_ball_beyond.proofs.installed import proofs_extra
 
 _DIGITS = count(100, low=10)
 _DEFAULT = 30
@@ -32,10 +31,10 @@ def certify(*, n: int, restitution: float, frequency_ratio: float, digits: int) 
     ModelError
         If something cannot be certified; the message gives the reason.
     """
-    with proofs_extra():
-        from bouncing_ball_beyond.proofs import certificates
-        from bouncing_ball_beyond.proofs.balls import exactly
-        from bouncing_ball_beyond.proofs.problem import RationalProblem
+    # Imported here, because the library of balls may be missing.
+    from bouncing_ball_beyond.proofs import certificates
+    from bouncing_ball_beyond.proofs.balls import exactly
+    from bouncing_ball_beyond.proofs.problem import RationalProblem
 
     problem = RationalProblem(exactly(frequency_ratio), exactly(restitution), n)
     proofs = {

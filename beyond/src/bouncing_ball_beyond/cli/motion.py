@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.cli.balls import note_on
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.datasets.arguments import AMPLITUDE, SAMPLES, START
 from bouncing_ball.datasets.files import PICTURES, require_writable
@@ -14,7 +15,6 @@ from bouncing_ball.errors import ParameterError, count
 from bouncing_ball_beyond.cli.impact import add_ball, ball_of
 from bouncing_ball_beyond.cli.options import add_file, add_interval
 from bouncing_ball_beyond.cli.periodic import Answer
-from bouncing_ball_beyond.cli.simulate import note_on
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.motions import motion_of as library
 from bouncing_ball_beyond.motions.destination import FOLLOWED, IMPACTS
@@ -54,7 +54,7 @@ def motion(
     given = {"phase": phase, "velocity": velocity}
     start = _START | {name: x for name, x in given.items() if x is not None}
     found = library.motion_of(ball, amplitude=amplitude, impacts=impacts, **start)
-    answer = note_on(phase)
+    answer = note_on(start["phase"])
     answer |= {name: x for name in _MOTION if (x := found[name].item()) != ""}
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
     answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.cli.balls import note_on
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, START, Range
 from bouncing_ball.models.model import Status
@@ -29,22 +30,6 @@ def add_start(parser: Parser, most: Range, texts: dict[str, str], impacts: int) 
     add_number(parser, "impacts", most, texts["impacts"], default=impacts)
 
 
-def note_on(phase: float | None) -> Answer:
-    """A note if a phase is beyond one turn, because it may have been meant in degrees.
-
-    Examples
-    --------
-    >>> note_on(400.0)["note"]
-    'phase 400 is in radians, 63.66 turns of the table; 400 degrees are 6.981'
-    >>> note_on(-6.28)
-    {}
-    """
-    if phase is None or abs(phase) <= 2 * math.pi:
-        return {}
-    turns = f"phase {phase:g} is in radians, {phase / (2 * math.pi):.4g} turns of the table"
-    return {"note": f"{turns}; {phase:g} degrees are {math.radians(phase):.4g}"}
-
-
 def simulate(
     *, amplitude: float, phase: float, velocity: float, impacts: int, **impact: Any
 ) -> Answer:
@@ -57,7 +42,7 @@ def simulate(
     sequence = [[x if math.isfinite(x) else None for x in column] for column in there.tolist()]
     return {
         **note_on(phase),
-        "status": Status(int(found.status)).name.lower().replace("_", " "),
+        "status": Status(int(found.status)).words,
         **law_values(model.impact_law, -float(found.relative_velocity[0])),
         "sequence": dict(zip(_SHOWN, sequence, strict=True)),
     }

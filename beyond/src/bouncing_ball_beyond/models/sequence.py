@@ -84,7 +84,7 @@ class ImpactSequence:
         least = np.min(self.impacts)
         most = np.max(self.impacts)
         count = f"{least}" if least == most else f"{least} to {most}"
-        doing = (Status(int(k)).name.lower().replace("_", " ") for k in np.unique(self.status))
+        doing = (Status(int(k)).words for k in np.unique(self.status))
         head = f"ImpactSequence: {count} impacts{balls}, then {' or '.join(doing)}"
         names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)

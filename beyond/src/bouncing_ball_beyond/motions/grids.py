@@ -4,6 +4,7 @@ All quantities are dimensionless, and phases are in radians.
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,13 @@ import xarray as xr
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import require_memory
 from bouncing_ball.datasets.variables import Variable, describe, described
+from bouncing_ball.models.flight import table
 from bouncing_ball_beyond.motions.basins import basins as basins_of
 from bouncing_ball_beyond.motions.basins import fastest
 from bouncing_ball_beyond.motions.contraction import exponent_sum
 from bouncing_ball_beyond.motions.destination import final_motions
-from bouncing_ball_beyond.motions.motions import Motions
+from bouncing_ball_beyond.motions.lyapunov import NEAR
+from bouncing_ball_beyond.motions.motions import Kind, Motions, Reason
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 VARIABLES = {
@@ -60,6 +63,8 @@ VARIABLES = {
 
 MOST_BALLS = 20_000_000
 """Largest number of balls that are followed at the same time; they take some gigabytes."""
+NEIGHBOURS = 32
+"""Number of balls that start next to the end of a chaotic motion, to see whether they leave it."""
 # Balls start again from the ends of balls that are this many amplitudes away.
 _FURTHER = (1, 4)
 # Families of orbits beside which balls start, and the difference between their phases.
@@ -83,7 +88,10 @@ def motions(
         If there are too many balls, or a state is outside its range.
     """
     require_memory(amplitude.size, "balls", "starts", MOST_BALLS)
-    found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
+    return _in_words(final_motions(model, amplitude, phase, velocity, impacts=impacts))
+
+
+def _in_words(found: Motions) -> xr.Dataset:
     words = np.array([found[k].in_words() for k in range(found.size)])
     data = _variables(found, (CASE,)) | {"in_words": (CASE, words)}
     return described(data, variables=VARIABLES)
@@ -92,19 +100,67 @@ def motions(
 def exponents(
     model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
 ) -> xr.Dataset:
-    """Both Lyapunov exponents of the motions of :func:`motions`, and the kinds of these motions."""
-    found = motions(model, amplitude, phase, velocity, impacts)
-    length = np.where(found.impacts.values > 0, found.impacts.values, impacts)
-    whole = exponent_sum(
-        model, amplitude, found.end_phase.values, found.end_velocity.values, length
+    """Both Lyapunov exponents of the motions of :func:`motions`, and the kinds of these motions;
+    NaN for a motion that looks chaotic and may be a transient (:func:`may_be_transient`).
+
+    Raises
+    ------
+    ModelError
+        If there are too many balls, or a state is outside its range.
+    """
+    require_memory(NEIGHBOURS * amplitude.size, "balls", "starts", MOST_BALLS)
+    found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
+    leaves = may_be_transient(model, amplitude, found, impacts)
+    found = replace(
+        found,
+        kind=np.where(leaves, Kind.UNDECIDED, found.kind),
+        reason=np.where(leaves, Reason.TRANSIENT, found.reason),
+        exponent=np.where(leaves, np.nan, found.exponent),
+        exponent_error=np.where(leaves, np.nan, found.exponent_error),
     )
-    largest = found.lyapunov_exponent.values
+    length = np.where(found.impacts > 0, found.impacts, impacts)
+    whole = exponent_sum(model, amplitude, found.end_phase, found.end_velocity, length)
     # Where the ball forgets, both exponents are -∞.
     with np.errstate(invalid="ignore"):
-        second = np.where(np.isneginf(largest), largest, whole - largest)
+        second = np.where(np.isneginf(found.exponent), found.exponent, whole - found.exponent)
     sums = {"exponent_sum": (CASE, whole), "second_exponent": (CASE, second)}
-    kept = found[["lyapunov_exponent", "lyapunov_error", "kind", "followed", "in_words"]]
-    return describe(kept.assign(sums), VARIABLES)
+    names = ["lyapunov_exponent", "lyapunov_error", "kind", "reason", "followed", "in_words"]
+    return describe(_in_words(found)[names].assign(sums), VARIABLES)
+
+
+def may_be_transient(model: Any, amplitude: np.ndarray, found: Motions, impacts: int) -> np.ndarray:
+    """Whether a ball leaves a motion that is called chaotic, of a row of motions.
+
+    Balls start next to the last impact of each of these motions, and soon part on it. None of them
+    may repeat a motion within as many impacts. In the restitution models none of them may stick to
+    the table either, because the ball then starts again from the lift-off, whatever was before.
+
+    Examples
+    --------
+    At Λ = 4 the elastic ball is chaotic, and at r = 0.8 and Λ = 3.5 balls come to rest in the end:
+
+    >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
+    >>> model, lam = RestitutionModel(np.array([1.0, 0.8])), np.array([4.0, 3.5])
+    >>> found = final_motions(model, lam, 0.0, -8.0, impacts=500)
+    >>> found.kind.tolist(), may_be_transient(model, lam, found, 500).tolist()
+    (['chaotic', 'chaotic'], [False, True])
+    """
+    (chaotic,) = np.nonzero(found.kind == Kind.CHAOTIC)
+    which = np.repeat(chaotic, NEIGHBOURS)
+    lam = amplitude[which]
+    moved = NEAR * np.arange(1, NEIGHBOURS + 1) / NEIGHBOURS
+    last = found.end_phase[which]
+    phase = last + np.tile(moved, chaotic.size)
+    # With the relative velocity of the last impact, so that no ball rises from the table.
+    velocity = found.end_velocity[which] - table(last, lam)[0] + table(phase, lam)[0]
+    row = model.flat(amplitude.shape).take(which)
+    ends = final_motions(row, lam, phase, velocity, impacts=impacts)
+    leaves = ~np.isin(ends.kind, [Kind.CHAOTIC, Kind.UNDECIDED])
+    if row.dynamics(lam).forgets:
+        leaves |= ends.times_stuck > 0
+    transient = np.zeros(amplitude.shape, dtype=bool)
+    transient[chaotic] = leaves.reshape(-1, NEIGHBOURS).any(axis=1)
+    return transient
 
 
 def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:

@@ -104,8 +104,11 @@ def lyapunov_exponent(
         of impacts in which areas contract by e, about 1/(1 - r²): 2500 impacts at r = 0.995 and
         12500 at r = 0.999. The exponent of a nearly elastic ball falls as its speed rises, and may
         be wrong by half of it then. The ``kind`` is that of the motion, and ``in_words`` says for
-        how many impacts the ball was ``followed``: what is called chaotic may be a long transient
-        before a motion that repeats. For a periodic motion the exponent follows from the larger
+        how many impacts the ball was ``followed``. Where the motion looks chaotic, 32 balls that
+        start next to its end are followed for as many impacts. If one of them comes to rest on the
+        table or repeats its motion, chaos cannot be told from a long transient: the ``kind`` is
+        "undecided", the ``reason`` says so, and the exponent is NaN. That of the impacts followed
+        is in :func:`motion_of`. For a periodic motion the exponent follows from the larger
         multiplier, and is -∞ if the later motion does not depend on earlier impacts.
         ``exponent_sum`` is the sum of both exponents: the mean of the logarithm of the determinant
         of the return map, over one repetition, or over as many impacts as the ball was followed

@@ -19,6 +19,9 @@ class Reason(StrEnum):
     NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
     MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
     ROUNDING = "rounding errors grow to the size of the motion before it repeats"
+    TRANSIENT = (
+        "it looks chaotic, but another ball on it comes to rest or repeats: it may be a transient"
+    )
     NO_RELEASE = "no end of a contact was found"
 
 

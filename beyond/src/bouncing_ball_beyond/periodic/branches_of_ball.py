@@ -21,7 +21,6 @@ from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
 from bouncing_ball_beyond.periodic.branches.observables import (
     OF_BRANCHES,
-    joined,
     n_t_columns,
     no_branch,
 )
@@ -64,7 +63,7 @@ def branch(
     def found(one: Ball, n: int) -> xr.Dataset:
         return n_t_columns(_branch_of(one.at_limits(n), n, top, count))
 
-    whole = by_place(grid, given, ("n",), found, partial(no_branch, count), joined)
+    whole = by_place(grid, given, ("n",), found, partial(no_branch, count), branches.joined)
     data = grid.unfold(describe(whole, OF_BRANCHES | KEPT)).assign_attrs(
         along="amplitude", impacts=1
     )

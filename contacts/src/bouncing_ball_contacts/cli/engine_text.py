@@ -60,6 +60,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
     engine do at a time step.
     """
     engine = given.engine
+    at = given.at_step
     texts = Environment(
         loader=PackageLoader("bouncing_ball_contacts.cli"),
         undefined=StrictUndefined,
@@ -78,7 +79,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
     text = texts.get_template("engine.txt.j2").render(
         given=given,
         engine=engine,
-        at=given.at_step,
+        at=at,
         orbit=orbit,
         retuned=_retuned(given),
         rayleigh=rayleigh_time(given.found.case.given),

@@ -144,11 +144,16 @@ def _recipe(
         raise ParameterError("{engine} needs {mass}, such as 20 g")
     contact = {
         "mass": best.mass,
-        "contact_time": float(best.duration_at(speed)) if best.has_stiffness else None,
-        "measured_restitution": float(best.restitution_at(speed)),
+        "contact_time": _typed(best.duration_at(speed)) if best.has_stiffness else None,
+        "measured_restitution": _typed(best.restitution_at(speed)),
     }
-    setup = {"speed": speed, "engine": engine, "time_step": time_step}
+    setup = {"speed": _typed(speed), "engine": engine, "time_step": time_step}
     return answer_design(contact | setup, script)._replace(whole=False)
+
+
+def _typed(value: Any) -> float:
+    """A number with the six digits of the commands that are printed."""
+    return float(f"{float(value):.6g}")
 
 
 def _lines(text: str | None) -> list[int]:

@@ -61,9 +61,9 @@ class Corrected:
     presses the ball to the table and v the impact speed.
     """
 
-    delay: Annotated[float, Listed("corrected model, delay t_c", "s")]
-    restitution: Annotated[float, Listed("corrected model, restitution r")]
-    load: Annotated[float, Listed("corrected model, load σ", "s")]
+    delay: float
+    restitution: float
+    load: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,13 +112,7 @@ class Assessment(NumbersOfImpact):
         return self.case.static_deflection
 
     @property
-    def restitution(
-        self,
-    ) -> Annotated[
-        dict[str, float | None],
-        Listed("restitution, released at δ = 0"),
-        Listed("restitution, released without force"),
-    ]:
+    def restitution(self) -> dict[str, float | None]:
         """r of a free impact for each release rule; None for the rule that a law does not have."""
         contact = self.case.equivalent
         if self.case.is_linear:

@@ -1,6 +1,7 @@
 """Sentences that a user should read in addition to the numbers of a contact and the verdict."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -142,8 +143,9 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
     if contact.frequency_ratio < 1:
         found.append("the contact is slower than the table: the ball oscillates on a spring")
     if case.is_linear and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
+        pushes = float(replace(contact, release=Release.FORCE).restitution)
         found.append(
             "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
-            "has the r of a release without force"
+            f"has r = {pushes:.4g}"
         )
     return (*found, *force_formula(case))

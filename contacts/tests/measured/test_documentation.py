@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball_contacts.measured.columns import COLUMNS
 from bouncing_ball_contacts.measured.experiment import (
-    COLUMNS,
     QUANTITIES,
     TEXTS,
     experiment,

@@ -221,7 +221,7 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
 
 
 def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
-    notes = []
+    notes = [*found.notes]
     if found.left_out:
         lines = ", ".join(map(str, found.left_out))
         notes += [f"Left out: line {lines} of the file, and the impacts beside it."]

@@ -341,6 +341,42 @@ def test_numbers_that_no_ball_has_are_those_of_a_file(tmp_path, refusal, text):
         read(path)
 
 
+# Numbers that are right in another unit, which the message names.
+IN_ANOTHER_UNIT = {
+    "775\n607\n489\n": (
+        "line 1: a flight of 775 s is 736265 m high: are these ms?",
+        "interval (ms)",
+    ),
+    "time [s]\n0\n775\n1382\n": ("line 3: a flight of 775 s", "'time (ms)'"),
+    "interval\n9.1\n4\n2\n": ("line 2: a flight of 9.1 s is 102 m high", "leave the line out by"),
+    "drop_height,rebound_height\n100,60\n": (
+        "line 2: a height of 100 m: are these cm?",
+        "'drop_height (cm)'",
+    ),
+    "drop_height [m],rebound_height [m]\n50,20\n101,40\n": ("line 3: a height of 101 m", "(cm)"),
+    HEAD + "443,0.8\n": ("line 2: a speed of 443 m/s: are these cm/s?", "'speed (cm/s)'"),
+    "v_in,v_out\n443,350\n": ("line 2: a speed of 443 m/s: are these cm/s?", "'speed (cm/s)'"),
+}
+
+
+@pytest.mark.parametrize("text", IN_ANOTHER_UNIT, ids=range(len(IN_ANOTHER_UNIT)))
+def test_numbers_in_another_unit_are_refused_with_the_unit_that_was_meant(tmp_path, refusal, text):
+    is_heard = text[0].isdecimal() or "interval" in text or "time" in text
+    with refusal(ModelError, *IN_ANOTHER_UNIT[text]):
+        read(write(tmp_path, text), intervals=is_heard)
+
+
+def test_numbers_within_the_bounds_are_read(tmp_path):
+    high = "drop_height [m],rebound_height [m]\n50,20\n99,40\n"
+    assert read(write(tmp_path, high)).speeds.size == 2
+    with_unit = "interval (ms)\n775\n607\n489\n"
+    assert read(write(tmp_path, with_unit)).speeds[0] == pytest.approx(9.80665 * 0.775 / 2)
+    assert read(write(tmp_path, HEAD + "99,0.5\n")).speeds.size == 1
+    # A clap before the ball is left out with its line.
+    clap = "time\n-20\n0\n0.8\n1.2\n"
+    assert read(write(tmp_path, clap), leave_out=[2]).restitutions == pytest.approx([0.5])
+
+
 def test_the_uncertainty_of_a_contact_time_may_belong_to_a_column(tmp_path):
     head = "# contact time uncertainty: 0.1 ms\nspeed,restitution,duration [ms]\n"
     assert read(write(tmp_path, head + "1,0.8,1\n")).duration_uncertainties == 1e-4

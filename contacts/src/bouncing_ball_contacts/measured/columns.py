@@ -13,6 +13,9 @@ computed from the others. The heading may be in capitals, with its units in brac
 separated by commas, tabs or semicolons; beside tabs and semicolons, and in a single column, numbers
 may have decimal commas. Lines above the heading and columns that the way does not use are left out,
 with a note for each line and one for the columns; a column that only counts needs none.
+
+Numbers that a wrong unit explains better than a ball are refused: an impact speed above 100 m/s, a
+height above 100 m, and above 10 m if the heading names no unit.
 """
 
 import csv
@@ -72,6 +75,10 @@ _SPEED = re.compile(r"(?:v|speed|velocity) (?:(in|before)|out|after)(?: impact)?
 _COUNT = re.compile(r"(?:numbers?(?: of \w+)?|no\.?|nr\.?|n|#|index|events?|bounces?|impacts?|)")
 _HEADING = re.compile(r"([^\[\]]*)(?:\[(.*)\])?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
+_FASTEST = 100.0
+HIGHEST = 100.0
+"""The greatest height in m that is not taken for one in a wrong unit."""
+_HIGHEST_WITHOUT_UNIT = 10.0
 
 
 @dataclass(frozen=True)
@@ -344,6 +351,7 @@ def _values(
             # The line stays in the place where it divides a recording.
             is_left_out = at in leave_out and name != "recording"
             value = math.nan if is_left_out else _cell(line, name, cells[column.place], column)
+            _require_a_ball(line, name, value, column)
             found[name].append(value)
         for before, after, unit in _PAIRS:
             if after in used and found[after][-1] > found[before][-1]:
@@ -393,3 +401,24 @@ def _cell(line: str, name: str, text: str, column: _Column) -> float:
     if value not in kind.allowed:
         raise ModelError(f"{line}: {name} = {value:g} is not {kind.allowed}")
     return value
+
+
+def _require_a_ball(line: str, name: str, value: float, column: _Column) -> None:
+    """Refuse speeds and heights that a wrong unit explains better.
+
+    Raises
+    ------
+    ModelError
+        If the number is beyond the bounds of this module.
+    """
+    if COLUMNS[name].name == "m/s" and value > _FASTEST:
+        said = f"a speed of {value:.3g} m/s"
+        meant = "cm/s"
+    elif COLUMNS[name].name == "m" and value > (HIGHEST if column.unit else _HIGHEST_WITHOUT_UNIT):
+        said = f"a height of {value:.3g} m"
+        meant = "cm"
+    else:
+        return
+    raise ModelError(
+        f"{line}: {said}: are these {meant}? write the unit in the heading: '{name} ({meant})'"
+    )

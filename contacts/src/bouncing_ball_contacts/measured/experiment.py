@@ -30,8 +30,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.units import SIParameter, in_si
 from bouncing_ball_contacts.measured.columns import (
+    HIGHEST,
     Columns,
     read_columns,
     without_si_unit,
@@ -292,13 +294,21 @@ def _recording(
     Raises
     ------
     ModelError
-        If an interval is longer than the one before it, as no flight after an impact is, or times
-        are equally spaced.
+        If a flight is higher than a wrong unit explains, an interval is longer than the one before
+        it, as no flight after an impact is, or times are equally spaced.
     """
     part = values[rows]
     of_time = name == "time"
     intervals = np.diff(part) if of_time else part
     ends = [lines[row] for row in (rows[1:] if of_time else rows)]
+    for end, interval in zip(ends, intervals, strict=True):
+        height = STANDARD_GRAVITY * interval**2 / 8
+        if height > HIGHEST:
+            raise ParameterError(
+                f"line {end}: a flight of {interval:g} s is {height:.0f} m high: are these ms? "
+                f"write the unit in the heading: '{name} (ms)', or leave the line out by "
+                "{leave_out}"
+            )
     if of_time and intervals.size > 1 and np.allclose(intervals, intervals[0], rtol=_EQUAL, atol=0):
         raise ModelError("the times are equally spaced, as those of a film and not of impacts")
     for k in range(1, intervals.size):

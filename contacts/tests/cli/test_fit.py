@@ -159,6 +159,32 @@ def test_a_recording_is_written_for_an_engine_in_one_command(outcome, tmp_path):
     assert drop["error"] < 0.05 and (tmp_path / "drop.py").exists()
 
 
+def test_a_recipe_says_first_that_no_law_fits(outcome, tmp_path):
+    path = tmp_path / "drops.csv"
+    v = [0.7 * 1.2**k for k in range(12)]
+    rows = "".join(
+        f"{x:.6f},{0.9 - 0.05 * x + 0.0005 * (-1) ** k:.6f},no\n" for k, x in enumerate(v)
+    )
+    path.write_text("speed [m/s],restitution,wet\n" + rows)
+    options = ("--speed", "3 m/s", "--mass", "46 g", "--engine", "mujoco", "--time-step", "2 ms")
+    text = outcome("fit", str(path), *options)[1]
+    answer = json.loads(outcome("fit", str(path), *options, "--json")[1])
+    assert {law["verdict"] for law in answer["laws"]} == {"deviates"}
+    low, high = answer["restitution_interval"]
+    assert low < 0.75 < high < low + 0.02
+    first = text.splitlines()[0]
+    assert first.startswith("No law fits") and "a smooth curve through the points" in first
+    assert f"e = {answer['restitution']:.4f} (95 % {low:.4f} to {high:.4f})" in first
+    # The recipe and the next command have this r, and not that of the best law.
+    used = pytest.approx(answer["restitution"], rel=1e-5)
+    assert answer["recipe"]["engine"]["wanted"] == used
+    assert float(shlex.split(answer["design"])[-1]) == used
+    assert "Left out: column 'wet'." in answer["notes"]
+    # Without an engine the sentence stands before the commands.
+    rest = outcome("fit", str(path), *options[:2])[1]
+    assert rest.index("verdict") < rest.index("No law fits") < rest.index("bouncing-ball design")
+
+
 @pytest.mark.parametrize(
     ("options", "part"),
     [

@@ -22,7 +22,13 @@ from bouncing_ball_contacts.measured.experiment import (
 )
 from bouncing_ball_contacts.measured.fit import ContactFit
 from bouncing_ball_contacts.measured.law_fit import LawFit
-from bouncing_ball_contacts.measured.verdicts import JudgedLaw, error_size, judge
+from bouncing_ball_contacts.measured.verdicts import (
+    JudgedLaw,
+    RestitutionAtSpeed,
+    error_size,
+    judge,
+    restitution_at_speed,
+)
 
 # In SI units the unit of time is a second, and ϖ is a natural frequency.
 _SHOWN = {"frequency_ratio": "natural frequency"}
@@ -107,9 +113,10 @@ def fit(
         v = in_si("speed", speed, quantities(_At)["speed"])
     else:
         v = best.speed
+    at_speed = restitution_at_speed(fitted, judged, v)
     recipe = None
     if engine is not None:
-        recipe = _recipe(best, v, engine, time_step, script)
+        recipe = _recipe(best, v, at_speed.restitution, engine, time_step, script)
     elif time_step is not None or script is not None:
         name = "time_step" if script is None else "script"
         raise ParameterError(f"{{{name}}} needs {{engine}}, such as mujoco")
@@ -121,6 +128,9 @@ def fit(
         "fastest": float(fitted.points.speeds.max()),
         "reference_speed": best.speed,
         "speed": v,
+        "restitution": at_speed.restitution,
+        "restitution_interval": [_number(x) for x in at_speed.interval],
+        "no_law_fits": _no_law_fits(at_speed, v, fitted.points.is_known),
         "impacts": _impacts(found),
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
@@ -131,21 +141,28 @@ def fit(
             *_notes(found, fitted, v),
             *_doubts(options | {"speed": speed}),
         ],
-        "design": _design(best, v),
+        "design": _design(best, v, at_speed.restitution),
         "design_of_law": _design_of_law(best, v),
     }
 
 
 def _recipe(
-    best: LawFit, speed: float, engine: str, time_step: str | None, script: Path | None
+    best: LawFit,
+    speed: float,
+    restitution: float,
+    engine: str,
+    time_step: str | None,
+    script: Path | None,
 ) -> DesignAnswer:
-    """The contact of the law at an impact speed, as it is written for an engine."""
+    """The contact with a restitution coefficient and the contact time of the law at an impact
+    speed, as it is written for an engine.
+    """
     if best.mass is None:
         raise ParameterError("{engine} needs {mass}, such as 20 g")
     contact = {
         "mass": best.mass,
         "contact_time": _typed(best.duration_at(speed)) if best.has_stiffness else None,
-        "measured_restitution": _typed(best.restitution_at(speed)),
+        "measured_restitution": _typed(restitution),
     }
     setup = {"speed": _typed(speed), "engine": engine, "time_step": time_step}
     return answer_design(contact | setup, script)._replace(whole=False)
@@ -253,13 +270,26 @@ def _doubts(options: dict[str, str | None]) -> list[str]:
     return [f"{text[0].upper()}{text[1:]}." for text in doubts(options, kinds)]
 
 
-def _design(best: LawFit, speed: float) -> str:
-    """The command for the linear contact with the r and the contact time of the law at an impact
-    speed; what is not known stands there in capitals.
+def _no_law_fits(found: RestitutionAtSpeed, speed: float, is_known: bool) -> str | None:
+    """A sentence on the restitution coefficient that is used where the points reject all laws."""
+    if found.is_of_a_law_that_fits:
+        return None
+    interval = _interval([_number(x) for x in found.interval], 1, "{:.4f}")
+    used = f"e = {found.restitution:.4f} (95 % {interval}) at {speed:.3g} m/s is that of"
+    if found.law is None:
+        source = "a smooth curve through the points, a parabola in ln v"
+    else:
+        source = f"{found.law}, with the smallest rms, and its interval by the scatter about it"
+    size = "their uncertainties allow" if is_known else "they scatter"
+    return f"No law fits: each is further from the points than {size}. {used} {source}."
+
+
+def _design(best: LawFit, speed: float, restitution: float) -> str:
+    """The command for the linear contact with a restitution coefficient and the contact time of the
+    law at an impact speed; what is not known stands there in capitals.
     """
     mass = "MASS" if best.mass is None else f'"{best.mass:.6g} kg"'
     time = f'"{float(best.duration_at(speed)):.6g} s"' if best.has_stiffness else "TIME"
-    restitution = float(best.restitution_at(speed))
     return (
         f"bouncing-ball design --mass {mass} --contact-time {time} "
         f"--measured-restitution {restitution:.6g}"
@@ -270,7 +300,8 @@ def _design_of_law(best: LawFit, speed: float) -> str | None:
     """The command for the contact of the law itself; None if the law is linear."""
     if best.law == SpringDamper.name:
         return None
-    return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
+    linear = _design(best, speed, float(best.restitution_at(speed)))
+    return f'{linear} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
 def fit_document(answer: dict[str, Any]) -> dict[str, Any]:
@@ -283,8 +314,9 @@ def fit_document(answer: dict[str, Any]) -> dict[str, Any]:
 def fit_lines(answer: dict[str, Any]) -> list[str]:
     """The answer as text: the impacts that were heard, the laws, notes and the next command."""
     recipe = answer["recipe"]
+    unfit = [] if answer["no_law_fits"] is None else [answer["no_law_fits"], ""]
     found = [
-        *([] if recipe is None else [*design_lines(recipe), ""]),
+        *([] if recipe is None else [*unfit, *design_lines(recipe), ""]),
         f"{answer['experiment']}: {_speeds(answer)} m/s",
         *_errors(answer),
         "",
@@ -321,11 +353,12 @@ def fit_lines(answer: dict[str, Any]) -> list[str]:
     timed = [law for law in answer["laws"] if law["contact_time"] is not None]
     if timed:
         found += ["", *_timed(timed)]
-    found += ["", *answer["notes"], ""]
+    found += ["", *answer["notes"], "", *unfit]
     at = f"at {answer['speed']:.3g} m/s"
     if answer["design_of_law"] is not None:
         found += [f"{_best(answer)} as a contact {at}:", f"  {answer['design_of_law']}"]
-        found += ["For engines, the linear contact with the same impact at this speed:"]
+        same = f"e = {answer['restitution']:.4f}" if unfit else "the same impact"
+        found += [f"For engines, the linear contact with {same} at this speed:"]
     else:
         found += [f"{_best(answer)} as a contact {at}:"]
     return [*found, f"  {answer['design']}"]

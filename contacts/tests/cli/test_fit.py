@@ -27,6 +27,25 @@ def test_the_laws_are_ranked_with_verdicts(outcome):
     assert any("N/m^1.5" in row for row in rows)
 
 
+@pytest.mark.parametrize("name", ["croquet", "thin_drop", "superball"])
+def test_laws_with_one_curve_share_a_row(outcome, name):
+    """A constant r, and both laws of Hunt and Crossley; of one impact all laws."""
+    text = outcome("fit", name)[1].splitlines()
+    head = next(k for k, row in enumerate(text) if row.startswith("law "))
+    rows = [row.split("  ")[0] for row in text[head + 1 : text.index("", head)]]
+    constant = "restitution, linear, elasto-backlash, tsuji"
+    sharp = "hunt-crossley, hunt-crossley-linear"
+    wanted = [constant, "kuwabara-kono", sharp]
+    assert sorted(rows) == sorted([", ".join(wanted)] if name == "superball" else wanted)
+    answer = json.loads(outcome("fit", name, "--json")[1])
+    assert [", ".join(names) for names in answer["curves"]] == rows
+    assert {law["law"] for law in answer["laws"]} == {
+        x for names in answer["curves"] for x in names
+    }
+    # Rounding decides neither the order of such laws nor which of them has the smallest rms.
+    assert not any("hunt-crossley-linear has the smallest" in note for note in answer["notes"])
+
+
 def test_the_second_command_is_the_contact_of_the_first(outcome):
     """From measured impacts to solref in two commands."""
     _, out, _ = outcome("fit", "croquet", "--frequency", "20 Hz")

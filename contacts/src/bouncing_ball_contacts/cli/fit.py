@@ -135,6 +135,7 @@ def fit(
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
+        "curves": [list(names) for names in fitted.curves],
         "notes": [
             *_order(fitted),
             *fitted.notes,
@@ -258,7 +259,7 @@ def _order(fitted: ContactFit) -> list[str]:
     """What the order of the laws means, if the first has not the smallest error."""
     first = fitted.laws[0]
     least = min(fitted.laws, key=lambda each: each.rms)
-    if not first.rms > least.rms:
+    if any({first.law, least.law} <= set(names) for names in fitted.curves):
         return []
     by = "Akaike's criterion, in which the error of each point counts by its uncertainty"
     return [f"The laws are in the order of {by}; {least.law} has the smallest rms."]
@@ -339,7 +340,7 @@ def fit_lines(answer: dict[str, Any]) -> list[str]:
         ),
         [
             [
-                law["law"],
+                ", ".join(names),
                 f"{law['restitution']:.4f}",
                 _interval(law["restitution_interval"], 1, "{:.4f}"),
                 f"{law['rms']:.4f}",
@@ -347,7 +348,9 @@ def fit_lines(answer: dict[str, Any]) -> list[str]:
                 _shown(law["errors_needed"]),
                 law["verdict"],
             ]
+            for names in answer["curves"]
             for law in answer["laws"]
+            if law["law"] == names[0]
         ],
     )
     timed = [law for law in answer["laws"] if law["contact_time"] is not None]

@@ -28,6 +28,11 @@ from bouncing_ball_contacts.measured.curves import CURVES, curve_named
 from bouncing_ball_contacts.measured.law_fit import LawFit, MeasuredPoints, fit_law, quantile_of
 
 _POSITIVE = "a finite number > 0"
+# Relative differences of r between laws with one r(v), by the ends of their fits.
+_SAME = 1e-6
+# The digits of a criterion and of an rms that do not depend on rounding: laws with one r(v) keep
+# the order of their list.
+_DIGITS = 9
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,27 @@ class ContactFit:
     def best(self) -> LawFit:
         """The first law of the ranking that has a contact."""
         return next(each for each in self.laws if each.curve.kind is not None)
+
+    @property
+    def curves(self) -> tuple[tuple[str, ...], ...]:
+        """The names of the laws that have the same r at all measured speeds, in the order of the
+        first of them.
+
+        Examples
+        --------
+        >>> fit_contact([0.5, 1.0, 2.0, 4.0], [0.857, 0.842, 0.826, 0.809]).curves[-1]
+        ('hunt-crossley', 'hunt-crossley-linear')
+        """
+        v = self.points.speeds
+        found: list[tuple[np.ndarray, list[str]]] = []
+        for each in self.laws:
+            r = each.restitution_at(v)
+            names = next((few for same, few in found if np.allclose(r, same, rtol=_SAME)), None)
+            if names is None:
+                found.append((r, [each.law]))
+            else:
+                names.append(each.law)
+        return tuple(tuple(names) for _, names in found)
 
     def law(self, name: str) -> LawFit:
         """The fit of the law with this name.
@@ -127,7 +153,12 @@ def fit_contact(
         replace(_with_time(fit_law(curve_named(name), points), times), mass=weight)
         for name in names
     ]
-    found.sort(key=lambda each: (np.nan_to_num(each.criterion, nan=np.inf), each.rms))
+    found.sort(
+        key=lambda each: (
+            round(float(np.nan_to_num(each.criterion, nan=np.inf)), _DIGITS),
+            round(each.rms, _DIGITS),
+        )
+    )
     return ContactFit(points, tuple(found), _notes(points, times))
 
 

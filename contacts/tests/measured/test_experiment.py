@@ -275,7 +275,11 @@ BOTH = '"No.","Event time (s)","Interval (s)"\n1,3.0,0\n2,3.8,0.8\n3,4.2,0.4\n4,
 PHYPHOX = '"Number of interval","Interval (s)","Retained energy (%)"\n1,0.8,\n2,0.4,25\n3,0.2,25\n'
 
 
-@pytest.mark.parametrize("text", [BOTH, BOTH.replace(",0\n", ",\n"), PHYPHOX])
+@pytest.mark.parametrize(
+    "text",
+    [BOTH, BOTH.replace(",0\n", ",\n"), PHYPHOX],
+    ids=["a first interval of 0", "none", "numbers of intervals"],
+)
 @pytest.mark.parametrize("intervals", [True, False])
 def test_times_and_intervals_are_read_as_asked_and_it_is_said(tmp_path, text, intervals):
     found = read(write(tmp_path, text), intervals=intervals)

@@ -207,7 +207,9 @@ def read_columns(
     at, line = rows[top]
     headings = _headings(line)
     way = _way(headings, _HEARD if intervals else _WAYS)
-    used = _used(f"{where}, line {at}", headings, way, intervals)
+    if not way and _way(headings, _WAYS):
+        raise ModelError(f"{where} has no column interval or time")
+    used = _used(f"{where}, line {at}", headings, way)
     body = _body(where, headings, used, _mark(line), rows[top + 1 :])
     lines = [at for at, _ in body]
     for number in leave_out:
@@ -240,10 +242,8 @@ def _point(text: str) -> str:
     return text.replace(",", ".") if _DECIMAL_COMMA.match(text) else text
 
 
-def _used(
-    where: str, headings: list[_Heading], way: tuple[str, ...], intervals: bool
-) -> dict[str, _Column]:
-    """The columns that are read, by name, and their places.
+def _used(where: str, headings: list[_Heading], way: tuple[str, ...]) -> dict[str, _Column]:
+    """The columns that are read, by name.
 
     Raises
     ------
@@ -252,8 +252,6 @@ def _used(
     """
     names = [each.name for each in headings]
     unknown = [each.text for each in headings if each.name is None and not each.is_count]
-    if not way and intervals and _way(headings, _WAYS):
-        raise ModelError(f"{where}: there is no column interval or time")
     further = ("recording",) if way in _HEARD else _FURTHER
     wanted = [name for name in (*way, *further) if name in names]
     if not way or any(names.count(name) > 1 for name in wanted):

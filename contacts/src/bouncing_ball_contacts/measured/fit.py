@@ -23,6 +23,7 @@ from bouncing_ball.errors import (
 from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, quantities
+from bouncing_ball_contacts.contact.texts import lines
 from bouncing_ball_contacts.contact.units import in_si
 from bouncing_ball_contacts.measured.curves import CURVES, curve_named
 from bouncing_ball_contacts.measured.law_fit import LawFit, MeasuredPoints, fit_law, quantile_of
@@ -128,7 +129,11 @@ def fit_contact(
         for name in names
     ]
     found.sort(key=lambda each: (np.nan_to_num(each.criterion, nan=np.inf), each.rms))
-    return ContactFit(points, tuple(found), _notes(points, times))
+    share = None
+    if times is not None:
+        share = STANDARD_GRAVITY * float(np.max(times.values)) / float(np.min(points.speeds))
+    notes = lines("measured_notes", points=points, share=share)
+    return ContactFit(points, tuple(found), tuple(notes))
 
 
 def _names(laws: Any) -> tuple[str, ...]:
@@ -231,28 +236,3 @@ def _with_time(fit: LawFit, times: _Times | None) -> LawFit:
         error = np.nan
     away = quantile_of(times.errors is not None, freedom) * error
     return replace(fit, contact_time=time, time_interval=(time - away, time + away))
-
-
-def _notes(points: MeasuredPoints, times: _Times | None) -> tuple[str, ...]:
-    notes = []
-    if points.size == 1:
-        notes += ["One point determines the parameter of each law; it tests no law."]
-    elif np.ptp(points.speeds) == 0:
-        notes += ["All speeds are equal, so that the laws cannot be told apart."]
-    if times is None:
-        notes += [
-            "The stiffness is not identified: restitution coefficients determine the dissipation "
-            "group of a law only. Give a contact time."
-        ]
-    else:
-        share = STANDARD_GRAVITY * float(np.max(times.values)) / float(np.min(points.speeds))
-        notes += [
-            "Gravity during contact is neglected: it changes the speed by at most "
-            f"{share:.2g} of the slowest impact speed."
-        ]
-    if not points.is_known and points.size > 1:
-        notes += [
-            "Without uncertainties, intervals follow from the scatter about each law, and a "
-            "systematic error of the measurement counts as a deviation from each law."
-        ]
-    return tuple(notes)

@@ -114,6 +114,8 @@ def fit(
         name = "time_step" if script is None else "script"
         raise ParameterError(f"{{{name}}} needs {{engine}}, such as mujoco")
     kinds = {name.replace(" ", "_"): kind for name, kind in QUANTITIES.items()} | quantities(_At)
+    linear = _design(best, v)
+    of_law = f'{linear} --law {best.law} --speed "{v:.6g} m/s"'
     doubted = doubts(options | {"speed": speed}, kinds)
     return {
         "recipe": recipe,
@@ -128,8 +130,8 @@ def fit(
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
         "notes": lines("fit_notes", found=found, fitted=fitted, speed=v, doubts=doubted),
-        "design": _design(best, v),
-        "design_of_law": _design_of_law(best, v),
+        "design": linear,
+        "design_of_law": None if best.law == SpringDamper.name else of_law,
     }
 
 
@@ -228,13 +230,6 @@ def _design(best: LawFit, speed: float) -> str:
         f"bouncing-ball design --mass {mass} --contact-time {time} "
         f"--measured-restitution {restitution:.6g}"
     )
-
-
-def _design_of_law(best: LawFit, speed: float) -> str | None:
-    """The command for the contact of the law itself; None if the law is linear."""
-    if best.law == SpringDamper.name:
-        return None
-    return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
 def fit_document(answer: dict[str, Any]) -> dict[str, Any]:

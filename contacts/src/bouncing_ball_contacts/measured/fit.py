@@ -123,7 +123,10 @@ def fit_contact(
     points = replace(points, is_relative=not absolute_uncertainties)
     weight = None if mass is None else in_si("mass", mass, quantities(Contact)["mass"])
     times = _times(durations, duration_uncertainties, points)
-    names = tuple(CURVES) if laws is None else _names(laws)
+    names = CURVES if laws is None else laws
+    is_list = laws is None or isinstance(laws, list | tuple)
+    if not is_list or not all(isinstance(name, str) for name in names):
+        raise ParameterError("{laws} = {} is no list of names of laws", shortened(laws))
     found = [
         replace(_with_time(fit_law(curve_named(name), points), times), mass=weight)
         for name in names
@@ -134,19 +137,6 @@ def fit_contact(
         share = STANDARD_GRAVITY * float(np.max(times.values)) / float(np.min(points.speeds))
     notes = lines("measured_notes", points=points, share=share)
     return ContactFit(points, tuple(found), tuple(notes))
-
-
-def _names(laws: Any) -> tuple[str, ...]:
-    """The names of laws.
-
-    Raises
-    ------
-    ParameterError
-        If they are no list of names.
-    """
-    if not isinstance(laws, list | tuple) or not all(isinstance(name, str) for name in laws):
-        raise ParameterError("{laws} = {} is no list of names of laws", shortened(laws))
-    return tuple(laws)
 
 
 def checked_points(

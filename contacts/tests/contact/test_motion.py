@@ -10,7 +10,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
-from bouncing_ball_contacts.contact.verdict_on_motion import aside, said_of_motion
+from bouncing_ball_contacts.contact.verdict import aside, said_of_motion
 
 UNIT = {"mass": 1.0, "frequency": "1 rad/s", "gravity": 1.0, "restitution": 0.85, "n": 1}
 

@@ -269,9 +269,9 @@ def test_parameters_that_were_not_made_for_a_step_are_compared_with_small_steps(
     values = dict(zip(engine.names, (stiff, lossy), strict=True))
     limit = engine.read(values, 0.5)
     r = limit.restitution(engine.release())
-    fine = engine.at_step_of(values, 0.5, 1e-7)
+    _, fine = engine.at_step_of(values, 0.5, 1e-7)
     assert fine.is_within and fine.restitution == r
-    coarse = engine.at_step_of(values, 0.5, 4e-3)
+    _, coarse = engine.at_step_of(values, 0.5, 4e-3)
     # Implicit Euler by hand: (1 + c h/m + k h²/m) v⁺ = v - h k x/m, or a flight.
     m, k, c = limit
     h = 4e-3
@@ -294,7 +294,7 @@ def test_parameters_that_were_not_made_for_a_step_are_compared_with_small_steps(
 @pytest.mark.parametrize("time_step", [1e-3, 4e-3])
 def test_pybullet_does_with_parameters_what_the_answer_says(time_step):
     only_if_installed("pybullet")
-    found = ENGINES["pybullet"].at_step_of(
+    _, found = ENGINES["pybullet"].at_step_of(
         {"contactStiffness": 2e5, "contactDamping": 5.0}, 0.5, time_step
     )
     text = (

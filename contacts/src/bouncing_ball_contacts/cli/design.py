@@ -30,7 +30,6 @@ from bouncing_ball_contacts.contact.units import doubts, in_si
 from bouncing_ball_contacts.contact.write import (
     at_step_of_parameters,
     describe_for,
-    drop_of_parameters,
     settings_for,
 )
 from bouncing_ball_contacts.engines.drop_scripts import drop_script
@@ -141,11 +140,11 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
             "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
             "as generic"
         )
+    at_step = dropped_at_step = None
     if engine is not None:
         at_step = engine.asked or engine.at_step
-    else:
-        at_speed = _impact_speed(found, speed)
-        at_step = at_step_of_parameters(contact, si.get("time_step"), error, at_speed)
+    elif stepped := at_step_of_parameters(found, si.get("time_step"), error, speed):
+        at_step, dropped_at_step = stepped
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,
@@ -153,21 +152,10 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
         engine=engine,
         at_step=at_step,
         question=read,
-        dropped_at_step=(
-            None
-            if engine is not None
-            else drop_of_parameters(contact, at_step, found.case.table.gravity, speed)
-        ),
+        dropped_at_step=dropped_at_step,
         diagnosis=diagnosis(contact, None if engine is not None else at_step),
         doubts=doubts(given, KINDS),
     )
-
-
-def _impact_speed(found: Assessment | Description, speed: float | None) -> float | None:
-    """The speed in m/s of the impacts in question: that of the orbit, or of a drop."""
-    if isinstance(found, Description):
-        return speed
-    return found.judged.impact_speed
 
 
 def _of(kind: Any, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,14 +3,12 @@
 The sentences are in ``templates/engine.txt.j2``.
 """
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.options import option
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
 from bouncing_ball_contacts.contact.hertz import rayleigh_time
-from bouncing_ball_contacts.contact.texts import shown
+from bouncing_ball_contacts.contact.texts import lines, shown
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import Range
 from bouncing_ball_contacts.engines.engine import ERROR, EngineParameters, Written, without_step
@@ -61,12 +59,6 @@ def engine_lines(given: DesignAnswer) -> list[str]:
     """
     engine = given.engine
     at = given.at_step
-    texts = Environment(
-        loader=PackageLoader("bouncing_ball_contacts.cli"),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     orbit = (
         ()
         if engine is None
@@ -76,7 +68,8 @@ def engine_lines(given: DesignAnswer) -> list[str]:
             ("orbit, penetration", engine.penetration, "m"),
         )
     )
-    text = texts.get_template("engine.txt.j2").render(
+    return lines(
+        "engine",
         given=given,
         engine=engine,
         at=at,
@@ -86,12 +79,10 @@ def engine_lines(given: DesignAnswer) -> list[str]:
         was_run=engine is None or engine_named(engine.name).was_run,
         many=_MANY,
         error=ERROR,
-        shown=shown,
         ends=ends,
         line=line,
         option=option,
     )
-    return text.splitlines()
 
 
 def _retuned(given: DesignAnswer) -> EngineParameters:

@@ -28,12 +28,13 @@ from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed
 from bouncing_ball_contacts.contact.starts import FEW, SharesOfStarts, ends_of_starts
 from bouncing_ball_contacts.contact.table import Table
-from bouncing_ball_contacts.contact.verdict import judged_choice, said_of_orbit
-from bouncing_ball_contacts.contact.verdict_on_motion import (
+from bouncing_ball_contacts.contact.verdict import (
     Sentences,
     aside,
     headline,
+    judged_choice,
     said_of_motion,
+    said_of_orbit,
 )
 
 STEPS = 50

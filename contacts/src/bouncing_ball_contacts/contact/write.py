@@ -327,12 +327,16 @@ def _of_law(case: ResolvedContact, name: str, speed: float | None) -> tuple[Engi
 
 
 def at_step_of_parameters(
-    contact: Contact, time_step: float | None, error: float, speed: float | None = None
-) -> AtStep | None:
+    found: Assessment | Description,
+    time_step: float | None,
+    error: float,
+    speed: float | None = None,
+) -> tuple[AtStep, DropInSteps | None] | None:
     """What the engine whose parameters are given does with them at a time step in s, which may be
-    one of the parameters; None without a step.
+    one of the parameters, and a drop there; None without a step.
 
-    ``speed`` is the impact speed in m/s on which r may depend.
+    ``speed`` is the impact speed of the drop in m/s, on which r may depend; on a table r is that at
+    the impact speed of the orbit.
 
     Raises
     ------
@@ -340,6 +344,8 @@ def at_step_of_parameters(
         If no engine is named, the step is given twice, the parameters of this engine contain none,
         or r depends on the speed and none is given.
     """
+    case = found.case
+    contact = case.given
     engine = contact.engine
     if engine is None:
         if time_step is None:
@@ -354,25 +360,16 @@ def at_step_of_parameters(
     step = own if time_step is None else time_step
     if step is None:
         return None
-    plain = contact.by_stiffness_and_loss()
     parameters = without_step(contact.engine_parameters)
-    found = engine.at_step_of(parameters, plain.mass, step, error, plain.release, speed)
-    return replace(found, is_of_parameters=own is not None)
-
-
-def drop_of_parameters(
-    contact: Contact, at: AtStep | None, gravity: float, speed: float | None
-) -> DropInSteps | None:
-    """A drop onto a contact by parameters of an engine, at the step of ``at``; None without a
-    step.
-    """
-    engine = contact.engine
-    if at is None or engine is None:
-        return None
-    mass = contact.by_stiffness_and_loss().mass
-    parameters = without_step(contact.engine_parameters)
-    written, _ = engine.stepped(parameters, mass, at.time_step, engine.release(contact.release))
-    height = _height(contact, gravity, speed)
-    return written.drop(
-        at.time_step, at.steps, height, gravity, at.restitution, is_stable=at.is_stable
+    at_speed = speed if isinstance(found, Description) else found.judged.impact_speed
+    written, at = engine.at_step_of(parameters, case.mass, step, error, contact.release, at_speed)
+    gravity = case.table.gravity
+    drop = written.drop(
+        step,
+        at.steps,
+        _height(contact, gravity, speed),
+        gravity,
+        at.restitution,
+        is_stable=at.is_stable,
     )
+    return replace(at, is_of_parameters=own is not None), drop

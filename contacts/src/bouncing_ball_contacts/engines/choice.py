@@ -36,15 +36,10 @@ from typing import Any
 from bouncing_ball.errors import ModelError, one_of
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.drake import DRAKE
-from bouncing_ball_contacts.engines.engine import Engine, EngineParameters, LawInSI, proportional
+from bouncing_ball_contacts.engines.engine import Engine, proportional
 from bouncing_ball_contacts.engines.granular import LAMMPS, LIGGGHTS, MERCURYDPM
 from bouncing_ball_contacts.engines.mujoco import GENESIS, MUJOCO, NEWTON_MUJOCO
-from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
-
-
-def _with_mass(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
-    return contact._asdict()
 
 
 def _instant_of_pybullet(restitution: float) -> str:
@@ -63,7 +58,7 @@ _ROWS = (
             Scheme.SEMI_IMPLICIT,
             has_mass=True,
         ),
-        parameters=_with_mass,
+        parameters=lambda contact, law=None: contact._asdict(),
     ),
     MUJOCO,
     LAMMPS,

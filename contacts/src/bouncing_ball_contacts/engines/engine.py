@@ -227,9 +227,9 @@ class Engine:
         error: float = ERROR,
         release: str | None = None,
         speed: float | None = None,
-    ) -> AtStep:
-        """What the engine does with parameters and a time step in s, at an impact speed in m/s if r
-        depends on it.
+    ) -> tuple["Written", AtStep]:
+        """The contact that the engine computes with parameters and a time step in s, and what it
+        does there, at an impact speed in m/s if r depends on it.
 
         Parameters that are not made for this step are damped by it: r is then compared with the
         limit of small steps.
@@ -241,27 +241,13 @@ class Engine:
         """
         rule = self.release(release)
         asked = Written(self, self.read(parameters, mass), rule)
-        found, remarks = self.stepped(parameters, mass, time_step, rule, speed)
-        return replace(found.at_step(time_step, error, asked), remarks=remarks)
-
-    def stepped(
-        self,
-        parameters: Mapping[str, Any],
-        mass: float | None,
-        time_step: float,
-        release: Release,
-        speed: float | None = None,
-    ) -> tuple["Written", tuple[str, ...]]:
-        """The contact that the engine computes with parameters and a time step in s, with the law
-        of its steps, and sentences on how the engine changes the parameters.
-        """
         values, remarks = self.kept_stable(parameters, time_step)
         if self.scheme.is_compensated:
             values = {**values, _STEP: time_step}
         contact = self.contact(values, mass)
         law = self.law(values, contact.mass)
-        of_law = None if law is None else LawInSI(law, speed)
-        return Written(self, contact, release, of_law), remarks
+        found = Written(self, contact, rule, None if law is None else LawInSI(law, speed))
+        return found, replace(found.at_step(time_step, error, asked), remarks=remarks)
 
     def settings(
         self,

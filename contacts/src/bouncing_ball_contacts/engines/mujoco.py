@@ -207,7 +207,7 @@ def _kept_stable(
 
     Examples
     --------
-    >>> found = MUJOCO.at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
+    >>> _, found = MUJOCO.at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
     >>> found.is_stable, found.remarks[0]
     (False, 'MuJoCo raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)')
     """

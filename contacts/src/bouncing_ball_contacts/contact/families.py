@@ -140,6 +140,7 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     Examples
     --------
     >>> from bouncing_ball_contacts.contact.contact import Contact
+    >>> from bouncing_ball_contacts.contact.table import TableMotion
     >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
     >>> spring = SpringDamper(10.0, 0.0)
     >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 1.0, 1.0), spring, spring)
@@ -202,6 +203,7 @@ def families(
     Examples
     --------
     >>> from bouncing_ball_contacts.contact.contact import Contact
+    >>> from bouncing_ball_contacts.contact.table import TableMotion
     >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
     >>> spring = SpringDamper(10.0, 0.1)
     >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 0.5, 1.0), spring, spring)

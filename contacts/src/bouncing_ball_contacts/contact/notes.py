@@ -1,12 +1,10 @@
 """Sentences that a user should read in addition to the numbers of a contact and the verdict."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.named_laws import contact_in_words
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_contacts.contact.families import ComparedOrbit
@@ -101,13 +99,10 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
 
 def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> tuple[str, ...]:
     """Sentences that a user should read in addition to the verdict."""
-    contact = case.equivalent
     engine = case.given.engine
-    cost = pushes = None
+    cost = None
     if not case.is_spring_damper and engine is not None and not engine.needs_speed:
         cost = _cost_of_law(engine, case, family)
-    if case.is_linear and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
-        pushes = float(replace(contact, release=Release.FORCE).restitution)
-    of = {"law": contact_in_words(case.law), "cost": cost, "pushes": pushes, "most": _MOST}
+    of = {"law": contact_in_words(case.law), "cost": cost, "most": _MOST}
     found = lines("notes", case=case, family=family, motion=motion, **of)
     return (*found, *force_formula(case))

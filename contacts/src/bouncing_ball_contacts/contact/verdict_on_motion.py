@@ -14,7 +14,7 @@ from bouncing_ball_contacts.contact.texts import in_place_of, percent, shown, si
 # What a ball does that starts near an orbit, by the kind of the motion on which it ends.
 _DOES: Mapping[str, str] = {
     Kind.ORBIT: "settles on a periodic orbit, which repeats",
-    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
+    Kind.SUBHARMONIC: "settles on a subharmonic orbit, which repeats",
     Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "comes to rest on the table",
     Kind.CHAOTIC: "ends in chaotic motion",
@@ -79,7 +79,7 @@ def _reason(judged: MotionJudgement) -> str:
 
 
 def _named(kind: str | None) -> str:
-    words: dict[str | None, str] = {Kind.ORBIT: "periodic", Kind.SUBHARMONIC: "doubled"}
+    words: dict[str | None, str] = {Kind.ORBIT: "periodic", Kind.SUBHARMONIC: "subharmonic"}
     return words.get(kind, str(kind))
 
 

@@ -38,7 +38,7 @@ def few_starts(monkeypatch):
         (
             1.1,
             "subharmonic",
-            "doubled orbit, which repeats after 2 periods of the table and 2 impacts.",
+            "subharmonic orbit, which repeats after 2 periods of the table and 2 impacts.",
         ),
         (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
     ],
@@ -135,7 +135,7 @@ LOCKED = ("locked", "locked")
     [
         (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
         (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
-        (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
+        (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is subharmonic"),
         (
             motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}),
             True,

@@ -7,6 +7,7 @@ from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.options import option
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
+from bouncing_ball_contacts.contact.drops import deep
 from bouncing_ball_contacts.contact.hertz import rayleigh_time
 from bouncing_ball_contacts.contact.texts import lines, shown
 from bouncing_ball_contacts.engines.choice import engine_named
@@ -68,12 +69,18 @@ def engine_lines(given: DesignAnswer) -> list[str]:
             ("orbit, penetration", engine.penetration, "m"),
         )
     )
+    # A drop that was asked for has its own remarks.
+    too_deep: tuple[str, ...] = ()
+    if engine is not None and engine.drop is not None and given.dropped is None:
+        most = engine.drop.compression.most
+        too_deep = deep(most, given.found.case.given.radius, "in this drop")
     return lines(
         "engine",
         given=given,
         engine=engine,
         at=at,
         orbit=orbit,
+        too_deep=too_deep,
         retuned=_retuned(given),
         rayleigh=rayleigh_time(given.found.case.given),
         was_run=engine is None or engine_named(engine.name).was_run,

@@ -32,7 +32,7 @@ _NO_CROSSING = {
 # What a ball does that starts near an orbit, by the kind of the motion on which it ends.
 _DOES: Mapping[str, str] = {
     Kind.ORBIT: "settles on a periodic orbit, which repeats",
-    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
+    Kind.SUBHARMONIC: "settles on a subharmonic orbit, which repeats",
     Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "comes to rest on the table",
     Kind.CHAOTIC: "ends in chaotic motion",

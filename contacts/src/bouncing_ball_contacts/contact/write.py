@@ -91,7 +91,7 @@ def write_contact(
 
     >>> found = write_contact(contact, EngineSetup(engine="mujoco", time_step="1 ms"))
     >>> found.changed, found.contact.stiffness < 5e4, found.drop.error < 0.02
-    ('stiffness', True, True)
+    ('stiffness and damping', True, True)
     """
     asked = Question() if question is None else question
     # Without a table its place is held by its class.
@@ -207,7 +207,9 @@ def settings_for(
         if speed is None and judged is not None:
             speed = judged.impact_speed
         written = Written(engine, settings.contact, case.equivalent.release, law)
-        settings = _dropped(written, settings, case, _height(case.given, case.table.gravity, speed))
+        height = _height(case.given, case.table.gravity, speed)
+        is_suited = judged is None and not case.given.is_stiff
+        settings = _dropped(written, settings, case, height, is_suited)
     # At a step that is too long the contact has another r, and so another orbit.
     if judged is None or (settings.at_step is not None and not settings.at_step.is_within):
         return settings
@@ -222,9 +224,16 @@ def settings_for(
 
 
 def _dropped(
-    asked: Written, settings: EngineSettings, case: ResolvedContact, height: float
+    asked: Written,
+    settings: EngineSettings,
+    case: ResolvedContact,
+    height: float,
+    is_suited: bool,
 ) -> EngineSettings:
-    """The settings with their drop, or at a step that is too long those with the least error."""
+    """The settings with their drop, or at a step that is too long those with the least error.
+
+    ``is_suited`` tells whether the stiffness was chosen for the step.
+    """
     gravity = case.table.gravity
     at = settings.at_step
     r = settings.restitution if at is None else at.restitution
@@ -232,18 +241,13 @@ def _dropped(
     if measured.rebound_height is not None:
         r = math.sqrt(measured.rebound_height / measured.drop_height)
     tried = [("", asked, settings)]
-    if at is not None and not at.is_within and case.given.is_stiff:
-        suited = asked.suited(at, r, height, gravity)
-        candidates = {
-            "damping": asked.retuned(at),
-            "stiffness": suited,
-            "stiffness and damping": suited[0].retuned(suited[1]),
-        }
-        tried += [
-            (what, one[0], one[0].settings(one[1]))
-            for what, one in candidates.items()
-            if one is not None
-        ]
+    if at is not None and not at.is_within:
+        candidates = {"damping": asked.tuned(at, r, height, gravity)}
+        if not is_suited:
+            other, there = asked.suited(at, r, height, gravity)
+            candidates["stiffness"] = other, there
+            candidates["stiffness and damping"] = other.tuned(there, r, height, gravity)
+        tried += [(what, one, one.settings(there)) for what, (one, there) in candidates.items()]
     drops = [
         written.drop(
             one.time_step,
@@ -258,7 +262,8 @@ def _dropped(
     errors = np.array([math.inf if drop is None else drop.error for drop in drops])
     # The fewest changes that are about as good as the best ones.
     best = int(np.argmax(errors <= _AS_GOOD * errors.min()))
-    changed, written, settings = tried[best]
+    what, written, settings = tried[best]
+    changed = "" if is_suited else what
     settings = replace(
         settings,
         changed=changed,

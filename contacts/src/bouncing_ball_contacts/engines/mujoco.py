@@ -145,7 +145,7 @@ def _solref(engine: Engine, parameters: Mapping[str, Any]) -> tuple[float, float
     """The two numbers of ``solref``, after a check of ``solimp``."""
     impedance(parameters.get("solimp", ()))
     if "solref" not in parameters:
-        raise ModelError("solref is missing: give it, such as '-10000 -20'")
+        raise ModelError("solref is missing: give it, such as the default of MuJoCo, '0.02 1'")
     first, second = _numbers("solref", parameters["solref"], range(2, 3))
     return first, second
 

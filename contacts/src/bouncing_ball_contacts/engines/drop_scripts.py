@@ -50,9 +50,10 @@ def drop_script(settings: EngineSettings, radius: float | None, gravity: float) 
         "end": (steps + 0.5) * settings.time_step,
     }
     texts = {name: f"{value:.12g}" for name, value in numbers.items()}
+    without = f", with a radius of {size:.3g} m because none was given,"
     recipe = settings.snippet
     if settings.name == "lammps":
         # The units come before the box.
         recipe = recipe.split("\n", 1)[1]
     text = text_to_paste(f"{settings.name}-drop")
-    return filled(text, texts | {"recipe": recipe}) + "\n"
+    return filled(text, texts | {"recipe": recipe, "without": "" if radius else without}) + "\n"

@@ -500,7 +500,9 @@ class Written:
             step = self.with_damping(factor * self.damping).step(at.time_step)
             half = self.engine.half_steps
             found = restitutions_in_steps(step, height, gravity, at.steps, half_steps=half)
-            return float(np.abs(found - restitution).max())
+            # A ball that rises higher than it fell is farther off than one that stays.
+            gains = found.max() >= 1 > restitution
+            return float(np.abs(found - restitution).max()) + gains
 
         inner = scipy.optimize.minimize_scalar(error, bounds=(0.0, _MOST_DAMPING)).x
         # The search does not reach its ends.

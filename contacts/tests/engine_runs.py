@@ -126,10 +126,9 @@ def drake(trial: Trial) -> tuple[np.ndarray, float]:
 
     names = dict(vars(pydrake))
     exec(trial.settings.snippet, names)
-    plant = names["plant"]
     properties = names["properties"]
     builder = pydrake.DiagramBuilder()
-    pydrake.AddMultibodyPlantSceneGraph(builder, plant)
+    plant, _ = pydrake.AddMultibodyPlant(names["config"], builder)
     plant.mutable_gravity_field().set_gravity_vector([0, 0, -trial.gravity])
     inertia = pydrake.SpatialInertia.SolidSphereWithMass(trial.mass, RADIUS)
     ball = plant.AddRigidBody("ball", inertia)

@@ -27,6 +27,25 @@ def test_the_laws_are_ranked_with_verdicts(outcome):
     assert any("N/m^1.5" in row for row in rows)
 
 
+@pytest.mark.parametrize("name", ["croquet", "thin_drop", "superball"])
+def test_laws_with_one_curve_share_a_row(outcome, name):
+    """A constant r, and both laws of Hunt and Crossley; of one impact all laws."""
+    text = outcome("fit", name)[1].splitlines()
+    head = next(k for k, row in enumerate(text) if row.startswith("law "))
+    rows = [row.split("  ")[0] for row in text[head + 1 : text.index("", head)]]
+    constant = "restitution, linear, elasto-backlash, tsuji"
+    sharp = "hunt-crossley, hunt-crossley-linear"
+    wanted = [constant, "kuwabara-kono", sharp]
+    assert sorted(rows) == sorted([", ".join(wanted)] if name == "superball" else wanted)
+    answer = json.loads(outcome("fit", name, "--json")[1])
+    assert [", ".join(names) for names in answer["curves"]] == rows
+    assert {law["law"] for law in answer["laws"]} == {
+        x for names in answer["curves"] for x in names
+    }
+    # Rounding decides neither the order of such laws nor which of them has the smallest rms.
+    assert not any("hunt-crossley-linear has the smallest" in note for note in answer["notes"])
+
+
 def test_the_second_command_is_the_contact_of_the_first(outcome):
     """From measured impacts to solref in two commands."""
     _, out, _ = outcome("fit", "croquet", "--frequency", "20 Hz")
@@ -153,10 +172,36 @@ def test_a_recording_is_written_for_an_engine_in_one_command(outcome, tmp_path):
     assert text.index("Dropped from") < text.index("verdict") < text.index("Left out: line 5 of")
     answer = json.loads(outcome("fit", str(path), *options, "--json")[1])
     drop = answer["recipe"]["engine"]["drop"]
-    # The drop has the impact speed at which r is taken, by its own formula.
-    assert drop["height"] == pytest.approx(answer["speed"] ** 2 / (2 * 9.80665), rel=1e-12)
+    # The drop has the impact speed at which r is taken, in six digits, by its own formula.
+    assert drop["height"] == pytest.approx(answer["speed"] ** 2 / (2 * 9.80665), rel=1e-5)
     assert answer["recipe"]["engine"]["wanted"] == pytest.approx(0.8, rel=1e-3)
     assert drop["error"] < 0.05 and (tmp_path / "drop.py").exists()
+
+
+def test_a_recipe_says_first_that_no_law_fits(outcome, tmp_path):
+    path = tmp_path / "drops.csv"
+    v = [0.7 * 1.2**k for k in range(12)]
+    rows = "".join(
+        f"{x:.6f},{0.9 - 0.05 * x + 0.0005 * (-1) ** k:.6f},no\n" for k, x in enumerate(v)
+    )
+    path.write_text("speed [m/s],restitution,wet\n" + rows)
+    options = ("--speed", "3 m/s", "--mass", "46 g", "--engine", "mujoco", "--time-step", "2 ms")
+    text = outcome("fit", str(path), *options)[1]
+    answer = json.loads(outcome("fit", str(path), *options, "--json")[1])
+    assert {law["verdict"] for law in answer["laws"]} == {"deviates"}
+    low, high = answer["restitution_interval"]
+    assert low < 0.75 < high < low + 0.02
+    first = text.splitlines()[0]
+    assert first.startswith("No law fits") and "a smooth curve through the points" in first
+    assert f"e = {answer['restitution']:.4f} (95 % {low:.4f} to {high:.4f})" in first
+    # The recipe and the next command have this r, and not that of the best law.
+    used = pytest.approx(answer["restitution"], rel=1e-5)
+    assert answer["recipe"]["engine"]["wanted"] == used
+    assert float(shlex.split(answer["design"])[-1]) == used
+    assert "Left out: column 'wet'." in answer["notes"]
+    # Without an engine the sentence stands before the commands.
+    rest = outcome("fit", str(path), *options[:2])[1]
+    assert rest.index("verdict") < rest.index("No law fits") < rest.index("bouncing-ball design")
 
 
 @pytest.mark.parametrize(

@@ -66,6 +66,12 @@ design BALL TABLE --engine mujoco lammps
     unrecognized arguments: lammps: --engine takes one value
 design --mass "20 g" --from lammps --set kn=1e5,gamma_n=80
     argument --set: 'kn=1e5,gamma_n=80' is not NAME=NUMBER … repeat the option for each parameter
+design --mass "20 g" --from lammps --set kn==1e5
+    argument --set: 'kn==1e5' is not NAME=NUMBER, such as stiffness=1000: did you mean kn=1e5?
+design --mass "20 g" --from mujoco --set solref=0.02
+    --set solref=0.02 gives one number, and solref has two: give --solref, such as '0.02 0.5'
+design --mass "20 g" --from mujoco --solref 0.02
+    solref = '0.02' is not 2 numbers: '0.02 0.5' (s, damping ratio) or '-1e4 -20' (-k/m, -c/m)
 design --mass "20 g" --from lammps --set kn=100kN --set gamma_n=80
     argument --set: 'kn=100kN' is not NAME=NUMBER, such as stiffness=1000: give it without
 design BALL TABLE --table-amplitude "1 mm"

@@ -99,7 +99,7 @@ BALL --frequency "1e-6 Hz" --acceleration "0.8 g"
 --mass "20 g" --restitution 0.8 --engine mujoco --time-step "1 ms" --restitution-error 1e-12
     no contact shorter than 1000 s has its r within --restitution-error 1e-12 at --time-step
 --mass "20 g" --from mujoco
-    solref is missing: give it, such as '-10000 -20'
+    solref is missing: give it, such as the default of MuJoCo, '0.02 1'
 --mass "20 g" --from mujoco --solref "0.02,1"
     solref = '0.02,1' is not 2 numbers: write it without commas, '0.02 1'
 --mass "20 g" --from mujoco --solref "0.02 0"

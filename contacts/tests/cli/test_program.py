@@ -108,5 +108,7 @@ def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they
     assert done.returncode == 2
     designed, fitted, named = done.stdout.splitlines()
     assert json.loads(designed) and json.loads(fitted) and named == "True"
-    assert done.stderr.startswith("bouncing-ball: matplotlib is not installed: ")
-    assert "the extra 'plot'" in done.stderr and done.stderr.count("\n") == 1
+    # A busy machine says beside it that there is no answer yet.
+    (said,) = [line for line in done.stderr.splitlines() if "no answer after" not in line]
+    assert said.startswith("bouncing-ball: matplotlib is not installed: ")
+    assert "the extra 'plot'" in said

@@ -10,7 +10,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
-from bouncing_ball_contacts.contact.verdict_on_motion import aside, said_of_motion
+from bouncing_ball_contacts.contact.verdict import aside, said_of_motion
 
 UNIT = {"mass": 1.0, "frequency": "1 rad/s", "gravity": 1.0, "restitution": 0.85, "n": 1}
 
@@ -38,7 +38,7 @@ def few_starts(monkeypatch):
         (
             1.1,
             "subharmonic",
-            "doubled orbit, which repeats after 2 periods of the table and 2 impacts.",
+            "subharmonic orbit, which repeats after 2 periods of the table and 2 impacts.",
         ),
         (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
     ],
@@ -135,7 +135,7 @@ LOCKED = ("locked", "locked")
     [
         (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
         (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
-        (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
+        (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is subharmonic"),
         (
             motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}),
             True,

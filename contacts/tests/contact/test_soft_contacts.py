@@ -10,7 +10,7 @@ import bouncing_ball_contacts
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.judgement import MotionJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion
-from bouncing_ball_contacts.contact.verdict_on_motion import said_of_motion
+from bouncing_ball_contacts.contact.verdict import said_of_motion
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from statistics import NormalDist
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -53,3 +54,22 @@ def test_a_law_is_followed_itself():
     assert found.balls == 36 and found.by_text == {"permanent contact": 1.0}
     of_linear = ends_of_starts(replace(case, law=other, equivalent=other))
     assert of_linear.balls == 144 and of_linear.by_text.get("permanent contact", 0.0) < 0.9
+
+
+def test_the_first_motion_is_the_commonest_one_of_the_commonest_kind(monkeypatch):
+    motions = [
+        MotionName(Kind.LOCKED, 4, 3),
+        MotionName(Kind.SUBHARMONIC, 2, 2),
+        MotionName(Kind.SUBHARMONIC, 3, 3),
+    ]
+    which = np.array([[0, 0, 1, 2, 0], [1, 2, 2, 1, 2]])
+    share = np.bincount(which.ravel()) / which.size
+    found = SimpleNamespace(
+        which=which, share=share, motions=motions, phase=np.arange(5.0), speed=np.ones(2)
+    )
+    monkeypatch.setattr("bouncing_ball_contacts.contact.starts.basins", lambda *_, **__: found)
+    spring = SpringDamper(10.0, 0.2)
+    case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 0.2, 1.0), spring, spring)
+    ends = ends_of_starts(case)
+    # Of ten balls four end on the last motion, and seven on subharmonic ones.
+    assert ends.first[0] == 3.0 and ends.sentence.startswith("Of 10 balls with other starts, 70 %")

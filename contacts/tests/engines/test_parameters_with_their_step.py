@@ -54,10 +54,11 @@ def test_the_range_is_that_of_the_steps(name, parameters, step):
 def test_the_text_has_the_range_in_place_of_a_number(said):
     options = ["--from=pybullet", "--mass=0.5", "--set=time_step=0.0041667"]
     options += [f"--set={name}={value}" for name, value in PYBULLET.items()]
-    text = said("design", *options)
+    text = said("design", "--all", *options)
     (row,) = [line for line in text.splitlines() if line.startswith("restitution of a free")]
     assert row.split(maxsplit=5)[5] == "0.1071 to 0.5145 at this step"
     assert "Note: all numbers but r are those of the contact whose positions these steps" in text
+    assert "restitution of a free" not in said("design", *options)
     options += ["--frequency=20 Hz", "--acceleration=0.8 g"]
     text = said("design", *options)
     assert "Note: motion, verdict and orbits are those of the contact whose positions these" in text

@@ -14,6 +14,7 @@ from bouncing_ball_contacts.engines.steps import (
     HuntCrossleyStep,
     LinearStep,
     patience,
+    steps_inside,
     until_outside,
 )
 
@@ -65,3 +66,18 @@ def test_a_drop_on_a_hunt_crossley_contact_in_small_steps_rises_as_the_work_of_i
         r = math.sqrt(2 * g * height) / speed
         # Errors of first order in ωΔt = 2e-3, and of the weight over the force, g/(ωV).
         assert (1 - r * d) * math.exp(d * (1 + r)) == pytest.approx(1 + d, abs=2e-3)
+
+
+@pytest.mark.parametrize("scheme", [one for one in Scheme if one.is_implicit])
+@pytest.mark.parametrize("h", [0.1, 0.6, 2.0])
+def test_a_ball_that_is_known_to_stay_stays_in_all_later_steps(scheme, h):
+    # Slow impacts and gravity: some balls leave the contact, and some do not.
+    speeds = np.linspace(0.1, 12.0, 100)
+    of = (scheme, 1.0, 0.3, Release.FORCE, h)
+    for step in (LinearStep.of(*of), HuntCrossleyStep(1.0, 0.3, h)):
+        start = (-0.5 * h * speeds, -speeds)
+        *_, (last, _, _) = steps_inside(step, *start, 2000, 1.0)
+        x, v = until_outside(step, *start, 2000, 1.0)
+        assert np.array_equal(x >= 0, last >= 0) and np.array_equal(x[x >= 0], last[x >= 0])
+        kept = step.keeps(x, v, 1.0) & (x < 0)
+        assert np.array_equal(kept, x < 0) and 0 < np.count_nonzero(kept)

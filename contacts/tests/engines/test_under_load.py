@@ -16,8 +16,11 @@ from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts import Contact, EngineSetup, write_contact
 from bouncing_ball_contacts.contact.describe import describe_contact
+from bouncing_ball_contacts.engines.choice import ENGINES
+from bouncing_ball_contacts.engines.engine import Written
 from bouncing_ball_contacts.engines.least_error import stiffness_of_least_error
 
 G = 9.80665
@@ -209,6 +212,23 @@ def test_without_a_stiffness_the_contact_has_the_least_error_with_gravity(
         assert error_of(name, other, mass, height, r) > own - 0.003
 
 
+@pytest.mark.parametrize(
+    ("name", "mass", "r", "step"), [("physx", 0.2, 0.7, 1e-3), ("mujoco", 0.2, 0.7, 2e-3)]
+)
+def test_no_other_damping_is_nearer_to_r_in_the_drop(name, mass, r, step):
+    given = Contact(mass=mass, restitution=r)
+    settings = write_contact(given, EngineSetup(engine=name, time_step=step))
+    k, c = settings.contact[1:]
+    critical = 2 * math.sqrt(mass * k)
+    for damping in (0.0, *(c + np.array([-0.05, -0.01, 0.01, 0.05]) * critical)):
+        if damping >= 0:
+            contact = settings.contact._replace(damping=damping)
+            written = Written(ENGINES[name], contact, Release.FORCE)
+            other = written.drop(step, settings.at_step.steps, 1.0, G, r)
+            # The damping has three digits, and the error is at most r for as much damping.
+            assert other.error > settings.drop.error - 1e-3 * r
+
+
 def test_pybullets_restitution_is_named_where_it_is_better():
     settings = write_contact(
         Contact(mass=0.5, restitution=0.75), EngineSetup(engine="pybullet", time_step=1 / 240)
@@ -281,7 +301,7 @@ def of_mujoco(classes=('class="bounce"', 'class="bounce"'), condim=None, cone="p
     )
     text = settings.snippet
     if condim is not None:
-        text = text.replace('condim="3"', f'condim="{condim}"')
+        text = text.replace("<geom ", f'<geom condim="{condim}" ')
     plane, sphere = classes
     model = mujoco.MjModel.from_xml_string(f"""<mujoco>
 {text}

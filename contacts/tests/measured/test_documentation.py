@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.measured.columns import COLUMNS, HIGHEST
 from bouncing_ball_contacts.measured.experiment import (
-    COLUMNS,
     QUANTITIES,
     TEXTS,
     experiment,
@@ -98,6 +99,13 @@ def test_the_errors_that_the_page_names_are_those_of_the_fits():
     ball = experiment("bouncy_ball").fit().points
     height = np.sqrt(scatter(ball)[0])
     assert f"an error of {height * 1000:.0f} mm at all heights" in PAGE
+
+
+def test_the_bounds_of_the_page_are_those_of_a_fall():
+    mass = 7850 * np.pi / 6 * 0.05**3
+    terminal = np.sqrt(STANDARD_GRAVITY * drag_length(mass, 0.05))
+    assert f"a steel ball of 5 cm never falls faster than {terminal:.0f} m/s" in PAGE
+    assert f"a flight of\nmore than {np.sqrt(8 * HIGHEST / STANDARD_GRAVITY):.0f} s" in PAGE
 
 
 def test_the_drag_on_a_table_tennis_ball_is_some_per_cent():

@@ -107,7 +107,7 @@ def test_whole_numbers_in_two_columns_are_no_decimal_commas(tmp_path):
 
 def test_a_rebound_above_its_drop_is_named_by_its_line(tmp_path, refusal):
     path = write(tmp_path, "drop_height [cm],rebound_height [cm]\n100,49\n50,60\n")
-    with refusal(ModelError, "line 3: the rebound of 0.6 m is above the drop of 0.5 m"):
+    with refusal(ModelError, "line 3: the rebound height of 0.6 m is above the drop height"):
         read(path)
 
 
@@ -171,9 +171,14 @@ HOSTILE = {
     "recording,interval\n1,0.8\n1,0.4\n2,0.7\n": "recording 2 has fewer than two intervals",
     "recording,interval\nA,0.8\nA,0.4\n": "line 2: recording = 'A' does not begin with a number",
     "recording,speed\n1,0.8\n": "line 1: the columns must be",
-    "recording,speed,restitution\n1,1,0.8\n": "line 1: a column recording needs a column interval",
-    "speed,drop_height,restitution\n1,2,0.8\n": "line 1: the columns must be",
-    "interval,time\n0.8,0\n": "line 1: the columns must be",
+    "speed,drop_height\n1,0.8\n": "line 1: the columns must be",
+    "interval,time\n0.8,0\n": "there are fewer than two intervals",
+    "interval,time,time\n0.8,0,0\n": "line 1: the columns must be",
+    "v_in,v_out\n1,1.1\n": "line 2: the rebound speed of 1.1 m/s is above the speed of 1 m/s",
+    "Note (a\nspeed,restitution\n": "no line of numbers",
+    "time\n0\n0.02\n0.04\n0.06\n": "the times are equally spaced, as those of a film",
+    "interval\n0\n0.4\n0.2\n": "line 2: interval = 0 is not",
+    "No.,interval\n1,0\n2,0.4\n3,0\n": "line 4: interval = 0 is not",
     "interval,uncertainty\n0.8,0.1\n": "line 1: intervals and times have no column uncertainty",
     "time,duration\n0.8,0.1\n": "line 1: intervals and times have no column duration",
     "speed,restitution,duration_uncertainty\n1,0.8,0.1\n": "needs a column duration",
@@ -195,10 +200,15 @@ HOSTILE = {
     HEAD + "-1.0,0.8\n": "line 2: speed = -1",
     HEAD + "1 m/s,0.8 m\n": "line 2: restitution = 0.8 m",
     "speed [kg],restitution\n1,0.8\n": "line 1: speed = 1 kg is in",
-    "speed,velocity\n1,0.8\n": "line 1: unknown column 'velocity': one of speed",
+    "speed,velocity\n1,0.8\n": "line 1: the columns must be drop_height and rebound_height; or",
+    "Drops\nspeed,velocity\n1,0.8\n": "line 2: the columns must be",
+    "velocity,e,#\n1,0.8,2\n": "each of them once; not known: 'velocity'",
+    "speed,restitution,note\n1\n": "line 2: 1 values for 3 columns",
+    "speed,restitution,note\n0,50,0,857\n": "line 2: 4 values for 3 columns",
+    "speed,restitution,e\n1,0.8,0.8\n": "line 1: the columns must be",
     "speed,speed\n1,0.8\n": "line 1: the columns must be",
-    "speed\n1\n": "line 1: the columns must be speed and restitution",
-    "# weight: 3 N\n" + HEAD: "line 1: unknown key 'weight': one of title",
+    "speed\n1\n": "line 1: the columns must be drop_height and rebound_height",
+    "# masss: 3 g\n" + HEAD: "line 1: unknown key 'masss'; did you mean mass?",
     "# mass: 3 s\n" + HEAD: "line 1: mass = 3 s is in second, not in kg",
 }
 
@@ -224,6 +234,82 @@ def test_files_of_instruments_are_read(tmp_path, name):
 def test_heights_of_a_spreadsheet_are_read(tmp_path):
     text = "No.;Drop height (cm);Rebound height (cm)\n1;100,0;25,0\n2;50;12,5\n"
     assert read(write(tmp_path, text)).restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+
+
+# A column is left out if another one says what the file is; what only counts needs no note.
+PASSED_OVER = {
+    "No.;Drop height (cm);Rebound height (cm);Remark\n1;100,0;25,0;a, b\n2;50;12,5\n": ["'Remark'"],
+    "drop_height [cm],rebound_height [cm],e,Speed\n100,25,0.5,4.43\n100,25,0.5,x\n": [
+        "'e', 'Speed', because 'drop_height [cm]' is read"
+    ],
+    "recording,speed,restitution\n1,1,0.5\n1,2,0.5\n": ["'recording'"],
+    "Ball 3, on stone\nNr.\tv_in\tv_out\n1\t2,0\t1,0\n2\t3,0\t1,5\n": ["line 1 above the heading"],
+    "# Logger v2.1 2026-11-25T10:00\n# Date: today\nspeed before,speed after\n2,1\n4,2\n": [],
+    "rebound_speed (cm/s),impact speed (m/s),Temperature (C)\n100,2,20\n200,4,\n": [
+        "'Temperature (C)'"
+    ],
+    "v,e\n1,0.5\n2,0.5\n": [],
+}
+
+
+@pytest.mark.parametrize("text", PASSED_OVER, ids=range(len(PASSED_OVER)))
+def test_what_is_not_known_is_left_out_with_a_note(tmp_path, text):
+    found = read(write(tmp_path, text))
+    assert found.restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+    assert len(found.notes) == len(PASSED_OVER[text])
+    for note, part in zip(found.notes, PASSED_OVER[text], strict=True):
+        assert note.startswith("Left out: ") and part in note
+
+
+def test_speeds_before_and_after_are_a_restitution(tmp_path):
+    text = "v_in [cm/s],v_out [cm/s],uncertainty\n200,160,0.01\n400,300,0.02\n"
+    found = read(write(tmp_path, text))
+    assert found.speeds == pytest.approx([2.0, 4.0], rel=1e-12)
+    assert found.restitutions == pytest.approx([0.8, 0.75], rel=1e-12)
+    assert found.uncertainties.tolist() == [0.01, 0.02] and found.relative_errors is None
+    # No flight is computed, on which the drag would act.
+    assert not found.is_of_flights
+
+
+BOTH = '"No.","Event time (s)","Interval (s)"\n1,3.0,0\n2,3.8,0.8\n3,4.2,0.4\n4,4.4,0.2\n'
+PHYPHOX = '"Number of interval","Interval (s)","Retained energy (%)"\n1,0.8,\n2,0.4,25\n3,0.2,25\n'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [BOTH, BOTH.replace(",0\n", ",\n"), PHYPHOX],
+    ids=["a first interval of 0", "none", "numbers of intervals"],
+)
+@pytest.mark.parametrize("intervals", [True, False])
+def test_times_and_intervals_are_read_as_asked_and_it_is_said(tmp_path, text, intervals):
+    found = read(write(tmp_path, text), intervals=intervals)
+    assert found.restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+    if text is PHYPHOX:
+        assert found.notes == ("Left out: column 'Retained energy (%)'.",)
+    elif intervals:
+        assert found.notes == (
+            "Left out: column 'Event time (s)', because 'Interval (s)' is read.",
+            "Line 2 is the first impact, before which there is no interval.",
+        )
+    else:
+        assert found.notes == (
+            "Left out: column 'Interval (s)', because 'Event time (s)' is read.",
+        )
+
+
+def test_each_recording_may_begin_with_an_impact_without_an_interval(tmp_path):
+    text = "recording,No.,interval\n1,1,0\n1,2,0.8\n1,3,0.4\n2,1,0.0\n2,2,0.4\n2,3,0.2\n"
+    found = read(write(tmp_path, text))
+    assert found.restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
+    assert [note[:6] for note in found.notes] == ["Line 2", "Line 5"]
+
+
+def test_a_line_that_is_left_out_may_have_anything(tmp_path):
+    text = "speed,restitution\n1,0.5\n-,no ball\n2,0.5\n"
+    assert read(write(tmp_path, text), leave_out=[3]).speeds.tolist() == [1.0, 2.0]
+    text = "interval\n0.8\n0.4\nmissed\n0.1\n0.05\n"
+    found = read(write(tmp_path, text), leave_out=[4])
+    assert found.restitutions == pytest.approx([0.5, 0.5], rel=1e-12)
 
 
 def test_a_bad_bounce_is_left_out_with_the_impacts_beside_it(tmp_path, refusal):
@@ -257,6 +343,42 @@ def test_numbers_that_no_ball_has_are_those_of_a_file(tmp_path, refusal, text):
     path = write(tmp_path, text)
     with refusal(ModelError, str(path)):
         read(path)
+
+
+# Numbers that are right in another unit, which the message names.
+IN_ANOTHER_UNIT = {
+    "775\n607\n489\n": (
+        "line 1: a flight of 775 s is 736265 m high: are these ms?",
+        "interval (ms)",
+    ),
+    "time [s]\n0\n775\n1382\n": ("line 3: a flight of 775 s", "'time (ms)'"),
+    "interval\n9.1\n4\n2\n": ("line 2: a flight of 9.1 s is 102 m high", "leave the line out by"),
+    "drop_height,rebound_height\n100,60\n": (
+        "line 2: a height of 100 m: are these cm?",
+        "'drop_height (cm)'",
+    ),
+    "drop_height [m],rebound_height [m]\n50,20\n101,40\n": ("line 3: a height of 101 m", "(cm)"),
+    HEAD + "443,0.8\n": ("line 2: a speed of 443 m/s: are these cm/s?", "'speed (cm/s)'"),
+    "v_in,v_out\n443,350\n": ("line 2: a speed of 443 m/s: are these cm/s?", "'speed (cm/s)'"),
+}
+
+
+@pytest.mark.parametrize("text", IN_ANOTHER_UNIT, ids=range(len(IN_ANOTHER_UNIT)))
+def test_numbers_in_another_unit_are_refused_with_the_unit_that_was_meant(tmp_path, refusal, text):
+    is_heard = text[0].isdecimal() or "interval" in text or "time" in text
+    with refusal(ModelError, *IN_ANOTHER_UNIT[text]):
+        read(write(tmp_path, text), intervals=is_heard)
+
+
+def test_numbers_within_the_bounds_are_read(tmp_path):
+    high = "drop_height [m],rebound_height [m]\n50,20\n99,40\n"
+    assert read(write(tmp_path, high)).speeds.size == 2
+    with_unit = "interval (ms)\n775\n607\n489\n"
+    assert read(write(tmp_path, with_unit)).speeds[0] == pytest.approx(9.80665 * 0.775 / 2)
+    assert read(write(tmp_path, HEAD + "99,0.5\n")).speeds.size == 1
+    # A clap before the ball is left out with its line.
+    clap = "time\n-20\n0\n0.8\n1.2\n"
+    assert read(write(tmp_path, clap), leave_out=[2]).restitutions == pytest.approx([0.5])
 
 
 def test_the_uncertainty_of_a_contact_time_may_belong_to_a_column(tmp_path):

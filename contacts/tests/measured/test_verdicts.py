@@ -9,6 +9,7 @@ import scipy
 from bouncing_ball_contacts.measured.curves import curve_named
 from bouncing_ball_contacts.measured.experiment import experiment
 from bouncing_ball_contacts.measured.fit import fit_contact
+from bouncing_ball_contacts.measured.flights import by_height
 from bouncing_ball_contacts.measured.law_fit import MeasuredPoints
 from bouncing_ball_contacts.measured.verdicts import (
     REJECTED,
@@ -18,7 +19,9 @@ from bouncing_ball_contacts.measured.verdicts import (
     judge,
     left_out,
     noise,
+    restitution_at_speed,
     scatter,
+    smooth_interval,
     trend_of_scatter,
 )
 
@@ -202,22 +205,92 @@ def test_hunt_and_crossleys_law_deviates_from_most_experiments():
 
 
 def test_the_interval_of_a_rejected_law_is_widened_by_the_scatter():
-    """The numbers of the interval by hand: Student's, with the scatter about a constant."""
+    """The numbers of the interval by hand: Student's, of a single impact about a constant."""
     speeds = np.geomspace(0.5, 6.0, 12)
     e = 0.9 - 0.06 * np.log(speeds)
-    fit = fit_contact(speeds, e, uncertainties=1e-3)
-    judged = judge(fit)["tsuji"]
-    assert judged.verdict is Compatibility.INCOMPATIBLE
-    narrow = fit.law("tsuji").interval
-    away = scipy.stats.t.ppf(0.975, 11) * e.std(ddof=1) / np.sqrt(12)
-    assert judged.interval == pytest.approx((e.mean() - away, e.mean() + away), rel=1e-9)
-    assert narrow == pytest.approx(
-        (e.mean() - 1.959964e-3 / np.sqrt(12), e.mean() + 1.959964e-3 / np.sqrt(12)), rel=1e-6
-    )
+    away = scipy.stats.t.ppf(0.975, 11) * e.std(ddof=1)
+    for errors, verdict in ((1e-3, Compatibility.INCOMPATIBLE), (None, Compatibility.DEVIATES)):
+        fit = fit_contact(speeds, e, uncertainties=errors)
+        judged = judge(fit)["tsuji"]
+        assert judged.verdict is verdict and judged.is_rejected
+        assert judged.interval == pytest.approx((e.mean() - away, e.mean() + away), rel=1e-9)
+        # More points narrow the interval of the law only.
+        assert np.ptp(fit.law("tsuji").interval) < 0.3 * np.ptp(judged.interval)
     # A law that is not rejected keeps the interval of the given uncertainties.
     same = np.full(12, 0.8) + 1e-3 * np.resize([1, -1], 12)
     kept = fit_contact(speeds, same, uncertainties=1e-3)
     assert judge(kept)["tsuji"].interval == kept.law("tsuji").interval
+
+
+def falling(noise, count=3):
+    """Drops whose e falls linearly with v, as no law does, and the errors of heights."""
+    generator = np.random.default_rng(7)
+    v = np.repeat(np.sqrt(2 * 9.80665 * np.array([0.05, 0.1, 0.2, 0.4, 0.8, 1.2, 1.6, 2.0])), count)
+    errors = by_height(v, 0.9 - 0.0314 * v)
+    e = 0.9 - 0.0314 * v + noise * errors * generator.standard_normal(v.size)
+    return v, e, errors
+
+
+@pytest.mark.parametrize("is_known", [True, False])
+def test_where_no_law_fits_r_is_that_of_a_smooth_curve(is_known):
+    v, e, errors = falling(2e-3)
+    fit = fit_contact(v, e, uncertainties=2e-3 * errors, absolute_uncertainties=is_known)
+    judged = judge(fit)
+    assert all(each.is_rejected for each in judged.values())
+    for speed in (2.0, 3.24, 5.0):
+        true = 0.9 - 0.0314 * speed
+        found = restitution_at_speed(fit, judged, speed)
+        assert found.law is None and not found.is_of_a_law_that_fits
+        assert found.interval[0] < true < found.interval[1]
+        # The error of one impact is 2 mm of height: some standard errors to each side.
+        size = 2e-3 * float(by_height(speed, true))
+        assert 2 * size < np.ptp(found.interval) < 10 * size
+    at = {each.law: float(each.restitution_at(3.24)) for each in fit.laws}
+    # The best law alone would be wrong by much more than its interval says.
+    low, high = fit.best.band(3.24)
+    assert not low < 0.9 - 0.0314 * 3.24 < high
+    assert abs(at[fit.best.law] - 0.9 + 0.0314 * 3.24) > 0.01
+
+
+def test_beyond_the_points_r_is_that_of_the_law_with_the_smallest_rms():
+    v, e, _ = falling(1e-4)
+    fit = fit_contact(v, e, uncertainties=1e-4)
+    judged = judge(fit)
+    for speed in (0.5 * v.min(), 1.5 * v.max()):
+        found = restitution_at_speed(fit, judged, speed)
+        least = min(fit.laws, key=lambda each: each.rms)
+        assert found.law == least.law and not found.is_of_a_law_that_fits
+        assert found.restitution == float(least.restitution_at(speed))
+        spread = scipy.stats.t.ppf(0.975, v.size - 1) * least.rms * np.sqrt(v.size / (v.size - 1))
+        low, high = found.interval
+        assert found.restitution - low == pytest.approx(spread, rel=1e-9)
+        assert high == pytest.approx(min(found.restitution + spread, 1.0), rel=1e-9)
+    # Four points have no smooth curve.
+    few = fit_contact([1.0, 2.0, 3.0, 4.0], [0.9, 0.8, 0.65, 0.4], uncertainties=1e-3)
+    found = restitution_at_speed(few, judge(few), 2.0)
+    assert found.law is not None and not found.is_of_a_law_that_fits
+
+
+def test_a_law_that_fits_gives_r_and_its_band():
+    (points,) = sample("kuwabara-kono", 0.001, 1, True)
+    fit = fit_contact(points.speeds, points.restitutions, uncertainties=points.covariance)
+    found = restitution_at_speed(fit, judge(fit), 3.0)
+    assert found.law == fit.best.law and found.is_of_a_law_that_fits
+    assert found.restitution == float(fit.best.restitution_at(3.0))
+    assert found.interval == tuple(map(float, fit.best.band(3.0)))
+
+
+def test_the_interval_of_the_smooth_curve_has_its_probability():
+    """Of a new impact at a speed between the points."""
+    generator = np.random.default_rng(8)
+    v = np.geomspace(0.5, 5.0, 12)
+    hits = 0
+    for _ in range(400):
+        points = MeasuredPoints(v, 0.8 - 0.03 * np.log(v) + 0.01 * generator.standard_normal(12))
+        low, high = smooth_interval(points, 3.0)
+        hits += low < 0.8 - 0.03 * np.log(3.0) + 0.01 * generator.standard_normal() < high
+    # 380 of 400 expected; fewer than 366 or more than 393 have probabilities of about 1e-3.
+    assert 366 <= hits <= 393
 
 
 @pytest.mark.parametrize(("share", "is_rejected"), [(0.6, False), (0.4, True)])

@@ -59,7 +59,10 @@ def _assignment(text: str) -> tuple[str, float]:
     number = options.to_number(value)
     if not name.strip() or number not in Range():
         why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
-        if "=" in value:
+        plain = value.lstrip("=")
+        if options.to_number(plain) in Range() and name.strip():
+            why += f": did you mean {name.strip()}={plain}?"
+        elif "=" in value:
             why += ": repeat the option for each parameter"
         elif "=" in text:
             why += options.meant_number(value, Range())

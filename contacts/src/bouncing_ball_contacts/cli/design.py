@@ -30,7 +30,6 @@ from bouncing_ball_contacts.contact.units import doubts, in_si
 from bouncing_ball_contacts.contact.write import (
     at_step_of_parameters,
     describe_for,
-    drop_of_parameters,
     settings_for,
 )
 from bouncing_ball_contacts.engines.drop_scripts import drop_script
@@ -57,12 +56,12 @@ def add_options(parser: Parser) -> None:
     """Add the options of :func:`design`."""
     add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
     add_file(parser, "script", "File for a script in Python that drops the ball in the engine.")
-    each = "By default each family has one line, unless n is given."
+    each = "By default a contact in an engine has no line, and each family one, unless n is given."
     parser.add_argument(
         option("all_families"),
         dest="all_families",
         action="store_true",
-        help=f"Print all results for every family. {each}",
+        help=f"Print all numbers of the contact and of every family. {each}",
     )
     for kind, names in _OPTIONS:
         add_optional(parser, kind, names)
@@ -141,11 +140,11 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
             "{restitution_error} is the error of an engine's time step: give {engine}, too, such "
             "as generic"
         )
+    at_step = dropped_at_step = None
     if engine is not None:
         at_step = engine.asked or engine.at_step
-    else:
-        at_speed = _impact_speed(found, speed)
-        at_step = at_step_of_parameters(contact, si.get("time_step"), error, at_speed)
+    elif stepped := at_step_of_parameters(found, si.get("time_step"), error, speed):
+        at_step, dropped_at_step = stepped
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,
@@ -153,21 +152,10 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
         engine=engine,
         at_step=at_step,
         question=read,
-        dropped_at_step=(
-            None
-            if engine is not None
-            else drop_of_parameters(contact, at_step, found.case.table.gravity, speed)
-        ),
+        dropped_at_step=dropped_at_step,
         diagnosis=diagnosis(contact, None if engine is not None else at_step),
         doubts=doubts(given, KINDS),
     )
-
-
-def _impact_speed(found: Assessment | Description, speed: float | None) -> float | None:
-    """The speed in m/s of the impacts in question: that of the orbit, or of a drop."""
-    if isinstance(found, Description):
-        return speed
-    return found.judged.impact_speed
 
 
 def _of(kind: Any, given: Mapping[str, Any]) -> dict[str, Any]:

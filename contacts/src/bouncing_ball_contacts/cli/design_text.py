@@ -14,8 +14,7 @@ from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
 from bouncing_ball_contacts.contact.families import ComparedOrbit, ErrorsByQuantity
 from bouncing_ball_contacts.contact.needed import Needed
-from bouncing_ball_contacts.contact.texts import percent, shown, signed
-from bouncing_ball_contacts.engines.given_step import AtStep
+from bouncing_ball_contacts.contact.texts import lines, percent, shown, signed
 
 _SIMPLE = "error law", "corrected"
 # The row that has a range if parameters contain a time step.
@@ -120,21 +119,6 @@ def _whole(found: Assessment) -> list[str]:
     ]
 
 
-def _at_small_steps(at: AtStep | None) -> list[str]:
-    """What the verdict on a table is about, if the engine's time step changes the contact."""
-    if at is None or at.is_within:
-        return []
-    what = "whose positions these steps have" if at.is_of_parameters else "with small time steps"
-    if at.speed is not None:
-        what = "with small time steps"
-    about = f"the contact {what}, and at {shown(at.time_step, 's')} its r is {at.span}"
-    return [f"Note: motion, verdict and orbits are those of {about}."]
-
-
-def _drop_remarks(given: DesignAnswer) -> list[str]:
-    return [] if given.dropped is None else [f"Note: {one}." for one in given.dropped.remarks]
-
-
 def _echo(question: Mapping[str, Any]) -> str:
     """The parameters that were given, with their units."""
     said = []
@@ -165,26 +149,25 @@ def _ratio(value: float | None, status: str) -> str:
 
 
 def design_lines(given: DesignAnswer) -> list[str]:
-    """The answer as text, with the verdict first."""
-    if isinstance(given.found, Description):
-        return _description(given, given.found)
-    return _assessment(given, given.found)
-
-
-def _description(given: DesignAnswer, found: Description) -> list[str]:
-    """The contact without a table; for an engine what is pasted first."""
-    doubts = [f"Note: {doubt}." for doubt in given.doubts]
-    notes = [*(f"Note: {note}." for note in found.notes), *_drop_remarks(given)]
-    if given.engine is None:
-        stepped = [*_of_parameters(given.at_step), *engine_lines(given)]
-        return [_echo(given.question), *doubts, *_of_contact(given, found), *notes, *stepped]
-    return [
-        *engine_lines(given),
-        *doubts,
-        *notes,
-        _echo(given.question),
-        *(["", "Without time steps:", *_of_contact(given, found)] if given.whole else []),
-    ]
+    """The answer as text, with the verdict first; for an engine, or parameters at a time step, with
+    what the contact does there.
+    """
+    found = given.found
+    by_itself = given.engine is None and given.at_step is None
+    numbers = []
+    if isinstance(found, Assessment) and (given.whole or given.engine is None):
+        numbers = _numbers(given, found)
+    elif isinstance(found, Description) and (given.whole or by_itself):
+        numbers = _of_contact(given, found)
+    return lines(
+        "design",
+        given=given,
+        found=found,
+        is_on_table=isinstance(found, Assessment),
+        echo=_echo(given.question),
+        steps=engine_lines(given),
+        numbers=numbers,
+    )
 
 
 def _of_contact(given: DesignAnswer, found: Description) -> list[str]:
@@ -193,45 +176,6 @@ def _of_contact(given: DesignAnswer, found: Description) -> list[str]:
         *(line(*row) for row in contact_numbers(given)),
         line("release", found.release),
         *law_lines(found),
-    ]
-
-
-def _of_parameters(at: AtStep | None) -> list[str]:
-    """What k, c and a drop are about, if the parameters contain a time step."""
-    if at is None or not at.is_of_parameters or at.is_within:
-        return []
-    of = "of the contact whose positions these steps have"
-    if at.speed is not None:
-        of = "of small time steps"
-    return [
-        f"Note: all numbers but r are those {of}; r "
-        "depends on where in a step the ball meets the table."
-    ]
-
-
-def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
-    """The contact on a table, with the verdict first."""
-    judged = [
-        found.headline,
-        found.verdict,
-        f"Reason: {found.reason}.",
-    ]
-    about = [
-        _echo(given.question),
-        found.ends.sentence,
-        *(f"Note: {doubt}." for doubt in given.doubts),
-        *(f"Note: {note}." for note in found.notes),
-        *_drop_remarks(given),
-        *_at_small_steps(given.at_step),
-    ]
-    if given.engine is None:
-        return [*judged, *about, *engine_lines(given), "", *_numbers(given, found)]
-    return [
-        *engine_lines(given),
-        "",
-        *judged,
-        *about,
-        *(["", *_numbers(given, found)] if given.whole else []),
     ]
 
 
@@ -247,14 +191,16 @@ def _numbers(given: DesignAnswer, found: Assessment) -> list[str]:
             (need.corrected, need.corrected_status),
         )
     )
-    by_law = _ratio(need.by_law, need.status)
     by_engine = given.engine is not None
+    models = {"exact": exact, "error law": _ratio(need.by_law, need.status), "corrected": corrected}
+    if by_engine:
+        del models["error law"]
     return [
         *(line(*row) for row in contact_numbers(given) if not by_engine or row[0] != _STEP),
         *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
         *law_lines(found),
         "",
-        line(asked, "exact", *_SIMPLE),
-        line("", exact, by_law, corrected),
+        line(asked, *models),
+        line("", *models.values()),
         *(_whole(found) if given.whole else _short(found)),
     ]

@@ -3,14 +3,13 @@
 The sentences are in ``templates/engine.txt.j2``.
 """
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.options import option
 from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.describe import Description
+from bouncing_ball_contacts.contact.drops import deep
 from bouncing_ball_contacts.contact.hertz import rayleigh_time
-from bouncing_ball_contacts.contact.texts import shown
+from bouncing_ball_contacts.contact.texts import lines, shown
 from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import Range
 from bouncing_ball_contacts.engines.engine import ERROR, EngineParameters, Written, without_step
@@ -60,12 +59,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
     engine do at a time step.
     """
     engine = given.engine
-    texts = Environment(
-        loader=PackageLoader("bouncing_ball_contacts.cli"),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    at = given.at_step
     orbit = (
         ()
         if engine is None
@@ -75,22 +69,27 @@ def engine_lines(given: DesignAnswer) -> list[str]:
             ("orbit, penetration", engine.penetration, "m"),
         )
     )
-    text = texts.get_template("engine.txt.j2").render(
+    # A drop that was asked for has its own remarks.
+    too_deep: tuple[str, ...] = ()
+    if engine is not None and engine.drop is not None and given.dropped is None:
+        most = engine.drop.compression.most
+        too_deep = deep(most, given.found.case.given.radius, "in this drop")
+    return lines(
+        "engine",
         given=given,
         engine=engine,
-        at=given.at_step,
+        at=at,
         orbit=orbit,
+        too_deep=too_deep,
         retuned=_retuned(given),
         rayleigh=rayleigh_time(given.found.case.given),
         was_run=engine is None or engine_named(engine.name).was_run,
         many=_MANY,
         error=ERROR,
-        shown=shown,
         ends=ends,
         line=line,
         option=option,
     )
-    return text.splitlines()
 
 
 def _retuned(given: DesignAnswer) -> EngineParameters:

@@ -12,6 +12,7 @@ from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.design_text import design_lines
 from bouncing_ball_contacts.contact.quantities import Speed, quantities
 from bouncing_ball_contacts.contact.table import Table
+from bouncing_ball_contacts.contact.texts import lines
 from bouncing_ball_contacts.contact.units import doubts, in_si
 from bouncing_ball_contacts.measured.experiment import (
     QUANTITIES,
@@ -20,9 +21,14 @@ from bouncing_ball_contacts.measured.experiment import (
     experiment_names,
     read,
 )
-from bouncing_ball_contacts.measured.fit import ContactFit
 from bouncing_ball_contacts.measured.law_fit import LawFit
-from bouncing_ball_contacts.measured.verdicts import JudgedLaw, error_size, judge
+from bouncing_ball_contacts.measured.verdicts import (
+    JudgedLaw,
+    RestitutionAtSpeed,
+    error_size,
+    judge,
+    restitution_at_speed,
+)
 
 # In SI units the unit of time is a second, and ϖ is a natural frequency.
 _SHOWN = {"frequency_ratio": "natural frequency"}
@@ -107,12 +113,18 @@ def fit(
         v = in_si("speed", speed, quantities(_At)["speed"])
     else:
         v = best.speed
+    at_speed = restitution_at_speed(fitted, judged, v)
     recipe = None
     if engine is not None:
-        recipe = _recipe(best, v, engine, time_step, script)
+        recipe = _recipe(best, v, at_speed.restitution, engine, time_step, script)
     elif time_step is not None or script is not None:
         name = "time_step" if script is None else "script"
         raise ParameterError(f"{{{name}}} needs {{engine}}, such as mujoco")
+    kinds = {name.replace(" ", "_"): kind for name, kind in QUANTITIES.items()} | quantities(_At)
+    of_law = (
+        f'{_design(best, v, float(best.restitution_at(v)))} --law {best.law} --speed "{v:.6g} m/s"'
+    )
+    doubted = doubts(options | {"speed": speed}, kinds)
     return {
         "recipe": recipe,
         "experiment": found.title,
@@ -121,34 +133,45 @@ def fit(
         "fastest": float(fitted.points.speeds.max()),
         "reference_speed": best.speed,
         "speed": v,
+        "restitution": at_speed.restitution,
+        "restitution_interval": [_number(x) for x in at_speed.interval],
+        "no_law_fits": _no_law_fits(at_speed, v, fitted.points.is_known),
         "impacts": _impacts(found),
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
-        "notes": [
-            *_order(fitted),
-            *fitted.notes,
-            *_notes(found, fitted, v),
-            *_doubts(options | {"speed": speed}),
-        ],
-        "design": _design(best, v),
-        "design_of_law": _design_of_law(best, v),
+        "curves": [list(names) for names in fitted.curves],
+        "notes": lines("fit_notes", found=found, fitted=fitted, speed=v, doubts=doubted),
+        "design": _design(best, v, at_speed.restitution),
+        "design_of_law": None if best.law == SpringDamper.name else of_law,
     }
 
 
 def _recipe(
-    best: LawFit, speed: float, engine: str, time_step: str | None, script: Path | None
+    best: LawFit,
+    speed: float,
+    restitution: float,
+    engine: str,
+    time_step: str | None,
+    script: Path | None,
 ) -> DesignAnswer:
-    """The contact of the law at an impact speed, as it is written for an engine."""
+    """The contact with a restitution coefficient and the contact time of the law at an impact
+    speed, as it is written for an engine.
+    """
     if best.mass is None:
         raise ParameterError("{engine} needs {mass}, such as 20 g")
     contact = {
         "mass": best.mass,
-        "contact_time": float(best.duration_at(speed)) if best.has_stiffness else None,
-        "measured_restitution": float(best.restitution_at(speed)),
+        "contact_time": _typed(best.duration_at(speed)) if best.has_stiffness else None,
+        "measured_restitution": _typed(restitution),
     }
-    setup = {"speed": speed, "engine": engine, "time_step": time_step}
+    setup = {"speed": _typed(speed), "engine": engine, "time_step": time_step}
     return answer_design(contact | setup, script)._replace(whole=False)
+
+
+def _typed(value: Any) -> float:
+    """A number with the six digits of the commands that are printed."""
+    return float(f"{float(value):.6g}")
 
 
 def _lines(text: str | None) -> list[int]:
@@ -215,57 +238,30 @@ def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
     }
 
 
-def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
-    notes = []
-    if found.left_out:
-        lines = ", ".join(map(str, found.left_out))
-        notes += [f"Left out: line {lines} of the file, and the impacts beside it."]
-    if found.is_without_drag:
-        notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
-    elif found.is_of_flights:
-        notes += ["The drag of the air was not removed: give the mass and the diameter."]
-    speeds = fitted.points.speeds
-    if not speeds.min() <= speed <= speeds.max():
-        notes += [f"The impact speed {speed:.3g} m/s is outside the measured ones."]
-    if fitted.best.has_stiffness and fitted.best.mass is None:
-        notes += ["Without the mass, stiffness and damping are per kilogram."]
-    return notes
+def _no_law_fits(found: RestitutionAtSpeed, speed: float, is_known: bool) -> str | None:
+    """A sentence on the restitution coefficient that is used where the points reject all laws."""
+    if found.is_of_a_law_that_fits:
+        return None
+    interval = _interval([_number(x) for x in found.interval], 1, "{:.4f}")
+    used = f"e = {found.restitution:.4f} (95 % {interval}) at {speed:.3g} m/s is that of"
+    if found.law is None:
+        source = "a smooth curve through the points, a parabola in ln v"
+    else:
+        source = f"{found.law}, with the smallest rms, and its interval by the scatter about it"
+    size = "their uncertainties allow" if is_known else "they scatter"
+    return f"No law fits: each is further from the points than {size}. {used} {source}."
 
 
-def _order(fitted: ContactFit) -> list[str]:
-    """What the order of the laws means, if the first has not the smallest error."""
-    first = fitted.laws[0]
-    least = min(fitted.laws, key=lambda each: each.rms)
-    if not first.rms > least.rms:
-        return []
-    by = "Akaike's criterion, in which the error of each point counts by its uncertainty"
-    return [f"The laws are in the order of {by}; {least.law} has the smallest rms."]
-
-
-def _doubts(options: dict[str, str | None]) -> list[str]:
-    """Sentences on options without a unit that are unusually large in SI units."""
-    kinds = {key.replace(" ", "_"): kind for key, kind in QUANTITIES.items()} | quantities(_At)
-    return [f"{text[0].upper()}{text[1:]}." for text in doubts(options, kinds)]
-
-
-def _design(best: LawFit, speed: float) -> str:
-    """The command for the linear contact with the r and the contact time of the law at an impact
-    speed; what is not known stands there in capitals.
+def _design(best: LawFit, speed: float, restitution: float) -> str:
+    """The command for the linear contact with a restitution coefficient and the contact time of the
+    law at an impact speed; what is not known stands there in capitals.
     """
     mass = "MASS" if best.mass is None else f'"{best.mass:.6g} kg"'
     time = f'"{float(best.duration_at(speed)):.6g} s"' if best.has_stiffness else "TIME"
-    restitution = float(best.restitution_at(speed))
     return (
         f"bouncing-ball design --mass {mass} --contact-time {time} "
         f"--measured-restitution {restitution:.6g}"
     )
-
-
-def _design_of_law(best: LawFit, speed: float) -> str | None:
-    """The command for the contact of the law itself; None if the law is linear."""
-    if best.law == SpringDamper.name:
-        return None
-    return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
 def fit_document(answer: dict[str, Any]) -> dict[str, Any]:
@@ -278,60 +274,21 @@ def fit_document(answer: dict[str, Any]) -> dict[str, Any]:
 def fit_lines(answer: dict[str, Any]) -> list[str]:
     """The answer as text: the impacts that were heard, the laws, notes and the next command."""
     recipe = answer["recipe"]
-    found = [
-        *([] if recipe is None else [*design_lines(recipe), ""]),
-        f"{answer['experiment']}: {_speeds(answer)} m/s",
-        *_errors(answer),
-        "",
-    ]
+    tables = []
     if answer["impacts"]:
-        found += _table(
-            ("v in m/s", "e", "ratio", "by drag", "by resolution"),
-            [_impact(row) for row in answer["impacts"]],
-        )
-        found += [""]
-    found += _table(
-        (
-            "law",
-            f"e at {answer['reference_speed']:.3g} m/s",
-            "95 %",
-            "rms",
-            "left out",
-            "errors needed",
-            "verdict",
-        ),
-        [
-            [
-                law["law"],
-                f"{law['restitution']:.4f}",
-                _interval(law["restitution_interval"], 1, "{:.4f}"),
-                f"{law['rms']:.4f}",
-                _shown(law["left_out_rms"]),
-                _shown(law["errors_needed"]),
-                law["verdict"],
-            ]
-            for law in answer["laws"]
-        ],
-    )
-    timed = [law for law in answer["laws"] if law["contact_time"] is not None]
-    if timed:
-        found += ["", *_timed(timed)]
-    found += ["", *answer["notes"], ""]
-    at = f"at {answer['speed']:.3g} m/s"
-    if answer["design_of_law"] is not None:
-        found += [f"{_best(answer)} as a contact {at}:", f"  {answer['design_of_law']}"]
-        found += ["For engines, the linear contact with the same impact at this speed:"]
-    else:
-        found += [f"{_best(answer)} as a contact {at}:"]
-    return [*found, f"  {answer['design']}"]
-
-
-def _speeds(answer: dict[str, Any]) -> str:
-    """The number of impacts, and their range of speeds."""
-    slowest = f"{answer['slowest']:.3g}"
-    fastest = f"{answer['fastest']:.3g}"
-    count = "1 impact" if answer["points"] == 1 else f"{answer['points']} impacts"
-    return f"{count} at {slowest}" + ("" if fastest == slowest else f" to {fastest}")
+        head = "v in m/s", "e", "ratio", "by drag", "by resolution"
+        tables += [*_table(head, [_impact(row) for row in answer["impacts"]]), ""]
+    at = f"e at {answer['reference_speed']:.3g} m/s"
+    head = "law", at, "95 %", "rms", "left out", "errors needed", "verdict"
+    laws = [
+        _judged(names, next(law for law in answer["laws"] if law["law"] == names[0]))
+        for names in answer["curves"]
+    ]
+    tables += [*_table(head, laws), ""]
+    if timed := [_timed(law) for law in answer["laws"] if law["contact_time"] is not None]:
+        tables += [*_table(("law", "contact time in ms", "95 %", "parameters"), timed), ""]
+    before = [] if recipe is None else [*design_lines(recipe), ""]
+    return lines("fit", **(answer | {"recipe": before, "tables": tables}))
 
 
 def _impact(row: dict[str, float]) -> list[str]:
@@ -341,33 +298,31 @@ def _impact(row: dict[str, float]) -> list[str]:
     return [*kept, *biases]
 
 
-def _errors(answer: dict[str, Any]) -> list[str]:
-    """The size of the errors of e, and where it is from; nothing if it is not known."""
-    if answer["errors_size"] is None:
-        return []
-    source = "given" if answer["errors_given"] else "by the scatter about a smooth curve"
-    return [f"Errors of e, root mean square: {answer['errors_size']:.2g}, {source}"]
+def _judged(names: list[str], law: dict[str, Any]) -> list[str]:
+    """The row of laws with one r(v), by the numbers of the first of them."""
+    return [
+        ", ".join(names),
+        f"{law['restitution']:.4f}",
+        _interval(law["restitution_interval"], 1, "{:.4f}"),
+        f"{law['rms']:.4f}",
+        _shown(law["left_out_rms"]),
+        _shown(law["errors_needed"]),
+        law["verdict"],
+    ]
 
 
 def _shown(value: float | None) -> str:
     return "-" if value is None else f"{value:.4f}"
 
 
-def _best(answer: dict[str, Any]) -> str:
-    return next(law["law"] for law in answer["laws"] if law["law"] != "restitution")
-
-
-def _timed(laws: list[dict[str, Any]]) -> list[str]:
-    rows = []
-    for law in laws:
-        numbers = ", ".join(
-            f"{_SHOWN.get(name, name)} {value:.6g} {law['units'][name]}".rstrip()
-            for name, value in law["parameters"].items()
-        )
-        time = f"{law['contact_time'] * 1e3:.4g}"
-        interval = _interval(law["contact_time_interval"], 1e3, "{:.3g}")
-        rows += [[law["law"], time, interval, numbers.replace("_", " ")]]
-    return _table(("law", "contact time in ms", "95 %", "parameters"), rows)
+def _timed(law: dict[str, Any]) -> list[str]:
+    numbers = ", ".join(
+        f"{_SHOWN.get(name, name)} {value:.6g} {law['units'][name]}".rstrip()
+        for name, value in law["parameters"].items()
+    )
+    time = f"{law['contact_time'] * 1e3:.4g}"
+    interval = _interval(law["contact_time_interval"], 1e3, "{:.3g}")
+    return [law["law"], time, interval, numbers.replace("_", " ")]
 
 
 def _interval(ends: list[float | None], unit: float, digits: str) -> str:

@@ -28,12 +28,13 @@ from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed
 from bouncing_ball_contacts.contact.starts import FEW, SharesOfStarts, ends_of_starts
 from bouncing_ball_contacts.contact.table import Table
-from bouncing_ball_contacts.contact.verdict import judged_choice, said_of_orbit
-from bouncing_ball_contacts.contact.verdict_on_motion import (
+from bouncing_ball_contacts.contact.verdict import (
     Sentences,
     aside,
     headline,
+    judged_choice,
     said_of_motion,
+    said_of_orbit,
 )
 
 STEPS = 50
@@ -61,9 +62,9 @@ class Corrected:
     presses the ball to the table and v the impact speed.
     """
 
-    delay: Annotated[float, Listed("corrected model, delay t_c", "s")]
-    restitution: Annotated[float, Listed("corrected model, restitution r")]
-    load: Annotated[float, Listed("corrected model, load σ", "s")]
+    delay: float
+    restitution: float
+    load: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,13 +113,7 @@ class Assessment(NumbersOfImpact):
         return self.case.static_deflection
 
     @property
-    def restitution(
-        self,
-    ) -> Annotated[
-        dict[str, float | None],
-        Listed("restitution, released at δ = 0"),
-        Listed("restitution, released without force"),
-    ]:
+    def restitution(self) -> dict[str, float | None]:
         """r of a free impact for each release rule; None for the rule that a law does not have."""
         contact = self.case.equivalent
         if self.case.is_linear:

@@ -185,6 +185,9 @@ class Contact:
             raise ParameterError(f"{{parameters}} = {{}} {why}", shortened(named))
         if named is not None:
             object.__setattr__(self, "parameters", _numbers_by_name(named))
+            if isinstance(one := named.get("solref"), float | int):
+                why = "gives one number, and solref has two: give {solref}, such as '0.02 0.5'"
+                raise ParameterError(f"{{parameters}} solref={one:g} {why}")
         if self.from_engine is not None and not isinstance(self.from_engine, str):
             raise ParameterError("{from_engine} = {} is not a name", shortened(self.from_engine))
         if self.from_engine is None and self.engine_parameters:

@@ -31,7 +31,6 @@ from bouncing_ball_contacts.contact.needed import finite
 from bouncing_ball_contacts.contact.rebounds import greatest_loads
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed
-from bouncing_ball_contacts.contact.table import TableMotion
 
 ErrorsByQuantity = dict[str, float | None]
 """Deviations from the contact by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None
@@ -141,6 +140,7 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
     Examples
     --------
     >>> from bouncing_ball_contacts.contact.contact import Contact
+    >>> from bouncing_ball_contacts.contact.table import TableMotion
     >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
     >>> spring = SpringDamper(10.0, 0.0)
     >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 1.0, 1.0), spring, spring)
@@ -203,6 +203,7 @@ def families(
     Examples
     --------
     >>> from bouncing_ball_contacts.contact.contact import Contact
+    >>> from bouncing_ball_contacts.contact.table import TableMotion
     >>> from bouncing_ball_beyond.models.spring_damper import SpringDamper
     >>> spring = SpringDamper(10.0, 0.1)
     >>> case = ResolvedContact(Contact(mass=1.0), TableMotion(1.0, 0.5, 1.0), spring, spring)
@@ -318,7 +319,8 @@ def _family(
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(case.law, orbit)
     restitution, corrected = map(_by_quantity, deviation(exact=values[0], simple=values[1:]))
-    in_si = values * _units(case.table)
+    unit_of = {Quantity.MAX_HEIGHT: unit.length, Quantity.BOUNCE_VELOCITY: unit.length / unit.time}
+    in_si = values * [unit_of.get(quantity, 1.0) for quantity in Quantity]
     return ComparedOrbit(
         n=n,
         exists=standing[0].exists,
@@ -340,12 +342,3 @@ def _family(
         law_errors=_by_quantity(by_law),
         law_holds=holds,
     )
-
-
-def _units(table: TableMotion) -> np.ndarray:
-    """The SI units of the quantities, in their order: m, m/s, and 1 for the others."""
-    units = np.ones(len(Quantity))
-    order = list(Quantity)
-    units[order.index(Quantity.MAX_HEIGHT)] = table.length
-    units[order.index(Quantity.BOUNCE_VELOCITY)] = table.length / table.time
-    return units

@@ -3,8 +3,7 @@
 A contact is judged on a periodic orbit, or on the motion on which a ball ends if none stays on the
 orbit. All errors are deviations of a model from the contact, relative to the value on the contact
 (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`). The sentences on these facts are in
-:mod:`bouncing_ball_contacts.contact.verdict` and
-:mod:`bouncing_ball_contacts.contact.verdict_on_motion`.
+:mod:`bouncing_ball_contacts.contact.verdict`.
 """
 
 import math

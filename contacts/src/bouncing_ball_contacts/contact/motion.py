@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_beyond.models.sequence import ImpactSequence
 from bouncing_ball_beyond.motions.basins import MotionName
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.motions.motions import Kind
@@ -72,12 +71,15 @@ def of_family(
     first = None if orbit is None else _beside(case, orbit)
     first = first if start is None else _Impact(*start)
     is_laid = first is None
-    first = first or _laid_down(case)
+    # A ball is laid on the table at the phase where the table moves down fastest.
+    first = first or _Impact(np.pi, -case.table.amplitude)
     # The exact model and the restitution model.
     ends = {name: _end_of(case, name, first) for name in list(case.models)[:2]}
     if start is None and family.standing["restitution"].attracts:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
-        ends["restitution"] = _on_orbit(case, family.n)
+        orbit = n_t.orbit(case.models["restitution"], family.n, case.table.amplitude)
+        impact = _Impact(float(orbit.phase), float(orbit.impact_velocity))
+        ends["restitution"] = MotionName(Kind.ORBIT, family.n, 1), impact
     exact, simple = (motion for motion, _ in ends.values())
     rests = Kind.PERMANENT_CONTACT in (exact.kind, simple.kind)
     repeat = exact.periods > 0 and simple.periods > 0
@@ -105,13 +107,6 @@ def _end_of(case: ResolvedContact, name: str, first: _Impact) -> tuple[MotionNam
     return motion, _Impact(float(found.end_phase), float(found.end_velocity))
 
 
-def _on_orbit(case: ResolvedContact, n: int) -> tuple[MotionName, _Impact]:
-    """The n-T orbit of the restitution model, and its impact."""
-    orbit = n_t.orbit(case.models["restitution"], n, case.table.amplitude)
-    impact = _Impact(float(orbit.phase), float(orbit.impact_velocity))
-    return MotionName(Kind.ORBIT, n, 1), impact
-
-
 def _first_orbit(case: ResolvedContact, family: ComparedOrbit) -> Any | None:
     """The n-T orbit of the first model that has one: exact, restitution or corrected."""
     for name, model in case.models.items():
@@ -131,11 +126,6 @@ def _beside(case: ResolvedContact, orbit: Any) -> _Impact | None:
     return _Impact(phase, velocity)
 
 
-def _laid_down(case: ResolvedContact) -> _Impact:
-    """A ball that is laid on the table at the phase where the table moves down fastest."""
-    return _Impact(np.pi, -case.table.amplitude)
-
-
 def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:
     """Kind of the motion of a ball that is laid on the table; None if it ends on the orbit."""
     lam = case.table.amplitude
@@ -147,15 +137,10 @@ def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:
     return None if same else str(found.kind)
 
 
-def _tops(sequence: ImpactSequence) -> np.ndarray:
-    """Greatest height of the flight after each impact, dimensionless."""
-    rise = np.maximum(sequence.bounce_velocity, 0.0)
-    lift = sequence.amplitude * np.sin(sequence.release_phase)
-    return sequence.release_displacement + lift + rise * rise / 2
-
-
 def _greatest(case: ResolvedContact, name: str, motion: MotionName, impact: _Impact) -> float:
     """Greatest height of a motion that repeats, in m."""
     found = case.models[name].simulate(case.table.amplitude, *impact, 2 * motion.impacts + 1)
-    last = _tops(found)[-1 - motion.impacts :]
-    return float(np.nanmax(last)) * case.table.length
+    rise = np.maximum(found.bounce_velocity, 0.0)
+    lift = found.amplitude * np.sin(found.release_phase)
+    tops = found.release_displacement + lift + rise * rise / 2
+    return float(np.nanmax(tops[-1 - motion.impacts :])) * case.table.length

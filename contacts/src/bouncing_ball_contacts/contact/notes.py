@@ -5,13 +5,12 @@ import math
 import numpy as np
 
 from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.named_laws import contact_in_words
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.motion import FinalMotion
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
-from bouncing_ball_contacts.contact.texts import shown
+from bouncing_ball_contacts.contact.texts import lines, shown
 from bouncing_ball_contacts.engines.engine import Engine
 
 # Shakers reach some hundred times gravity.
@@ -98,52 +97,12 @@ def _cost_of_law(engine: Engine, case: ResolvedContact, family: ComparedOrbit) -
     )
 
 
-def _notes_on_law(case: ResolvedContact, family: ComparedOrbit) -> list[str]:
-    """Sentences on how the numbers of a linear contact are those of a case with another law."""
-    if case.is_spring_damper:
-        return [
-            "the damper acts on approach only; the ϖ that is needed is that of a linear contact "
-            "with the same r and duration"
-        ]
-    engine = case.given.engine
-    if engine is not None and not engine.needs_speed:
-        return [_cost_of_law(engine, case, family)]
-    found = [
-        "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-        f"it has the r of the {contact_in_words(case.law)}, and its duration at the impact"
-    ]
-    if not np.all(case.has_its_restitution([family.n, family.n + 1])):
-        found.append(
-            "the restitution of this law depends on the speed: it is r at the speed of the "
-            "restitution model's lowest stable orbit"
-        )
-    return found
-
-
 def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> tuple[str, ...]:
     """Sentences that a user should read in addition to the verdict."""
-    contact = case.equivalent
-    orbit = f"{family.n}-T orbit"
-    found = [] if case.is_linear else _notes_on_law(case, family)
-    if case.table.amplitude > _MOST:
-        found.append(
-            f"the table accelerates with Λ = {case.table.amplitude:.4g} times gravity, which no "
-            "shaker reaches: check its frequency and its amplitude"
-        )
-    if math.isnan(case.permanent_contact):
-        found.append(
-            "no threshold of permanent contact was found, because the contact is weakly damped"
-        )
-    if not family.exists:
-        found.append(f"at this Λ the contact has no {orbit}")
-    elif motion.restitution_kind is not None and not motion.is_common:
-        what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
-        found.append(f"the {orbit} is {what}, so that no ball stays on it")
-    if contact.frequency_ratio < 1:
-        found.append("the contact is slower than the table: the ball oscillates on a spring")
-    if case.is_linear and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
-        found.append(
-            "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
-            "has the r of a release without force"
-        )
+    engine = case.given.engine
+    cost = None
+    if not case.is_spring_damper and engine is not None and not engine.needs_speed:
+        cost = _cost_of_law(engine, case, family)
+    of = {"law": contact_in_words(case.law), "cost": cost, "most": _MOST}
+    found = lines("notes", case=case, family=family, motion=motion, **of)
     return (*found, *force_formula(case))

@@ -77,6 +77,6 @@ class NumbersOfImpact(NumbersOfContact):
         return self.case.contact_time
 
     @property
-    def measured_restitution(self) -> float:
+    def measured_restitution(self) -> Annotated[float, Listed("restitution of a free impact")]:
         """r of a free impact."""
         return self.case.restitution

@@ -9,6 +9,8 @@ They hold for random starts. Those of an even grid are nearer to the shares of a
 the basins are finer than the grid.
 """
 
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,7 +32,7 @@ _CONFIDENCE = 0.95
 _NAMED = 3
 
 _WORDS = {
-    Kind.SUBHARMONIC: "on a doubled orbit",
+    Kind.SUBHARMONIC: "on a subharmonic orbit",
     Kind.LOCKED: "on a locked motion",
     Kind.PERMANENT_CONTACT: "at rest on the table",
     Kind.CHAOTIC: "in chaotic motion",
@@ -41,7 +43,8 @@ _WORDS = {
 @dataclass(frozen=True)
 class SharesOfStarts:
     """The ``shares`` of starts that end on each motion, the greatest first. ``first`` is the phase
-    and the velocity of a start that ends on the first one. ``balls`` is the number of starts.
+    and the velocity of a start that ends on the commonest motion of the commonest kind. ``balls``
+    is the number of starts.
     """
 
     shares: dict[MotionName, float]
@@ -65,10 +68,7 @@ class SharesOfStarts:
     @property
     def sentence(self) -> str:
         """The shares in one sentence, those of few starts with their intervals."""
-        by_words: dict[str, float] = {}
-        for motion, share in self.shares.items():
-            words = _in_words(motion)
-            by_words[words] = by_words.get(words, 0.0) + share
+        by_words = _by_words(self.shares)
         order = sorted(by_words.items(), key=lambda item: -item[1])
         (most, share), *less = order[:_NAMED]
         parts = [f"{self._shown(share)} end {most}"]
@@ -85,6 +85,14 @@ class SharesOfStarts:
             return shown(share, "%")
         low, high = interval(round(share * self.balls), self.balls)
         return f"{shown(share, '%')} ({100 * low:.0f} to {100 * high:.0f} %)"
+
+
+def _by_words(shares: Mapping[MotionName, float]) -> dict[str, float]:
+    """The shares of motions with the same words, added up."""
+    found: dict[str, float] = defaultdict(float)
+    for motion, share in shares.items():
+        found[_in_words(motion)] += share
+    return found
 
 
 def interval(count: int, number: int) -> tuple[float, float]:
@@ -133,11 +141,14 @@ def ends_of_starts(case: ResolvedContact) -> SharesOfStarts:
     exact, *_ = case.models.values()
     found = basins(exact, lam, case.effort.starts, impacts=_IMPACTS)
     order = np.argsort(-found.share, kind="stable")
-    row, column = np.argwhere(found.which == order[0])[0]
+    shares = {found.motions[k]: float(found.share[k]) for k in order}
+    by_words = _by_words(shares)
+    commonest = max(order, key=lambda k: by_words[_in_words(found.motions[k])])
+    row, column = np.argwhere(found.which == commonest)[0]
     phase = float(found.phase[column])
     velocity = lam * np.cos(phase) - float(found.speed[row])
     return SharesOfStarts(
-        shares={found.motions[k]: float(found.share[k]) for k in order},
+        shares=shares,
         first=(phase, float(velocity)),
         balls=int(found.which.size),
     )

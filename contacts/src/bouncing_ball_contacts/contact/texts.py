@@ -1,6 +1,10 @@
-"""Quantities as they are shown: with four digits, and a prefix of their unit."""
+"""Quantities as they are shown, with four digits and a prefix of their unit; and sentences from
+their templates.
+"""
 
 import math
+from functools import cache
+from typing import Any
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
 
@@ -89,3 +93,23 @@ def in_place_of(predicted: float | None, true: float | None, unit: str = "") -> 
         name = f"{_PREFIXES[power]}{unit}"
         texts = [f"{value / 10**power:.{digits}g} {name}" for value in (predicted, true)]
     return " in place of ".join(texts)
+
+
+@cache
+def _templates() -> Any:
+    # Imported where it is needed, because numbers without sentences do not need it.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    found = Environment(
+        loader=PackageLoader("bouncing_ball_contacts"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.globals |= {each.__name__: each for each in (percent, shown, signed, in_place_of)}
+    return found
+
+
+def lines(template: str, **values: Any) -> list[str]:
+    """The lines of ``templates/TEMPLATE.txt.j2`` with these values."""
+    return _templates().get_template(f"{template}.txt.j2").render(values).splitlines()

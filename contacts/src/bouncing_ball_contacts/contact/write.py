@@ -91,7 +91,7 @@ def write_contact(
 
     >>> found = write_contact(contact, EngineSetup(engine="mujoco", time_step="1 ms"))
     >>> found.changed, found.contact.stiffness < 5e4, found.drop.error < 0.02
-    ('stiffness', True, True)
+    ('stiffness and damping', True, True)
     """
     asked = Question() if question is None else question
     # Without a table its place is held by its class.
@@ -207,7 +207,9 @@ def settings_for(
         if speed is None and judged is not None:
             speed = judged.impact_speed
         written = Written(engine, settings.contact, case.equivalent.release, law)
-        settings = _dropped(written, settings, case, _height(case.given, case.table.gravity, speed))
+        height = _height(case.given, case.table.gravity, speed)
+        is_suited = judged is None and not case.given.is_stiff
+        settings = _dropped(written, settings, case, height, is_suited)
     # At a step that is too long the contact has another r, and so another orbit.
     if judged is None or (settings.at_step is not None and not settings.at_step.is_within):
         return settings
@@ -222,9 +224,16 @@ def settings_for(
 
 
 def _dropped(
-    asked: Written, settings: EngineSettings, case: ResolvedContact, height: float
+    asked: Written,
+    settings: EngineSettings,
+    case: ResolvedContact,
+    height: float,
+    is_suited: bool,
 ) -> EngineSettings:
-    """The settings with their drop, or at a step that is too long those with the least error."""
+    """The settings with their drop, or at a step that is too long those with the least error.
+
+    ``is_suited`` tells whether the stiffness was chosen for the step.
+    """
     gravity = case.table.gravity
     at = settings.at_step
     r = settings.restitution if at is None else at.restitution
@@ -232,18 +241,13 @@ def _dropped(
     if measured.rebound_height is not None:
         r = math.sqrt(measured.rebound_height / measured.drop_height)
     tried = [("", asked, settings)]
-    if at is not None and not at.is_within and case.given.is_stiff:
-        suited = asked.suited(at, r, height, gravity)
-        candidates = {
-            "damping": asked.retuned(at),
-            "stiffness": suited,
-            "stiffness and damping": suited[0].retuned(suited[1]),
-        }
-        tried += [
-            (what, one[0], one[0].settings(one[1]))
-            for what, one in candidates.items()
-            if one is not None
-        ]
+    if at is not None and not at.is_within:
+        candidates = {"damping": asked.tuned(at, r, height, gravity)}
+        if not is_suited:
+            other, there = asked.suited(at, r, height, gravity)
+            candidates["stiffness"] = other, there
+            candidates["stiffness and damping"] = other.tuned(there, r, height, gravity)
+        tried += [(what, one, one.settings(there)) for what, (one, there) in candidates.items()]
     drops = [
         written.drop(
             one.time_step,
@@ -258,7 +262,8 @@ def _dropped(
     errors = np.array([math.inf if drop is None else drop.error for drop in drops])
     # The fewest changes that are about as good as the best ones.
     best = int(np.argmax(errors <= _AS_GOOD * errors.min()))
-    changed, written, settings = tried[best]
+    what, written, settings = tried[best]
+    changed = "" if is_suited else what
     settings = replace(
         settings,
         changed=changed,
@@ -327,12 +332,16 @@ def _of_law(case: ResolvedContact, name: str, speed: float | None) -> tuple[Engi
 
 
 def at_step_of_parameters(
-    contact: Contact, time_step: float | None, error: float, speed: float | None = None
-) -> AtStep | None:
+    found: Assessment | Description,
+    time_step: float | None,
+    error: float,
+    speed: float | None = None,
+) -> tuple[AtStep, DropInSteps | None] | None:
     """What the engine whose parameters are given does with them at a time step in s, which may be
-    one of the parameters; None without a step.
+    one of the parameters, and a drop there; None without a step.
 
-    ``speed`` is the impact speed in m/s on which r may depend.
+    ``speed`` is the impact speed of the drop in m/s, on which r may depend; on a table r is that at
+    the impact speed of the orbit.
 
     Raises
     ------
@@ -340,6 +349,8 @@ def at_step_of_parameters(
         If no engine is named, the step is given twice, the parameters of this engine contain none,
         or r depends on the speed and none is given.
     """
+    case = found.case
+    contact = case.given
     engine = contact.engine
     if engine is None:
         if time_step is None:
@@ -354,25 +365,16 @@ def at_step_of_parameters(
     step = own if time_step is None else time_step
     if step is None:
         return None
-    plain = contact.by_stiffness_and_loss()
     parameters = without_step(contact.engine_parameters)
-    found = engine.at_step_of(parameters, plain.mass, step, error, plain.release, speed)
-    return replace(found, is_of_parameters=own is not None)
-
-
-def drop_of_parameters(
-    contact: Contact, at: AtStep | None, gravity: float, speed: float | None
-) -> DropInSteps | None:
-    """A drop onto a contact by parameters of an engine, at the step of ``at``; None without a
-    step.
-    """
-    engine = contact.engine
-    if at is None or engine is None:
-        return None
-    mass = contact.by_stiffness_and_loss().mass
-    parameters = without_step(contact.engine_parameters)
-    written, _ = engine.stepped(parameters, mass, at.time_step, engine.release(contact.release))
-    height = _height(contact, gravity, speed)
-    return written.drop(
-        at.time_step, at.steps, height, gravity, at.restitution, is_stable=at.is_stable
+    at_speed = speed if isinstance(found, Description) else found.judged.impact_speed
+    written, at = engine.at_step_of(parameters, case.mass, step, error, contact.release, at_speed)
+    gravity = case.table.gravity
+    drop = written.drop(
+        step,
+        at.steps,
+        _height(contact, gravity, speed),
+        gravity,
+        at.restitution,
+        is_stable=at.is_stable,
     )
+    return replace(at, is_of_parameters=own is not None), drop

@@ -36,15 +36,10 @@ from typing import Any
 from bouncing_ball.errors import ModelError, one_of
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.drake import DRAKE
-from bouncing_ball_contacts.engines.engine import Engine, EngineParameters, LawInSI, proportional
+from bouncing_ball_contacts.engines.engine import Engine, proportional
 from bouncing_ball_contacts.engines.granular import LAMMPS, LIGGGHTS, MERCURYDPM
 from bouncing_ball_contacts.engines.mujoco import GENESIS, MUJOCO, NEWTON_MUJOCO
-from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme
-
-
-def _with_mass(contact: Physical, law: LawInSI | None = None) -> EngineParameters:
-    return contact._asdict()
 
 
 def _instant_of_pybullet(restitution: float) -> str:
@@ -54,6 +49,10 @@ def _instant_of_pybullet(restitution: float) -> str:
     )
 
 
+_IN_SERIES = (
+    "ball and table are taken to have these numbers alike: their springs are in series, so that k "
+    "is half of contactStiffness, and their dampings add up"
+)
 _ROWS = (
     replace(
         proportional(
@@ -63,7 +62,7 @@ _ROWS = (
             Scheme.SEMI_IMPLICIT,
             has_mass=True,
         ),
-        parameters=_with_mass,
+        parameters=lambda contact, law=None: contact._asdict(),
     ),
     MUJOCO,
     LAMMPS,
@@ -75,6 +74,7 @@ _ROWS = (
         Scheme.COMPENSATED,
         lambda mass: (2.0, 0.5),
         instant=_instant_of_pybullet,
+        remarks=lambda _: (_IN_SERIES,),
     ),
     DRAKE,
     MERCURYDPM,
@@ -136,6 +136,15 @@ def engine_named(name: str) -> Engine:
     return one_of("engine", _SAME.get(plain, name), ENGINES)
 
 
+_INSTANTS = {
+    "physx": (
+        "restitution of physx is an instant, which has no effect below an impact speed of "
+        "bounceThresholdVelocity: docs/bounces.md has what it does; a contact that lasts has "
+        "compliantContactStiffness and compliantContactDamping"
+    )
+}
+
+
 def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:
     """The engine with this name, or the row of the law to which these parameters belong.
 
@@ -153,6 +162,8 @@ def engine_of(name: str, parameters: Mapping[str, Any]) -> Engine:
             "impact speed v, with contactProcessingThreshold=0, contactERP=0 and "
             "restitutionVelocityThreshold=0, and 0 without the first of these"
         )
+    if engine.name in _INSTANTS and "restitution" in parameters:
+        raise ModelError(_INSTANTS[engine.name])
     # Hertz contacts are written, and not read.
     rows = (row for row in engine.laws.values() if row.needs_speed)
     # The laws of an engine differ in the name of their damping.

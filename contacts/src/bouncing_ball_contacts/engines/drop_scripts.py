@@ -31,7 +31,7 @@ def drop_script(settings: EngineSettings, radius: float | None, gravity: float) 
         raise ModelError(f"a drop in {settings.name} takes too many steps: allow a larger error")
     size = max(_RADIUS, _DEPTHS * drop.compression.most) if radius is None else radius
     fall = math.sqrt(2 * drop.height / gravity)
-    lasts = _FALLS * fall / settings.time_step + _CONTACTS * settings.steps
+    steps = math.ceil(_FALLS * fall / settings.time_step + _CONTACTS * settings.steps)
     mass = settings.contact.mass
     numbers = {
         "mass": mass,
@@ -45,12 +45,15 @@ def drop_script(settings: EngineSettings, radius: float | None, gravity: float) 
         "time_step": settings.time_step,
         # At this step the ball is in contact.
         "fall": math.ceil(fall / settings.time_step) + 1,
-        "steps": math.ceil(lasts),
+        "steps": steps,
+        # Within a step, so that rounding errors take none away.
+        "end": (steps + 0.5) * settings.time_step,
     }
     texts = {name: f"{value:.12g}" for name, value in numbers.items()}
+    without = f", with a radius of {size:.3g} m because none was given,"
     recipe = settings.snippet
     if settings.name == "lammps":
         # The units come before the box.
         recipe = recipe.split("\n", 1)[1]
     text = text_to_paste(f"{settings.name}-drop")
-    return filled(text, texts | {"recipe": recipe}) + "\n"
+    return filled(text, texts | {"recipe": recipe, "without": "" if radius else without}) + "\n"

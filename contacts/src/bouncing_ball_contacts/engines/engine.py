@@ -8,6 +8,7 @@ from importlib.resources import files
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball_beyond.models.damping import Release
@@ -33,7 +34,10 @@ ERROR = 0.001
 
 # A whole number of steps is not rounded down.
 _ALMOST = 1 + 1e-9
+# Damping of a step or of a load is made up for by less than this multiple of that of the contact.
+_MOST_DAMPING = 3.0
 _PLACE = re.compile(r"@([\w.]+)@")
+_UNDERSCORE = re.compile("_([a-z])")
 _STEP = "time_step"
 _LIMIT = (
     "k, c and r are those in the limit of small time steps, which damp less; with the parameter "
@@ -173,7 +177,13 @@ class Engine:
         ModelError
             If a parameter or the mass is missing, unknown, or outside its range.
         """
-        values = {name: value for name, value in parameters.items() if value is not None}
+        given = {name: value for name, value in parameters.items() if value is not None}
+        # Isaac Lab writes the names of PhysX with underscores.
+        joined = {name: _UNDERSCORE.sub(lambda found: found[1].upper(), name) for name in given}
+        values = {
+            joined[name] if joined[name] in self.names else name: value
+            for name, value in given.items()
+        }
         if self.has_mass:
             mass = values.pop("mass", mass)
         if unknown := set(values) - set(self.names):
@@ -227,9 +237,9 @@ class Engine:
         error: float = ERROR,
         release: str | None = None,
         speed: float | None = None,
-    ) -> AtStep:
-        """What the engine does with parameters and a time step in s, at an impact speed in m/s if r
-        depends on it.
+    ) -> tuple["Written", AtStep]:
+        """The contact that the engine computes with parameters and a time step in s, and what it
+        does there, at an impact speed in m/s if r depends on it.
 
         Parameters that are not made for this step are damped by it: r is then compared with the
         limit of small steps.
@@ -241,27 +251,13 @@ class Engine:
         """
         rule = self.release(release)
         asked = Written(self, self.read(parameters, mass), rule)
-        found, remarks = self.stepped(parameters, mass, time_step, rule, speed)
-        return replace(found.at_step(time_step, error, asked), remarks=remarks)
-
-    def stepped(
-        self,
-        parameters: Mapping[str, Any],
-        mass: float | None,
-        time_step: float,
-        release: Release,
-        speed: float | None = None,
-    ) -> tuple["Written", tuple[str, ...]]:
-        """The contact that the engine computes with parameters and a time step in s, with the law
-        of its steps, and sentences on how the engine changes the parameters.
-        """
         values, remarks = self.kept_stable(parameters, time_step)
         if self.scheme.is_compensated:
             values = {**values, _STEP: time_step}
         contact = self.contact(values, mass)
         law = self.law(values, contact.mass)
-        of_law = None if law is None else LawInSI(law, speed)
-        return Written(self, contact, release, of_law), remarks
+        found = Written(self, contact, rule, None if law is None else LawInSI(law, speed))
+        return found, replace(found.at_step(time_step, error, asked), remarks=remarks)
 
     def settings(
         self,
@@ -452,8 +448,9 @@ class Written:
         if self.of_law is not None:
             values["radius"] = twelve_digits(self.of_law.radius or math.nan)
         for name, value in self.parameters(time_step).items():
-            values |= {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
-            values[name] = value
+            numbers = [twelve_digits(x) for x in np.ravel(value).tolist()]
+            values |= {f"{name}.{k}": x for k, x in enumerate(numbers)}
+            values[name] = numbers[0]
         texts = {name: repr(value) for name, value in values.items()}
         if at is None or at.is_within:
             texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions().items()}
@@ -486,13 +483,31 @@ class Written:
             at_step=at,
         )
 
-    def retuned(self, at: AtStep) -> tuple["Written", AtStep] | None:
-        """The contact with the damping that restores the mean r at the step of ``at``, and what it
-        does there; None if no damping does.
+    @property
+    def damping(self) -> float:
+        """The damping that :meth:`with_damping` replaces."""
+        of = self._by_speed
+        return self.contact.damping if of is None else of.law.damping
+
+    def tuned(
+        self, at: AtStep, restitution: float, height: float, gravity: float
+    ) -> tuple["Written", AtStep]:
+        """The contact with another damping, with which √(h′/h) of a drop is nearest to a
+        restitution at the step of ``at``, and what it does there.
         """
-        if at.retuned is None:
-            return None
-        found = self.with_damping(twelve_digits(at.retuned))
+
+        def error(factor: float) -> float:
+            step = self.with_damping(factor * self.damping).step(at.time_step)
+            half = self.engine.half_steps
+            found = restitutions_in_steps(step, height, gravity, at.steps, half_steps=half)
+            # A ball that rises higher than it fell is farther off than one that stays.
+            gains = found.max() >= 1 > restitution
+            return float(np.abs(found - restitution).max()) + gains
+
+        inner = scipy.optimize.minimize_scalar(error, bounds=(0.0, _MOST_DAMPING)).x
+        # The search does not reach its ends.
+        factor = min((0.0, inner), key=error)
+        found = self.with_damping(float(f"{factor * self.damping:.3g}"))
         return found, found.at_step(at.time_step, at.allowed, self)
 
     def suited(

@@ -71,7 +71,9 @@ _LONGEST = 100.0
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
     """The numbers of an attribute, given as a text, as in XML, or as a sequence."""
     parts = value.split() if isinstance(value, str) else np.ravel(value).tolist()
-    allowed = f"{counts[0]} numbers" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} numbers"
+    allowed, hint = f"{counts[0]} to {counts[-1]} numbers", ""
+    if len(counts) == 1:
+        allowed, hint = "2 numbers", ": '0.02 0.5' (s, damping ratio) or '-1e4 -20' (-k/m, -c/m)"
     try:
         found = [float(part) for part in parts]
     except (TypeError, ValueError):
@@ -80,7 +82,7 @@ def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[flo
         shown = value if isinstance(value, str) else " ".join(map(str, parts))
         apart = " ".join(_BETWEEN.sub(" ", shown).split())
         how = "without commas" if apart == " ".join(shown.replace(",", " ").split()) else "plainly"
-        hint = "" if apart == shown else f": write it {how}, {apart!r}"
+        hint = hint if apart == shown else f": write it {how}, {apart!r}"
         raise ModelError(f"{name} = {shortened(shown)} is not {allowed}{hint}")
     return found
 
@@ -143,7 +145,7 @@ def _solref(engine: Engine, parameters: Mapping[str, Any]) -> tuple[float, float
     """The two numbers of ``solref``, after a check of ``solimp``."""
     impedance(parameters.get("solimp", ()))
     if "solref" not in parameters:
-        raise ModelError("solref is missing: give it, such as '-10000 -20'")
+        raise ModelError("solref is missing: give it, such as the default of MuJoCo, '0.02 1'")
     first, second = _numbers("solref", parameters["solref"], range(2, 3))
     return first, second
 
@@ -205,7 +207,7 @@ def _kept_stable(
 
     Examples
     --------
-    >>> found = MUJOCO.at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
+    >>> _, found = MUJOCO.at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
     >>> found.is_stable, found.remarks[0]
     (False, 'MuJoCo raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)')
     """

@@ -10,7 +10,7 @@ units of any time and length.
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 
@@ -25,6 +25,8 @@ from bouncing_ball_contacts.engines.scheme import Scheme, compensated
 # A ball that has not left after so many steps, and as many times the duration of a contact, stays.
 _FEW = 200
 _LONG = 20
+# Whether all balls are known to stay is asked after each of so many steps.
+_OFTEN = 16
 
 
 class Step(Protocol):
@@ -48,6 +50,23 @@ class Step(Protocol):
         All arrays have the same shape.
         """
         ...
+
+    def keeps(self, place: np.ndarray, velocity: np.ndarray, gravity: float) -> Any:
+        """Whether balls inside are known to stay inside for ever."""
+        ...
+
+
+def _bound(place: np.ndarray, velocity: np.ndarray, gravity: float, stiffness: float) -> np.ndarray:
+    """Whether the energy v²/2 + gx + kx²/2 of balls at x < 0 is too small for x = 0.
+
+    Implicit steps never raise this energy, because it is convex, nor does a damper.
+
+    Examples
+    --------
+    >>> _bound(np.array([-1.0, -1.0]), np.array([0.0, 2.0]), gravity=10.0, stiffness=17.0)
+    array([ True, False])
+    """
+    return velocity**2 / 2 + (gravity + stiffness / 2 * place) * place < 0
 
 
 @dataclass(frozen=True)
@@ -86,6 +105,9 @@ class LinearStep:
         if scheme.is_compensated:
             stiffness, damping = compensated(stiffness, damping, size)
         return cls(scheme, stiffness, damping, release, size)
+
+    def keeps(self, place: np.ndarray, velocity: np.ndarray, gravity: float) -> Any:
+        return self.scheme.is_implicit and _bound(place, velocity, gravity, self.stiffness)
 
     def depth_at_rest(self, gravity: float) -> float:
         """g/k of the k of the step, which carries the ball alone, also where k compensates h."""
@@ -159,6 +181,9 @@ class HuntCrossleyStep:
     size: float
     ahead: ClassVar[int] = 0
 
+    def keeps(self, place: np.ndarray, velocity: np.ndarray, gravity: float) -> Any:
+        return _bound(place, velocity, gravity, self.stiffness)
+
     def depth_at_rest(self, gravity: float) -> float:
         return gravity / self.stiffness
 
@@ -188,6 +213,9 @@ class ImpedanceStep:
     size: float
     ahead: ClassVar[int] = 0
 
+    def keeps(self, place: np.ndarray, velocity: np.ndarray, gravity: float) -> Any:
+        return False
+
     def depth_at_rest(self, gravity: float) -> float:
         # In units of g the weight is 1, and so is the force of the law that carries it.
         return rest(replace(self.law, width=self.law.width / gravity)) * gravity
@@ -211,6 +239,9 @@ class InstantStep:
     restitution: float
     size: float
     ahead: ClassVar[int] = 0
+
+    def keeps(self, place: np.ndarray, velocity: np.ndarray, gravity: float) -> Any:
+        return False
 
     def depth_at_rest(self, gravity: float) -> float:
         """0: the ball lies at the surface."""
@@ -239,7 +270,8 @@ def patience(steps: float) -> int:
 def until_outside(
     step: Step, place: np.ndarray, velocity: np.ndarray, most: int, gravity: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """x and v of balls at the first step that begins outside of the contact, or after ``most``.
+    """x and v of balls at the first step that begins outside of the contact; of a ball that stays
+    inside, at a step from which on it is known to stay, or after ``most``.
 
     Examples
     --------
@@ -251,8 +283,10 @@ def until_outside(
     (True, 1.0)
     """
     last = place, velocity
-    for x, v, _ in steps_inside(step, place, velocity, most, gravity):
+    for count, (x, v, _) in enumerate(steps_inside(step, place, velocity, most, gravity)):
         last = x, v
+        if count % _OFTEN == 0 and np.all((x >= 0) | step.keeps(x, v, gravity)):
+            break
     return last
 
 

@@ -7,18 +7,14 @@ the columns, and one line of numbers for each impact ::
     drop_height [m],rebound_height [m]
     0.10,0.015
 
-The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_height``, or
-``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times; a
-column ``recording`` numbers the recordings if there are several. ``uncertainty``, of the
-restitution coefficient, ``duration`` and ``duration_uncertainty`` may follow speeds or heights. If
-the mass and the diameter of the ball are known, the drag of the air is removed from heights and
-intervals (:mod:`bouncing_ball_contacts.measured.flights`). The files of the package are in SI
-units.
-
-Files that instruments write are read as well. Columns may be separated by tabs or by semicolons,
-and numbers may then have decimal commas; a single column of numbers may have them, too. Headings
-may be those of telephone apps, such as ``Interval (s)`` and ``Event time (s)``, and a column that
-counts the events is passed over.
+The columns (:mod:`bouncing_ball_contacts.measured.columns`) are the speeds of the impacts with
+their restitution coefficients or with the speeds of the rebounds, or the heights of drops and
+rebounds, or the intervals between the impacts of one bouncing ball or their times; a column
+``recording`` numbers the recordings if there are several. ``uncertainty``, of the restitution
+coefficient, ``duration`` and ``duration_uncertainty`` may follow speeds or heights. If the mass and
+the diameter of the ball are known, the drag of the air is removed from heights and intervals
+(:mod:`bouncing_ball_contacts.measured.flights`). The files of the package are in SI units. Other
+lines that begin with ``#`` are comments.
 
 Where a file has no uncertainties their size follows from the scatter of the points. Errors of
 restitution coefficients that stand in the file are then taken as equal. Those that follow from
@@ -26,17 +22,22 @@ heights or intervals are not: the same error of all heights, of a reading or of 
 an error of e that falls as 1/v² (:func:`bouncing_ball_contacts.measured.flights.by_height`).
 """
 
-import csv
 import math
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError, Range
-from bouncing_ball_contacts.contact.units import SIParameter, in_si, number_in_si
+from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.contact.units import SIParameter, in_si
+from bouncing_ball_contacts.measured.columns import (
+    HIGHEST,
+    Columns,
+    read_columns,
+    without_si_unit,
+)
 from bouncing_ball_contacts.measured.fit import ContactFit, fit_contact
 from bouncing_ball_contacts.measured.flights import (
     Heard,
@@ -50,19 +51,6 @@ from bouncing_ball_contacts.measured.flights import (
 DATA = Path(__file__).with_name("data")
 """The folder of the package's experiments."""
 
-COLUMNS = {
-    "speed": SIParameter("m/s", "1 m/s"),
-    "restitution": SIParameter("", "0.85", Range(0, 1, "(]")),
-    "uncertainty": SIParameter("", "0.01"),
-    "duration": SIParameter("s", "1 ms"),
-    "duration_uncertainty": SIParameter("s", "0.1 ms"),
-    "drop_height": SIParameter("m", "1 m"),
-    "rebound_height": SIParameter("m", "70 cm"),
-    "interval": SIParameter("s", "0.5 s"),
-    "time": SIParameter("s", "0.5 s", Range(-1e40, 1e40, "[]")),
-    "recording": SIParameter("", "1"),
-}
-"""The columns of a file, their units and ranges."""
 QUANTITIES = {
     "mass": SIParameter("kg", "20 g"),
     "diameter": SIParameter("m", "40 mm"),
@@ -73,36 +61,8 @@ QUANTITIES = {
 """The numbers at the head of a file."""
 TEXTS = ("title", "ball", "measured by", "published", "source", "read", "note")
 """The texts at the head of a file; each may stand on several lines."""
-# Headings of instruments, in lower case, and columns that only count.
-_ALIASES = {
-    "event time": "time",
-    "impact time": "time",
-    "times": "time",
-    "t": "time",
-    "intervals": "interval",
-    "time interval": "interval",
-    "drop": "drop_height",
-    "rebound": "rebound_height",
-}
-_COUNTS = {
-    "event",
-    "events",
-    "bounce",
-    "impact",
-    "index",
-    "no",
-    "no.",
-    "nr",
-    "number",
-    "n",
-    "#",
-    "",
-}
-_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
-_WAYS = ({"speed", "restitution"}, {"drop_height", "rebound_height"}, {"interval"}, {"time"})
-_FURTHER = {"uncertainty", "duration", "duration_uncertainty"}
-_OF_INTERVALS = {"recording"}
-"""What may follow speeds or heights, and what may follow intervals."""
+# Relative differences of equal intervals by the rounding of times of six digits.
+_EQUAL = 1e-5
 
 
 @dataclass(frozen=True)
@@ -136,6 +96,8 @@ class Experiment:
         The impacts of a bouncing ball with the biases that were removed.
     left_out : tuple of int
         The lines of the file that were left out.
+    notes : tuple of str
+        What of the file was not read.
     """
 
     name: str
@@ -153,6 +115,7 @@ class Experiment:
     is_of_flights: bool = False
     heard: Heard | None = field(default=None, repr=False)
     left_out: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -235,20 +198,7 @@ def read(file: str | Path, **options: Any) -> Experiment:
         # A file of the package is known by its name.
         path = Path(path.name)
     head, rows = _parts(path, lines)
-    rows = _with_points(rows)
-    if rows and _is_number(rows[0][1].split(",")[0]):
-        if not intervals:
-            raise ParameterError(
-                f"{path}, line {rows[0][0]}: numbers without a heading: is it a file of "
-                "{intervals}, or is a line such as 'speed [m/s],restitution' missing?"
-            )
-        rows = [(0, "interval [s]"), *rows]
-    columns, at = _columns(path, rows)
-    for line in leave_out:
-        if line not in at:
-            raise ModelError(f"{path} has no line {line} with numbers to leave out")
-    if intervals and not columns.keys() & {"interval", "time"}:
-        raise ModelError(f"{path} has no column interval or time")
+    columns = read_columns(str(path), rows, intervals=intervals, leave_out=leave_out)
     numbers = {key: value for key, value in head.items() if key in QUANTITIES}
     for name, value in options.items():
         if value is not None:
@@ -257,7 +207,7 @@ def read(file: str | Path, **options: Any) -> Experiment:
     _require_their_use(path, numbers, columns)
     texts = {key: value for key, value in head.items() if key in TEXTS}
     try:
-        return _experiment(path.stem, texts, numbers, columns, _Lines(at, leave_out))
+        return _experiment(path.stem, texts, numbers, columns)
     except ParameterError as error:
         text, *values = error.args
         raise ParameterError(f"{path}: {text}", *values) from None
@@ -265,53 +215,13 @@ def read(file: str | Path, **options: Any) -> Experiment:
         raise ModelError(f"{path}: {error}") from None
 
 
-class _Lines(NamedTuple):
-    """The lines of the rows of numbers, and those that are left out."""
-
-    numbers: list[int]
-    left_out: tuple[int, ...]
-
-
-def _with_points(rows: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """Rows with commas between the columns and points in numbers, whatever an instrument writes."""
-    text = "\n".join(line for _, line in rows)
-    mark = next((mark for mark in "\t;" if mark in text), None)
-    if mark is not None:
-        # A mark at the end of a line is no further column.
-        parts = ((at, line.strip(mark).split(mark)) for at, line in rows)
-        return [(at, ",".join(_point(cell) for cell in cells)) for at, cells in parts]
-    headings = [line for _, line in rows if any(map(str.isalpha, line))]
-    numbers = [line.strip() for _, line in rows if line not in headings]
-    # A comma in a heading is one between columns, also if all numbers of a file are whole.
-    has_one_column = not any("," in line for line in headings)
-    if has_one_column and numbers and all(map(_DECIMAL_COMMA.fullmatch, numbers)):
-        return [(at, _point(line)) for at, line in rows]
-    return rows
-
-
-def _point(cell: str) -> str:
-    """A number with a decimal point in place of a comma; other texts as they are."""
-    text = cell.strip().strip('"')
-    return text.replace(",", ".") if _DECIMAL_COMMA.match(text) else text
-
-
-def _require_their_use(
-    path: Path, numbers: dict[str, float], columns: dict[str, np.ndarray]
-) -> None:
+def _require_their_use(path: Path, numbers: dict[str, float], columns: Columns) -> None:
     """Refuse numbers that change nothing, because another column or number is missing."""
-    if "resolution" in numbers and not columns.keys() & {"interval", "time"}:
+    if "resolution" in numbers and not columns.is_heard:
         raise ModelError(f"{path}: a resolution needs intervals or times")
-    is_timed = "contact time" in numbers or "duration" in columns
+    is_timed = "contact time" in numbers or "duration" in columns.values
     if "contact time uncertainty" in numbers and not is_timed:
         raise ModelError(f"{path}: the uncertainty of a contact time needs the contact time")
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _parts(path: Path, lines: list[str]) -> tuple[dict[str, Any], list[tuple[int, str]]]:
@@ -324,107 +234,24 @@ def _parts(path: Path, lines: list[str]) -> tuple[dict[str, Any], list[tuple[int
                 rows.append((at, line))
             continue
         key, colon, value = (part.strip() for part in line[1:].partition(":"))
+        key = key.casefold()
         if not colon:
             continue
         if key in QUANTITIES:
             head[key] = _quantity(path, at, key, value, QUANTITIES[key])
         elif key in TEXTS:
             head[key] = f"{head[key]} {value}" if key in head else value
-        else:
-            known = ", ".join((*TEXTS, *QUANTITIES))
-            raise ModelError(f"{path}, line {at}: unknown key {key!r}: one of {known}")
+        elif meant := did_you_mean(key, QUANTITIES):
+            # A misspelt mass would be read as a comment, and the drag would stay.
+            raise ModelError(f"{path}, line {at}: unknown key {key!r}{meant}")
     return head, rows
-
-
-def _plain(text: str, kind: SIParameter) -> str:
-    """A text without its unit if that is the SI unit, so that no other unit needs to be known.
-
-    Examples
-    --------
-    >>> _plain("0.3 kg", QUANTITIES["mass"]), _plain("3 g", QUANTITIES["mass"])
-    ('0.3', '3 g')
-    """
-    value, _, unit = text.partition(" ")
-    return value if unit.strip() == kind.name else text
 
 
 def _quantity(path: Path, at: int, name: str, value: str, kind: SIParameter) -> float:
     try:
-        return in_si(name, _plain(value, kind), kind)
+        return in_si(name, without_si_unit(value, kind), kind)
     except ParameterError as error:
         raise ModelError(f"{path}, line {at}: {error}") from None
-
-
-def _columns(path: Path, rows: list[tuple[int, str]]) -> tuple[dict[str, np.ndarray], list[int]]:
-    """The columns of a file in SI units, by name, and the lines of their rows."""
-    if not rows:
-        raise ModelError(f"{path} has no line with the names of the columns")
-    at, line = rows[0]
-    headings = next(csv.reader([line]))
-    counts = len(headings) > 1 and headings[0].strip().casefold() in _COUNTS
-    titles = [_title(path, at, each) for each in headings[counts:]]
-    wanted = [name for name, _ in titles]
-    if len(set(wanted)) < len(wanted) or set(wanted) - _FURTHER - _OF_INTERVALS not in _WAYS:
-        ways = "; or ".join(" and ".join(sorted(way, reverse=True)) for way in _WAYS)
-        raise ModelError(f"{path}, line {at}: the columns must be {ways}, each of them once")
-    is_heard = bool({"interval", "time"} & set(wanted))
-    if "recording" in wanted and not is_heard:
-        raise ModelError(f"{path}, line {at}: a column recording needs a column interval or time")
-    for name in wanted:
-        if is_heard and name in _FURTHER:
-            raise ModelError(f"{path}, line {at}: intervals and times have no column {name}")
-    if "duration_uncertainty" in wanted and "duration" not in wanted:
-        raise ModelError(f"{path}, line {at}: duration_uncertainty needs a column duration")
-    found: dict[str, list[float]] = {name: [] for name in wanted}
-    for at, line in rows[1:]:
-        cells = next(csv.reader([line]))[counts:]
-        if len(cells) != len(titles):
-            columns = "one column" if len(titles) == 1 else f"{len(titles)} columns"
-            raise ModelError(
-                f"{path}, line {at}: {len(cells)} values for {columns}; numbers have a decimal "
-                "point and no comma, unless columns are separated by tabs or semicolons"
-            )
-        for (name, factor), cell in zip(titles, cells, strict=True):
-            found[name].append(_cell(path, at, name, cell, factor))
-        if "drop_height" in found and found["rebound_height"][-1] > found["drop_height"][-1]:
-            back, drop = (f"{found[f'{name}_height'][-1]:g} m" for name in ("rebound", "drop"))
-            raise ModelError(
-                f"{path}, line {at}: the rebound of {back} is above the drop of {drop}"
-            )
-    if not found[wanted[0]]:
-        raise ModelError(f"{path} has no line of numbers")
-    return {name: np.array(values) for name, values in found.items()}, [at for at, _ in rows[1:]]
-
-
-def _title(path: Path, at: int, text: str) -> tuple[str, float]:
-    """The name of a column and the SI value of its unit."""
-    brackets = text.strip().translate(str.maketrans("()", "[]"))
-    name, _, unit = brackets.removesuffix("]").partition("[")
-    name = name.strip().casefold()
-    name = _ALIASES.get(name, name.replace(" ", "_"))
-    if name not in COLUMNS:
-        raise ModelError(f"{path}, line {at}: unknown column {name!r}: one of {', '.join(COLUMNS)}")
-    if not unit:
-        return name, 1.0
-    try:
-        return name, number_in_si(name, _plain(f"1 {unit}", COLUMNS[name]), COLUMNS[name])
-    except ParameterError as error:
-        raise ModelError(f"{path}, line {at}: {error}") from None
-
-
-def _cell(path: Path, at: int, name: str, cell: str, factor: float) -> float:
-    kind = COLUMNS[name]
-    text = cell.strip()
-    if name in ("duration", "duration_uncertainty") and not text:
-        return math.nan
-    try:
-        # Fifteen digits keep those of the file without the rounding of the factor.
-        value = float(f"{number_in_si(name, text, kind) * factor:.15g}")
-    except ParameterError as error:
-        raise ModelError(f"{path}, line {at}: {error}") from None
-    if value not in kind.allowed:
-        raise ModelError(f"{path}, line {at}: {name} = {value:g} is not {kind.allowed}")
-    return value
 
 
 class _Recording(NamedTuple):
@@ -435,23 +262,23 @@ class _Recording(NamedTuple):
     number: int
 
 
-def _recordings(columns: dict[str, np.ndarray], lines: _Lines) -> list[_Recording]:
+def _recordings(columns: Columns) -> list[_Recording]:
     """The intervals of each recording, in the order of the file; one that has a line that is left
     out is two recordings.
     """
-    name = "interval" if "interval" in columns else "time"
-    values = columns[name]
-    numbers = columns.get("recording", np.ones(values.size))
+    name = "interval" if "interval" in columns.values else "time"
+    values = columns.values[name]
+    numbers = columns.values.get("recording", np.ones(values.size))
+    is_left_out = np.isin(columns.lines, columns.left_out)
     found = []
     for each in dict.fromkeys(numbers):
         rows = np.flatnonzero(numbers == each)
-        left_out = [k for k, row in enumerate(rows) if lines.numbers[row] in lines.left_out]
-        parts = [part for part in np.split(rows, left_out) if part.size]
-        kept = [part[lines.numbers[part[0]] in lines.left_out :] for part in parts]
-        usable = [_recording(name, values, part, lines, int(each)) for part in kept]
+        parts = [part for part in np.split(rows, np.flatnonzero(is_left_out[rows])) if part.size]
+        kept = [part[int(is_left_out[part[0]]) :] for part in parts]
+        usable = [_recording(name, values, part, columns.lines, int(each)) for part in kept]
         long = [one for one in usable if one.intervals.size > 1]
         if not long:
-            which = f"recording {each:g} has" if "recording" in columns else "there are"
+            which = f"recording {each:g} has" if "recording" in columns.values else "there are"
             raise ModelError(
                 f"{which} fewer than two intervals, which the impact between them needs"
             )
@@ -460,19 +287,30 @@ def _recordings(columns: dict[str, np.ndarray], lines: _Lines) -> list[_Recordin
 
 
 def _recording(
-    name: str, values: np.ndarray, rows: np.ndarray, lines: _Lines, number: int
+    name: str, values: np.ndarray, rows: np.ndarray, lines: list[int], number: int
 ) -> _Recording:
     """The intervals of rows of the file.
 
     Raises
     ------
     ModelError
-        If an interval is longer than the one before it, as no flight after an impact is.
+        If a flight is higher than a wrong unit explains, an interval is longer than the one before
+        it, as no flight after an impact is, or times are equally spaced.
     """
     part = values[rows]
     of_time = name == "time"
     intervals = np.diff(part) if of_time else part
-    ends = [lines.numbers[row] for row in (rows[1:] if of_time else rows)]
+    ends = [lines[row] for row in (rows[1:] if of_time else rows)]
+    for end, interval in zip(ends, intervals, strict=True):
+        height = STANDARD_GRAVITY * interval**2 / 8
+        if height > HIGHEST:
+            raise ParameterError(
+                f"line {end}: a flight of {interval:g} s is {height:.0f} m high: are these ms? "
+                f"write the unit in the heading: '{name} (ms)', or leave the line out by "
+                "{leave_out}"
+            )
+    if of_time and intervals.size > 1 and np.allclose(intervals, intervals[0], rtol=_EQUAL, atol=0):
+        raise ModelError("the times are equally spaced, as those of a film and not of impacts")
     for k in range(1, intervals.size):
         if intervals[k] > intervals[k - 1]:
             raise ParameterError(
@@ -484,11 +322,7 @@ def _recording(
 
 
 def _experiment(
-    name: str,
-    texts: dict[str, str],
-    numbers: dict[str, float],
-    columns: dict[str, np.ndarray],
-    lines: _Lines,
+    name: str, texts: dict[str, str], numbers: dict[str, float], table: Columns
 ) -> Experiment:
     mass = numbers.get("mass")
     diameter = numbers.get("diameter")
@@ -497,12 +331,14 @@ def _experiment(
         length = drag_length(mass, diameter)
     found: Heard | None = None
     bias = 0.0
-    if "interval" not in columns and "time" not in columns:
-        kept = np.array([line not in lines.left_out for line in lines.numbers])
+    columns = table.values
+    if not table.is_heard:
+        kept = ~np.isin(table.lines, table.left_out)
         columns = {key: values[kept] for key, values in columns.items()}
     if "speed" in columns:
         speeds = columns["speed"]
-        restitutions = columns["restitution"]
+        rebounds = columns.get("rebound_speed")
+        restitutions = columns["restitution"] if rebounds is None else rebounds / speeds
         errors = columns.get("uncertainty")
     elif "drop_height" in columns:
         heights = columns["drop_height"], columns["rebound_height"]
@@ -520,7 +356,7 @@ def _experiment(
                     length=length,
                     contact_time=numbers.get("contact time", 0.0),
                 )
-                for recording in _recordings(columns, lines)
+                for recording in _recordings(table)
             ]
         )
         speeds = found.speeds
@@ -545,6 +381,7 @@ def _experiment(
         drag_bias=bias if is_without_drag else 0.0,
         is_without_drag=is_without_drag,
         is_of_flights="speed" not in columns,
-        left_out=lines.left_out,
+        left_out=table.left_out,
+        notes=table.notes,
         heard=found,
     )

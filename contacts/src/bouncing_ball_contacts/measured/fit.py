@@ -23,11 +23,17 @@ from bouncing_ball.errors import (
 from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, quantities
+from bouncing_ball_contacts.contact.texts import lines
 from bouncing_ball_contacts.contact.units import in_si
 from bouncing_ball_contacts.measured.curves import CURVES, curve_named
 from bouncing_ball_contacts.measured.law_fit import LawFit, MeasuredPoints, fit_law, quantile_of
 
 _POSITIVE = "a finite number > 0"
+# Relative differences of r between laws with one r(v), by the ends of their fits.
+_SAME = 1e-6
+# The digits of a criterion and of an rms that do not depend on rounding: laws with one r(v) keep
+# the order of their list.
+_DIGITS = 9
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,27 @@ class ContactFit:
     def best(self) -> LawFit:
         """The first law of the ranking that has a contact."""
         return next(each for each in self.laws if each.curve.kind is not None)
+
+    @property
+    def curves(self) -> tuple[tuple[str, ...], ...]:
+        """The names of the laws that have the same r at all measured speeds, in the order of the
+        first of them.
+
+        Examples
+        --------
+        >>> fit_contact([0.5, 1.0, 2.0, 4.0], [0.857, 0.842, 0.826, 0.809]).curves[-1]
+        ('hunt-crossley', 'hunt-crossley-linear')
+        """
+        v = self.points.speeds
+        found: list[tuple[np.ndarray, list[str]]] = []
+        for each in self.laws:
+            r = each.restitution_at(v)
+            names = next((few for same, few in found if np.allclose(r, same, rtol=_SAME)), None)
+            if names is None:
+                found.append((r, [each.law]))
+            else:
+                names.append(each.law)
+        return tuple(tuple(names) for _, names in found)
 
     def law(self, name: str) -> LawFit:
         """The fit of the law with this name.
@@ -122,26 +149,25 @@ def fit_contact(
     points = replace(points, is_relative=not absolute_uncertainties)
     weight = None if mass is None else in_si("mass", mass, quantities(Contact)["mass"])
     times = _times(durations, duration_uncertainties, points)
-    names = tuple(CURVES) if laws is None else _names(laws)
+    names = CURVES if laws is None else laws
+    is_list = laws is None or isinstance(laws, list | tuple)
+    if not is_list or not all(isinstance(name, str) for name in names):
+        raise ParameterError("{laws} = {} is no list of names of laws", shortened(laws))
     found = [
         replace(_with_time(fit_law(curve_named(name), points), times), mass=weight)
         for name in names
     ]
-    found.sort(key=lambda each: (np.nan_to_num(each.criterion, nan=np.inf), each.rms))
-    return ContactFit(points, tuple(found), _notes(points, times))
-
-
-def _names(laws: Any) -> tuple[str, ...]:
-    """The names of laws.
-
-    Raises
-    ------
-    ParameterError
-        If they are no list of names.
-    """
-    if not isinstance(laws, list | tuple) or not all(isinstance(name, str) for name in laws):
-        raise ParameterError("{laws} = {} is no list of names of laws", shortened(laws))
-    return tuple(laws)
+    found.sort(
+        key=lambda each: (
+            round(float(np.nan_to_num(each.criterion, nan=np.inf)), _DIGITS),
+            round(each.rms, _DIGITS),
+        )
+    )
+    share = None
+    if times is not None:
+        share = STANDARD_GRAVITY * float(np.max(times.values)) / float(np.min(points.speeds))
+    notes = lines("measured_notes", points=points, share=share)
+    return ContactFit(points, tuple(found), tuple(notes))
 
 
 def checked_points(
@@ -231,28 +257,3 @@ def _with_time(fit: LawFit, times: _Times | None) -> LawFit:
         error = np.nan
     away = quantile_of(times.errors is not None, freedom) * error
     return replace(fit, contact_time=time, time_interval=(time - away, time + away))
-
-
-def _notes(points: MeasuredPoints, times: _Times | None) -> tuple[str, ...]:
-    notes = []
-    if points.size == 1:
-        notes += ["One point determines the parameter of each law; it tests no law."]
-    elif np.ptp(points.speeds) == 0:
-        notes += ["All speeds are equal, so that the laws cannot be told apart."]
-    if times is None:
-        notes += [
-            "The stiffness is not identified: restitution coefficients determine the dissipation "
-            "group of a law only. Give a contact time."
-        ]
-    else:
-        share = STANDARD_GRAVITY * float(np.max(times.values)) / float(np.min(points.speeds))
-        notes += [
-            "Gravity during contact is neglected: it changes the speed by at most "
-            f"{share:.2g} of the slowest impact speed."
-        ]
-    if not points.is_known and points.size > 1:
-        notes += [
-            "Without uncertainties, intervals follow from the scatter about each law, and a "
-            "systematic error of the measurement counts as a deviation from each law."
-        ]
-    return tuple(notes)

@@ -182,29 +182,33 @@ class LawFit:
         one, other = (self.curve.restitution(self.theta + s * away, ratio) for s in (-1, 1))
         return np.minimum(one, other), np.maximum(one, other)
 
-    def by_scatter(self) -> "LawFit":
-        """The fit with the intervals by the scatter about the law, for a law that the points
-        reject: those by given uncertainties hold under a law that is right only.
+    def interval_by_scatter(self, speed: float) -> tuple[float, float]:
+        """95 % interval of r at an impact speed in m/s for a law that the points reject.
 
-        The standard error is then greater by √(χ²/ν), with ν degrees of freedom, and the quantile
-        is Student's. Without given uncertainties it is the fit itself.
+        It is that of a single impact, ``r ∓ t s`` with the scatter ``s² = Σ(e - r(v))²/ν`` about
+        the law and Student's t, because at one speed a wrong law is wrong by about as much as the
+        points are from it. More points do not narrow it, whereas the interval of θ holds under
+        the law only. NaN for one point.
 
         Examples
         --------
         >>> from bouncing_ball_contacts.measured.curves import curve_named
-        >>> e = np.array([0.9, 0.8, 0.85])
-        >>> tsuji = curve_named("tsuji")
-        >>> known = fit_law(tsuji, MeasuredPoints(np.arange(1.0, 4.0), e, 1e-8 * np.eye(3)))
-        >>> scatter = fit_law(tsuji, MeasuredPoints(np.arange(1.0, 4.0), e))
-        >>> np.allclose(known.by_scatter().interval, scatter.interval, rtol=1e-12)
-        True
+        >>> v, e = np.array([1.0, 2.0, 3.0]), np.array([0.9, 0.8, 0.85])
+        >>> one, more = (
+        ...     fit_law(curve_named("tsuji"), MeasuredPoints(np.tile(v, k), np.tile(e, k)))
+        ...     for k in (1, 100)
+        ... )
+        >>> [round(float(np.ptp(fit.interval)), 3) for fit in (one, more)]
+        [0.248, 0.009]
+        >>> [round(float(np.ptp(fit.interval_by_scatter(2.0))), 3) for fit in (one, more)]
+        [0.365, 0.161]
         """
-        if not np.isfinite(self.chi_square) or not self.freedom:
-            return self
-        error = self.theta_error * float(np.sqrt(self.chi_square / self.freedom))
-        wide = replace(self, theta_error=error, quantile=float(quantile_of(False, self.freedom)))
-        low, high = wide.band(self.speed)
-        return replace(wide, interval=(float(low), float(high)))
+        if not self.freedom:
+            return np.nan, np.nan
+        spread = self.rms * np.sqrt((self.freedom + 1) / self.freedom)
+        away = quantile_of(False, self.freedom) * spread
+        r = float(self.restitution_at(speed))
+        return float(max(r - away, 0.0)), float(min(r + away, 1.0))
 
     def duration_at(self, speed: ArrayLike) -> np.ndarray:
         """The contact time in s at impact speeds in m/s.

@@ -18,6 +18,7 @@ law is *compatible* if both probabilities are above 0.05 and the same points rej
 otherwise it is *undecided*, because an experiment that rejects no law cannot confirm one.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -26,7 +27,7 @@ import scipy
 
 from bouncing_ball_contacts.measured.curves import LawCurve
 from bouncing_ball_contacts.measured.fit import ContactFit
-from bouncing_ball_contacts.measured.law_fit import MeasuredPoints, fit_law
+from bouncing_ball_contacts.measured.law_fit import MeasuredPoints, fit_law, quantile_of
 
 REJECTED = 0.01
 ACCEPTED = 0.05
@@ -59,8 +60,8 @@ class JudgedLaw:
         The least size of the errors of the points, root mean square of their standard deviations,
         with which the law would not be rejected.
     interval : tuple of float
-        95 % interval of r(v₀); of a law that is incompatible by the scatter about it
-        (:meth:`.law_fit.LawFit.by_scatter`).
+        95 % interval of r(v₀); of a rejected law by the scatter about it
+        (:meth:`.law_fit.LawFit.interval_by_scatter`).
     """
 
     verdict: Compatibility
@@ -69,6 +70,11 @@ class JudgedLaw:
     extrapolation: float
     needed: float
     interval: tuple[float, float]
+
+    @property
+    def is_rejected(self) -> bool:
+        """Whether the law is incompatible or deviates."""
+        return self.verdict in (Compatibility.INCOMPATIBLE, Compatibility.DEVIATES)
 
 
 @dataclass(frozen=True)
@@ -131,6 +137,37 @@ def smooth(points: MeasuredPoints, speeds: np.ndarray) -> np.ndarray:
         whiten @ _powers(points, points.speeds), whiten @ points.restitutions, rcond=None
     )[0]
     return _powers(points, speeds) @ best
+
+
+def smooth_interval(points: MeasuredPoints, speed: float) -> tuple[float, float]:
+    """95 % interval of a single impact about :func:`smooth`, at a speed in m/s among those of the
+    points; NaN where there is no curve.
+
+    It is Student's with the scatter about the parabola, or with the given uncertainties if these
+    are larger. The scatter of an impact is part of it, because no law says that the parabola is
+    right between the points.
+
+    Examples
+    --------
+    >>> measured = np.geomspace(1.0, 4.0, 8)
+    >>> e = 0.8 - 0.1 * np.log(measured) + 0.01 * np.resize([1, -1], 8)
+    >>> low, high = smooth_interval(MeasuredPoints(measured, e), 2.0)
+    >>> bool(low < 0.8 - 0.1 * np.log(2.0) < high)
+    True
+    """
+    variance, freedom = scatter(points)
+    if np.isnan(variance):
+        return np.nan, np.nan
+    if points.is_known:
+        variance = max(variance, 1.0)
+    rows = points.whitening @ _powers(points, points.speeds)
+    at = _powers(points, np.array([speed]))[0]
+    order = np.argsort(points.speeds)
+    deviation = np.interp(speed, points.speeds[order], points.deviations[order])
+    error = np.sqrt(variance * (deviation**2 + at @ np.linalg.solve(rows.T @ rows, at)))
+    away = quantile_of(False, int(freedom)) * error
+    r = float(smooth(points, np.array([speed]))[0])
+    return float(r - away), float(r + away)
 
 
 def _powers(points: MeasuredPoints, speeds: np.ndarray) -> np.ndarray:
@@ -267,14 +304,15 @@ def judge(fit: ContactFit) -> dict[str, JudgedLaw]:
     for each in fit.laws:
         one, other = tests[each.law]
         verdict = _verdict(points, each.law in rejected, bool(rejected), found[each.law])
-        is_wrong = verdict is Compatibility.INCOMPATIBLE
         judged[each.law] = JudgedLaw(
             verdict=verdict,
             left_out=found[each.law][0],
             extrapolated=found[each.law][1],
             extrapolation=other.size,
             needed=size * float(np.fmax(one.passed_by, other.passed_by)),
-            interval=(each.by_scatter() if is_wrong else each).interval,
+            interval=(
+                each.interval_by_scatter(each.speed) if each.law in rejected else each.interval
+            ),
         )
     return judged
 
@@ -287,3 +325,55 @@ def _verdict(
     if is_decisive and all(p > ACCEPTED for p in found):
         return Compatibility.COMPATIBLE
     return Compatibility.UNDECIDED
+
+
+@dataclass(frozen=True)
+class RestitutionAtSpeed:
+    """The restitution coefficient at one impact speed, and where it is from.
+
+    Parameters
+    ----------
+    restitution : float
+    interval : tuple of float
+        95 % interval; NaN if it is not known.
+    law : str or None
+        The law that it is from; None for the smooth curve (:func:`smooth`).
+    is_of_a_law_that_fits : bool
+        False if the points reject each law.
+    """
+
+    restitution: float
+    interval: tuple[float, float]
+    law: str | None
+    is_of_a_law_that_fits: bool
+
+
+def restitution_at_speed(
+    fit: ContactFit, judged: Mapping[str, JudgedLaw], speed: float
+) -> RestitutionAtSpeed:
+    """r at an impact speed in m/s: of the best law or, if the points reject all laws, of the smooth
+    curve through them.
+
+    Where there is no such curve, because it takes five points, and the speed is not beyond them, r
+    is that of the law with the smallest rms, with its interval by the scatter.
+
+    Examples
+    --------
+    >>> from bouncing_ball_contacts.measured.fit import fit_contact
+    >>> v = np.geomspace(0.5, 6.0, 12)
+    >>> fit = fit_contact(v, 0.9 - 0.03 * v, uncertainties=1e-3)
+    >>> found = restitution_at_speed(fit, judge(fit), 3.0)
+    >>> found.law is None, abs(found.restitution - 0.81) < 0.01
+    (True, True)
+    """
+    if not all(each.is_rejected for each in judged.values()):
+        low, high = (float(end) for end in fit.best.band(speed))
+        r = float(fit.best.restitution_at(speed))
+        return RestitutionAtSpeed(r, (low, high), fit.best.law, True)
+    points = fit.points
+    between = float(smooth(points, np.array([speed]))[0])
+    if points.speeds.min() <= speed <= points.speeds.max() and 0 < between <= 1:
+        return RestitutionAtSpeed(between, smooth_interval(points, speed), None, False)
+    least = min(fit.laws, key=lambda each: each.rms)
+    r = float(least.restitution_at(speed))
+    return RestitutionAtSpeed(r, least.interval_by_scatter(speed), least.law, False)

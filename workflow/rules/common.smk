@@ -65,7 +65,7 @@ def check(model):
 
         remove_reports()
         typed = workflow.config_settings.config
-        sys.exit(f"{error}{'' if typed else code_in_place_of(workflow.configfiles)}")
+        sys.exit(f"{'' if typed else code_in_place_of(workflow.configfiles)}{error}")
 
 
 # What the dataset of an artifact says of itself.

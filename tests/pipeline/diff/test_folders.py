@@ -300,7 +300,7 @@ def test_where_code_has_changed_and_the_configuration_has_not_its_refusal_names_
     files = [REPOSITORY / "config" / "config.yaml"]
     code = "src/bouncing_ball/models/flight.py"
     for touched, said in (
-        ({code, "tests/x.py"}, f"\nThe configuration has not changed, but code has: {code}"),
+        ({code, "tests/x.py"}, f"The configuration has not changed, but code has: {code}\n"),
         ({code, "config/config.yaml"}, ""),
         ({"tests/x.py"}, ""),
     ):

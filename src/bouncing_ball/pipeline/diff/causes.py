@@ -46,7 +46,7 @@ def code_in_place_of(configuration: Collection[Path]) -> str:
     code = sorted(file for file in touched if "/src/" in f"/{file}")
     if not code or files & touched:
         return ""
-    return f"\nThe configuration has not changed, but code has: {some(code)}"
+    return f"The configuration has not changed, but code has: {some(code)}\n"
 
 
 def suspects(made: Sequence[Mapping[str, Any]], touched: Collection[str]) -> list[str]:

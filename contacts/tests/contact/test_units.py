@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball_contacts.contact import units
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import drop_at_rest
 from bouncing_ball_contacts.contact.quantities import quantities
@@ -113,3 +114,18 @@ def test_a_prefix_keeps_four_digits(value):
 def test_a_whole_number_beyond_all_floats_is_refused_in_one_line():
     with pytest.raises(ModelError, match=r"measured_restitution.* is not a finite number"):
         read("measured_restitution", 10**400)
+
+
+def test_common_units_have_the_sizes_that_pint_gives_them():
+    registry = units._registry()
+    for name, common in units._COMMON.items():
+        for unit, size in common.items():
+            written = "standard_gravity" if (name, unit) == ("m/s^2", "g") else unit
+            exact = registry.Quantity(1.0, registry.parse_units(written)).m_as(name)
+            assert size == pytest.approx(float(exact), rel=1e-15)
+
+
+@pytest.mark.parametrize("name", ["mass", "stiffness"])
+def test_a_common_unit_needs_no_pint(name, monkeypatch):
+    monkeypatch.setattr(units, "_registry", None)
+    assert read(name, KINDS[name].example) > 0

@@ -12,7 +12,7 @@ from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, Res
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.documents import measured_impacts_figures as figures
 from bouncing_ball_contacts.documents.measured_impacts import (
     VARIABLES,

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.columns import COLUMNS, HIGHEST
 from bouncing_ball_contacts.measured.experiment import (
     QUANTITIES,

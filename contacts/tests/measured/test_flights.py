@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.curves import curve_named
 from bouncing_ball_contacts.measured.fit import fit_contact
 from bouncing_ball_contacts.measured.flights import (

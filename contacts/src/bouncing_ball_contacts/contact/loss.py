@@ -17,8 +17,9 @@ from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.contact import LOSSY, Contact
 from bouncing_ball_contacts.contact.drop_test import fitted_damping_ratio
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, given, single
+from bouncing_ball_contacts.contact.quantities import given, single
 from bouncing_ball_contacts.contact.rebounds import compression
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 
 # Largest number of times that the damping of a drop test is fitted to a stiffness.
 _REFITS = 12

@@ -12,9 +12,6 @@ from typing import Annotated, Any, get_args
 from bouncing_ball.errors import ParameterError, Range, shortened
 from bouncing_ball_contacts.contact.units import SIParameter, in_si
 
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity, in m/s²."""
-
 # A longer value is named by its type in a message.
 _LONGEST_SHOWN = 60
 _NONE_TOO = Range(0, 1e40, "[]")

@@ -8,7 +8,6 @@ from functools import cached_property
 
 from bouncing_ball.errors import NoOrbitError, ParameterError, require, suggesting
 from bouncing_ball_contacts.contact.quantities import (
-    STANDARD_GRAVITY,
     Acceleration,
     Frequency,
     Gravity,
@@ -17,6 +16,7 @@ from bouncing_ball_contacts.contact.quantities import (
     given,
     single,
 )
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 
 # Beyond this limit the square of Λ leaves no digits. The other calls have the same limit.
 _LARGEST = 1e8

@@ -22,17 +22,21 @@ import numpy as np
 
 from bouncing_ball.errors import ParameterError, Range, shortened
 
-# Units as they are written, by the SI unit of a parameter, for hints on a wrong spelling.
-_SPELLINGS = {
-    "kg": ("kg", "g", "mg"),
-    "Hz": ("Hz", "kHz", "rpm", "rad/s"),
-    "s": ("s", "ms", "us", "ns"),
-    "m": ("m", "cm", "mm", "um"),
-    "m/s": ("m/s", "mm/s", "km/h"),
-    "m/s^2": ("m/s^2", "mm/s^2", "g"),
-    "N/m": ("N/m", "kN/m", "MN/m", "N/mm", "kN/mm"),
-    "N*s/m": ("N s/m", "kN s/m", "N s/mm", "kg/s"),
-    "Pa": ("Pa", "kPa", "MPa", "GPa"),
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity, in m/s²."""
+
+# The size of common units in SI units as they are written, by the SI unit of a parameter. They need
+# no pint, which takes as long as the rest of a recipe, and are hints on a wrong spelling.
+_COMMON: Mapping[str, Mapping[str, float]] = {
+    "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},
+    "Hz": {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "rad/s": 1 / (2 * math.pi)},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9},
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3, "km/h": 1 / 3.6},
+    "m/s^2": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": STANDARD_GRAVITY},
+    "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
+    "N*s/m": {"N s/m": 1.0, "kN s/m": 1e3, "N s/mm": 1e3, "kg/s": 1.0},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
 }
 # A frequency in 1/s, which pint takes for no angle at all.
 _PER_TIME = "does not say whether it counts turns or radians"
@@ -211,7 +215,7 @@ def _spelling(unit: str, kind: SIParameter) -> str:
     if unit in (friends := _FALSE_FRIENDS.get(kind.name, {}) | _PARTS.get(kind.name, {})):
         return friends[unit]
     typed = _BETWEEN.sub("", unit).casefold()
-    for spelling in _SPELLINGS.get(kind.name, ()):
+    for spelling in _COMMON.get(kind.name, ()):
         if _BETWEEN.sub("", spelling).casefold() == typed:
             return spelling
     return ""
@@ -220,12 +224,14 @@ def _spelling(unit: str, kind: SIParameter) -> str:
 def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     """A value in SI units and an empty text, or NaN and the reason why it cannot be converted.
 
-    For an acceleration the unit g means standard gravity and not the gram.
+    For an acceleration the unit g means standard gravity and not the gram. A unit that is common
+    for the parameter needs no pint.
     """
+    common = _COMMON.get(kind.name, {})
+    if unit in common:
+        return _digits(value * common[unit]), ""
     registry = _registry()
     why = _UNKNOWN
-    if (kind.name, unit) == ("m/s^2", "g"):
-        unit = "standard_gravity"
     if unit in _FALSE_FRIENDS.get(kind.name, {}):
         what = "grains, or in no unit of mass" if kind.name == "kg" else "newton times meter"
         return math.nan, f"is in {what}"
@@ -236,9 +242,13 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
         if _UNIT.fullmatch(unit.replace("**", "^")) and unit.count("%") < 2:
             one = registry.Quantity(value, registry.parse_units(unit))
             why = _in_another_unit(str(one.units).replace("_", " "), kind)
-            # Fifteen digits keep all digits that a user wrote, without the rounding error.
-            return float(f"{one.m_as(kind.name):.15g}"), ""
+            return _digits(one.m_as(kind.name)), ""
     return math.nan, why
+
+
+def _digits(value: float) -> float:
+    """A number with fifteen digits, which are all that a user wrote, without the rounding error."""
+    return float(f"{value:.15g}")
 
 
 def _in_another_unit(unit: str, kind: SIParameter) -> str:

@@ -47,8 +47,8 @@ from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import phase
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.table import Table, TableMotion
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.curves import CURVES
 from bouncing_ball_contacts.measured.experiment import Experiment, experiment
 from bouncing_ball_contacts.measured.fit import ContactFit

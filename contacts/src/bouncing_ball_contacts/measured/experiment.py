@@ -30,8 +30,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
-from bouncing_ball_contacts.contact.units import SIParameter, in_si
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY, SIParameter, in_si
 from bouncing_ball_contacts.measured.columns import (
     HIGHEST,
     Columns,

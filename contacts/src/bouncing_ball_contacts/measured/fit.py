@@ -22,9 +22,9 @@ from bouncing_ball.errors import (
 )
 from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY, quantities
+from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.texts import lines
-from bouncing_ball_contacts.contact.units import in_si
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY, in_si
 from bouncing_ball_contacts.measured.curves import CURVES, curve_named
 from bouncing_ball_contacts.measured.law_fit import LawFit, MeasuredPoints, fit_law, quantile_of
 

@@ -28,7 +28,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 
 AIR_DENSITY = 1.2
 """Density of air in kg/m³, at 20 °C and 1 atm to two digits."""

@@ -23,8 +23,8 @@ from bouncing_ball.errors import (
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_contacts.contact.contact import Contact
-from bouncing_ball_contacts.contact.quantities import STANDARD_GRAVITY
 from bouncing_ball_contacts.contact.table import Table
+from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.curves import LawCurve
 
 # The probability of the intervals.

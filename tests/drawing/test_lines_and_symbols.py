@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+import scipy
 import xarray as xr
 from matplotlib.figure import Figure
 
 import bouncing_ball as bb
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
-from bouncing_ball.drawing.labels import _SYMBOLS, in_a_row
+from bouncing_ball.drawing.labels import _SYMBOLS, _ascending, in_a_row
 from bouncing_ball.drawing.style import LINES
 
 IN_LATEX = {"Λ": r"\Lambda", "ϖ": r"\varpi", "ζ": r"\zeta", "φ": r"\varphi", "z′ᵢ": "z′_i"}
@@ -51,3 +52,11 @@ def test_the_inadmissible_part_of_a_curve_is_dotted_and_the_other_part_is_not():
     expected = axes.lines[-1]
     assert dotted.get_linestyle() == expected.get_linestyle() != whole.get_linestyle()
     assert dotted._unscaled_dash_pattern == expected._unscaled_dash_pattern
+
+
+def test_names_are_moved_to_the_nearest_places_that_ascend():
+    random = np.random.default_rng(66)
+    for count in (1, 2, 5, 9):
+        values = random.normal(size=count)
+        exact = scipy.optimize.isotonic_regression(values).x
+        assert _ascending(values) == pytest.approx(exact, abs=1e-14)

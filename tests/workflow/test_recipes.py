@@ -109,7 +109,9 @@ def test_a_figure_needs_the_files_of_its_recipe_only(fresh):
     fresh.rewrite(artifacts, "by_name(\n", f"by_name(\n{heights}")
     types = f"{PAPER}/configuration.py"
     fresh.rewrite(types, "    fig10: Sweep\n", "    fig10: Sweep\n    heights: Sweep\n")
-    assert fresh.refusal().startswith("configuration: missing key paper.heights: ")
+    said = fresh.run("--cores", "1", check=False).stderr
+    assert "but code has: src/bouncing_ball/paper/artifacts.py, " in said
+    assert "\nconfiguration: missing key paper.heights: " in said
     fresh.rewrite(CONFIG, "paper:\n", PARAMETERS)
     compute = f"{SCRIPTS}/compute_heights.py"
     copied(fresh, f"{SCRIPTS}/compute_fig10.py", compute)

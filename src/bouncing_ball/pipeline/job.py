@@ -27,7 +27,6 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from pydantic import ConfigDict, validate_call
 
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import (
@@ -148,6 +147,9 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
     >>> typed(study)({"min": 10.0, "max": 1000.0, "samples": 3})
     [10.0, 100.0, 1000.0]
     """
+    # Imported here, because tables and pictures need no parameters.
+    from pydantic import ConfigDict, validate_call
+
     return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
 
 

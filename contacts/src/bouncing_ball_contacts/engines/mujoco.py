@@ -71,9 +71,11 @@ _LONGEST = 100.0
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
     """The numbers of an attribute, given as a text, as in XML, or as a sequence."""
     parts = value.split() if isinstance(value, str) else np.ravel(value).tolist()
-    allowed, hint = f"{counts[0]} to {counts[-1]} numbers", ""
+    allowed = f"{counts[0]} to {counts[-1]} numbers"
+    hint = ""
     if len(counts) == 1:
-        allowed, hint = "2 numbers", ": '0.02 0.5' (s, damping ratio) or '-1e4 -20' (-k/m, -c/m)"
+        allowed = "2 numbers"
+        hint = ": '0.02 0.5' (s, damping ratio) or '-1e4 -20' (-k/m, -c/m)"
     try:
         found = [float(part) for part in parts]
     except (TypeError, ValueError):

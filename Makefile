@@ -8,7 +8,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 NEWEST := .venv-newest
-# Snakemake starts jobs with the path of Python without quotes.
+# A target of make has no space in its path.
 ifneq ($(words $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))),1)
 $(error the path of this checkout has a space: move it, or make VENV=/a/path/without/spaces)
 endif
@@ -24,7 +24,7 @@ HOUSES := beyond contacts
 # The only package of the locks without a wheel.
 SOURCES := connection-pool
 
-# Sixty jobs import the same modules, so that compiled modules are kept whatever the shell sets.
+# The processes of jobs import the same modules, so that compiled modules are kept whatever the shell sets.
 unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.

@@ -36,7 +36,5 @@ rule beyond_article:
         artifacts=ARTIFACTS,
     log:
         "results/logs/article.log",
-    conda:
-        ENVIRONMENT
-    script:
-        f"{ROOT}/workflow/scripts/paper.py"
+    run:
+        work(f"{ROOT}/workflow/scripts/paper.py", rule, input, output, params, log)

@@ -16,10 +16,8 @@ rule compute_ext_instant:
         release=config["release"],
     log:
         "results/logs/compute_ext_instant.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_instant.py"
+    run:
+        work("compute_ext_instant.py", rule, input, output, params, log)
 
 
 rule compute_ext_orders:
@@ -36,10 +34,8 @@ rule compute_ext_orders:
         release=config["release"],
     log:
         "results/logs/compute_ext_orders.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_orders.py"
+    run:
+        work("compute_ext_orders.py", rule, input, output, params, log)
 
 
 rule compute_ext_map:
@@ -55,10 +51,8 @@ rule compute_ext_map:
         parameters=config["beyond"]["ext_map"],
     log:
         "results/logs/compute_ext_map.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_map.py"
+    run:
+        work("compute_ext_map.py", rule, input, output, params, log)
 
 
 rule compute_ext_release:
@@ -74,10 +68,8 @@ rule compute_ext_release:
         parameters=config["beyond"]["ext_release"],
     log:
         "results/logs/compute_ext_release.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_release.py"
+    run:
+        work("compute_ext_release.py", rule, input, output, params, log)
 
 
 rule compute_ext_impact:
@@ -93,10 +85,8 @@ rule compute_ext_impact:
         parameters=config["beyond"]["ext_impact"],
     log:
         "results/logs/compute_ext_impact.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_impact.py"
+    run:
+        work("compute_ext_impact.py", rule, input, output, params, log)
 
 
 rule compute_ext_laws:
@@ -112,10 +102,8 @@ rule compute_ext_laws:
         parameters=config["beyond"]["ext_laws"],
     log:
         "results/logs/compute_ext_laws.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_laws.py"
+    run:
+        work("compute_ext_laws.py", rule, input, output, params, log)
 
 
 rule compute_ext_flights:
@@ -131,10 +119,8 @@ rule compute_ext_flights:
         parameters=config["beyond"]["ext_flights"],
     log:
         "results/logs/compute_ext_flights.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_flights.py"
+    run:
+        work("compute_ext_flights.py", rule, input, output, params, log)
 
 
 rule compute_explorer:
@@ -150,10 +136,8 @@ rule compute_explorer:
         parameters=config["beyond"]["explorer"],
     log:
         "results/logs/compute_explorer.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_explorer.py"
+    run:
+        work("compute_explorer.py", rule, input, output, params, log)
 
 
 rule compute_ext_proofs:
@@ -169,10 +153,8 @@ rule compute_ext_proofs:
         parameters=config["beyond"]["ext_proofs"],
     log:
         "results/logs/compute_ext_proofs.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_proofs.py"
+    run:
+        work("compute_ext_proofs.py", rule, input, output, params, log)
 
 
 rule compute_ext_verdicts:
@@ -192,7 +174,5 @@ rule compute_ext_verdicts:
         artifact=about("ext_verdicts"),
     log:
         "results/logs/compute_ext_verdicts.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/compute_ext_verdicts.py"
+    run:
+        work("compute_ext_verdicts.py", rule, input, output, params, log)

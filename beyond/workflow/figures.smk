@@ -17,10 +17,8 @@ rule draw_ext_instant:
         svg="results/figures/ext_instant.svg",
     log:
         "results/logs/draw_ext_instant.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_ext_instant.py"
+    run:
+        work("draw_ext_instant.py", rule, input, output, params, log)
 
 
 rule draw_ext_orders:
@@ -39,10 +37,8 @@ rule draw_ext_orders:
         svg="results/figures/ext_orders.svg",
     log:
         "results/logs/draw_ext_orders.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_ext_orders.py"
+    run:
+        work("draw_ext_orders.py", rule, input, output, params, log)
 
 
 rule draw_ext_map:
@@ -61,10 +57,8 @@ rule draw_ext_map:
         svg="results/figures/ext_map.svg",
     log:
         "results/logs/draw_ext_map.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_ext_map.py"
+    run:
+        work("draw_ext_map.py", rule, input, output, params, log)
 
 
 rule draw_ext_impact:
@@ -83,10 +77,8 @@ rule draw_ext_impact:
         svg="results/figures/ext_impact.svg",
     log:
         "results/logs/draw_ext_impact.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_ext_impact.py"
+    run:
+        work("draw_ext_impact.py", rule, input, output, params, log)
 
 
 rule draw_ext_laws:
@@ -105,10 +97,8 @@ rule draw_ext_laws:
         svg="results/figures/ext_laws.svg",
     log:
         "results/logs/draw_ext_laws.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_ext_laws.py"
+    run:
+        work("draw_ext_laws.py", rule, input, output, params, log)
 
 
 rule draw_ext_flights:
@@ -127,7 +117,5 @@ rule draw_ext_flights:
         svg="results/figures/ext_flights.svg",
     log:
         "results/logs/draw_ext_flights.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_ext_flights.py"
+    run:
+        work("draw_ext_flights.py", rule, input, output, params, log)

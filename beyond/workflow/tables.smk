@@ -21,10 +21,8 @@ rule set_ext_orders:
         title=ARTIFACTS["ext_orders"].title,
     log:
         "results/logs/set_ext_orders.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/set_ext_orders.py"
+    run:
+        work("set_ext_orders.py", rule, input, output, params, log)
 
 
 rule set_ext_laws:
@@ -45,10 +43,8 @@ rule set_ext_laws:
         title=ARTIFACTS["ext_laws"].title,
     log:
         "results/logs/set_ext_laws.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/set_ext_laws.py"
+    run:
+        work("set_ext_laws.py", rule, input, output, params, log)
 
 
 rule set_ext_proofs:
@@ -69,10 +65,8 @@ rule set_ext_proofs:
         title=ARTIFACTS["ext_proofs"].title,
     log:
         "results/logs/set_ext_proofs.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/set_ext_proofs.py"
+    run:
+        work("set_ext_proofs.py", rule, input, output, params, log)
 
 
 rule set_ext_verdicts:
@@ -93,10 +87,8 @@ rule set_ext_verdicts:
         title=ARTIFACTS["ext_verdicts"].title,
     log:
         "results/logs/set_ext_verdicts.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/set_ext_verdicts.py"
+    run:
+        work("set_ext_verdicts.py", rule, input, output, params, log)
 
 
 # With reference orbits for the check of its results.
@@ -110,7 +102,5 @@ rule draw_explorer:
         html="results/figures/explorer.html",
     log:
         "results/logs/draw_explorer.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "scripts/draw_explorer.py"
+    run:
+        work("draw_explorer.py", rule, input, output, params, log)

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from declared_artifacts import BUDGETS, STUDIES, compare_artifact, given_to
 
-from bouncing_ball.pipeline.job import arguments, typed
 from bouncing_ball.datasets.variables import IGNORED
+from bouncing_ball.pipeline.job import arguments, typed
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -13,9 +13,9 @@ from declared_artifacts import DRAWINGS, STUDIES, given_to
 from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
-from bouncing_ball.pipeline.job import arguments, recorded, typed
 from bouncing_ball.drawing.canvas import lay_out
 from bouncing_ball.drawing.style import LINES, MARKS, style
+from bouncing_ball.pipeline.job import arguments, recorded, typed
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 ROOT = Path(__file__).resolve().parents[2]

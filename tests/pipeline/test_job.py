@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 import xarray as xr
 
-from bouncing_ball.pipeline.job import logged, make_dataset, read_input, using
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.job import logged, make_dataset, read_input, using
 
 
 @pytest.fixture

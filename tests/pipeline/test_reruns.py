@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from declared_artifacts import SCRIPTS, STUDIES, given_to
 
-from bouncing_ball.pipeline.job import arguments
 from bouncing_ball.pipeline import sources as module
+from bouncing_ball.pipeline.job import arguments
 from bouncing_ball.pipeline.sources import (
     lines_of,
     parts_of_note,

@@ -30,8 +30,8 @@ rule history:
         parameters=config["paper"]["fig02"],
     log:
         "results/logs/history.log",
-    script:
-        "workflow/scripts/history.py"
+    run:
+        work("history.py", rule, input, output, params, log)
 
 
 rule draw_fig02:
@@ -43,8 +43,8 @@ rule draw_fig02:
         "results/figures/fig02.svg",
     log:
         "results/logs/draw_fig02.log",
-    script:
-        f"{ROOT}/workflow/scripts/draw_fig02.py"
+    run:
+        work(f"{ROOT}/workflow/scripts/draw_fig02.py", rule, input, output, params, log)
 
 
 rule all:

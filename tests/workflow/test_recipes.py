@@ -49,10 +49,8 @@ RULE = """rule compute_threshold:
         parameters=config["paper"]["threshold"],
     log:
         "results/logs/compute_threshold.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_threshold.py"
+    run:
+        work("compute_threshold.py", rule, input, output, params, log)
 
 
 """

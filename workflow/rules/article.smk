@@ -27,10 +27,8 @@ rule set_claims:
         title=ARTIFACTS["claims"].title,
     log:
         "results/logs/set_claims.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/set_claims.py"
+    run:
+        work("set_claims.py", rule, input, output, params, log)
 
 
 rule claims:
@@ -88,10 +86,8 @@ rule paper:
         artifacts=ARTIFACTS,
     log:
         "results/logs/paper.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/paper.py"
+    run:
+        work("paper.py", rule, input, output, params, log)
 
 
 # The PDFs are not part of a run, because only they need Typst.
@@ -119,7 +115,5 @@ rule paper_pdf:
         template=f"{ARTICLE}/article.typ",
     log:
         "results/logs/paper_pdf.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/paper_pdf.py"
+    run:
+        work("paper_pdf.py", rule, input, output, params, log)

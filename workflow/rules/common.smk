@@ -3,7 +3,6 @@
 # record; this is the root if no other house is named.
 
 import os
-import shlex
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,17 +10,9 @@ from pathlib import Path
 from bouncing_ball.pipeline.run import remove_reports
 from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
 
-# Snakemake starts jobs with the path of Python without quotes.
-if shlex.quote(sys.executable) != sys.executable:
-    sys.exit(
-        f"{sys.executable}: a path of Python with a space or a quote in it; put the .venv elsewhere"
-    )
-
 # The repository, for all Snakefiles.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
 HOUSE = globals().get("HOUSE", ROOT)
-# The environment of all rules for `--sdm conda`; otherwise a job has the Python of Snakemake itself.
-ENVIRONMENT = f"{ROOT}/environment.yml"
 # The package may belong to another checkout whose environment is active.
 HERE = Path(ROOT, "src", "bouncing_ball")
 found = Path(getattr(find_spec("bouncing_ball"), "origin", "nowhere/at/all")).parent
@@ -34,9 +25,8 @@ if found.resolve() != HERE.resolve():
 if os.path.lexists("results") and not os.path.isdir("results"):
     sys.exit("results is no folder, but the run writes its files there: move it away")
 
-# Snakemake writes these lines before and after every job, and they do not name what it makes; and
-# once that the environments for `--sdm conda` are not used.
-IDLE = ("Select jobs", "Execute ", "Finished jobid", "Conda environments: ignored")
+# Snakemake writes these lines before and after every job, and they do not name what it makes.
+IDLE = ("Select jobs", "Execute ", "Finished jobid")
 logger.addFilter(lambda record: not str(record.msg).startswith(IDLE))
 
 
@@ -97,3 +87,17 @@ def code(script, *files):
         return str(path)
 
     return note
+
+
+# Run the script of a job. The processes that run scripts belong to that of Snakemake, so that the
+# profile has `force-use-threads`: without it, Snakemake starts itself again for each job with `run`.
+def work(script, rule, input, output, params, log):
+    from bouncing_ball.pipeline.workers import run_script
+    from snakemake.exceptions import SpawnedJobError
+    from snakemake.script import Snakemake
+
+    path = Path(HOUSE, "workflow/scripts", script)
+    folder = str(path.parent)
+    job = Snakemake(input, output, params, None, 1, None, log, config, rule, None, folder)
+    if not run_script(path, job):
+        raise SpawnedJobError()

@@ -16,10 +16,8 @@ rule compute_fig02:
         parameters=config["paper"]["fig02"],
     log:
         "results/logs/compute_fig02.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig02.py"
+    run:
+        work("compute_fig02.py", rule, input, output, params, log)
 
 
 rule compute_fig03:
@@ -35,10 +33,8 @@ rule compute_fig03:
         parameters=config["paper"]["fig03"],
     log:
         "results/logs/compute_fig03.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig03.py"
+    run:
+        work("compute_fig03.py", rule, input, output, params, log)
 
 
 rule compute_fig05:
@@ -55,10 +51,8 @@ rule compute_fig05:
         release=config["release"],
     log:
         "results/logs/compute_fig05.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig05.py"
+    run:
+        work("compute_fig05.py", rule, input, output, params, log)
 
 
 rule compute_fig06:
@@ -75,10 +69,8 @@ rule compute_fig06:
         release=config["release"],
     log:
         "results/logs/compute_fig06.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig06.py"
+    run:
+        work("compute_fig06.py", rule, input, output, params, log)
 
 
 rule compute_fig07:
@@ -95,10 +87,8 @@ rule compute_fig07:
         release=config["release"],
     log:
         "results/logs/compute_fig07.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig07.py"
+    run:
+        work("compute_fig07.py", rule, input, output, params, log)
 
 
 rule compute_fig08:
@@ -116,10 +106,8 @@ rule compute_fig08:
         continuation=config["continuation"],
     log:
         "results/logs/compute_fig08.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig08.py"
+    run:
+        work("compute_fig08.py", rule, input, output, params, log)
 
 
 rule compute_fig09:
@@ -137,10 +125,8 @@ rule compute_fig09:
         continuation=config["continuation"],
     log:
         "results/logs/compute_fig09.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig09.py"
+    run:
+        work("compute_fig09.py", rule, input, output, params, log)
 
 
 rule compute_fig10:
@@ -157,10 +143,8 @@ rule compute_fig10:
         release=config["release"],
     log:
         "results/logs/compute_fig10.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig10.py"
+    run:
+        work("compute_fig10.py", rule, input, output, params, log)
 
 
 rule compute_fig11:
@@ -177,10 +161,8 @@ rule compute_fig11:
         release=config["release"],
     log:
         "results/logs/compute_fig11.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig11.py"
+    run:
+        work("compute_fig11.py", rule, input, output, params, log)
 
 
 rule compute_fig12:
@@ -197,10 +179,8 @@ rule compute_fig12:
         release=config["release"],
     log:
         "results/logs/compute_fig12.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig12.py"
+    run:
+        work("compute_fig12.py", rule, input, output, params, log)
 
 
 rule compute_fig13:
@@ -217,10 +197,8 @@ rule compute_fig13:
         release=config["release"],
     log:
         "results/logs/compute_fig13.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig13.py"
+    run:
+        work("compute_fig13.py", rule, input, output, params, log)
 
 
 rule compute_fig14:
@@ -237,10 +215,8 @@ rule compute_fig14:
         release=config["release"],
     log:
         "results/logs/compute_fig14.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig14.py"
+    run:
+        work("compute_fig14.py", rule, input, output, params, log)
 
 
 rule compute_fig15:
@@ -258,10 +234,8 @@ rule compute_fig15:
         continuation=config["continuation"],
     log:
         "results/logs/compute_fig15.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig15.py"
+    run:
+        work("compute_fig15.py", rule, input, output, params, log)
 
 
 rule compute_fig16:
@@ -278,10 +252,8 @@ rule compute_fig16:
         release=config["release"],
     log:
         "results/logs/compute_fig16.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_fig16.py"
+    run:
+        work("compute_fig16.py", rule, input, output, params, log)
 
 
 rule compute_table1:
@@ -299,10 +271,8 @@ rule compute_table1:
         continuation=config["continuation"],
     log:
         "results/logs/compute_table1.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_table1.py"
+    run:
+        work("compute_table1.py", rule, input, output, params, log)
 
 
 rule compute_thresholds:
@@ -319,10 +289,8 @@ rule compute_thresholds:
         release=config["release"],
     log:
         "results/logs/compute_thresholds.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_thresholds.py"
+    run:
+        work("compute_thresholds.py", rule, input, output, params, log)
 
 
 rule compute_lowest_doubling:
@@ -339,10 +307,8 @@ rule compute_lowest_doubling:
         release=config["release"],
     log:
         "results/logs/compute_lowest_doubling.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_lowest_doubling.py"
+    run:
+        work("compute_lowest_doubling.py", rule, input, output, params, log)
 
 
 rule compute_three_balls:
@@ -358,10 +324,8 @@ rule compute_three_balls:
         parameters=config["paper"]["three_balls"],
     log:
         "results/logs/compute_three_balls.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_three_balls.py"
+    run:
+        work("compute_three_balls.py", rule, input, output, params, log)
 
 
 rule compute_formulas:
@@ -377,10 +341,8 @@ rule compute_formulas:
         parameters=config["paper"]["formulas"],
     log:
         "results/logs/compute_formulas.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_formulas.py"
+    run:
+        work("compute_formulas.py", rule, input, output, params, log)
 
 
 rule compute_forensics:
@@ -395,10 +357,8 @@ rule compute_forensics:
         artifact=about("forensics"),
     log:
         "results/logs/compute_forensics.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_forensics.py"
+    run:
+        work("compute_forensics.py", rule, input, output, params, log)
 
 
 rule compute_witness:
@@ -428,10 +388,8 @@ rule compute_witness:
         artifact=about("witness"),
     log:
         "results/logs/compute_witness.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_witness.py"
+    run:
+        work("compute_witness.py", rule, input, output, params, log)
 
 
 rule compute_claims:
@@ -466,7 +424,5 @@ rule compute_claims:
         artifact=about("claims"),
     log:
         "results/logs/compute_claims.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/compute_claims.py"
+    run:
+        work("compute_claims.py", rule, input, output, params, log)

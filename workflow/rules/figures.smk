@@ -18,10 +18,8 @@ rule draw_fig01:
         svg="results/figures/fig01.svg",
     log:
         "results/logs/draw_fig01.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig01.py"
+    run:
+        work("draw_fig01.py", rule, input, output, params, log)
 
 
 rule fig01:
@@ -47,10 +45,8 @@ rule draw_fig02:
         svg="results/figures/fig02.svg",
     log:
         "results/logs/draw_fig02.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig02.py"
+    run:
+        work("draw_fig02.py", rule, input, output, params, log)
 
 
 rule fig02:
@@ -77,10 +73,8 @@ rule draw_fig03:
         svg="results/figures/fig03.svg",
     log:
         "results/logs/draw_fig03.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig03.py"
+    run:
+        work("draw_fig03.py", rule, input, output, params, log)
 
 
 rule fig03:
@@ -106,10 +100,8 @@ rule draw_fig04:
         svg="results/figures/fig04.svg",
     log:
         "results/logs/draw_fig04.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig04.py"
+    run:
+        work("draw_fig04.py", rule, input, output, params, log)
 
 
 rule fig04:
@@ -135,10 +127,8 @@ rule draw_fig05:
         svg="results/figures/fig05.svg",
     log:
         "results/logs/draw_fig05.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig05.py"
+    run:
+        work("draw_fig05.py", rule, input, output, params, log)
 
 
 rule fig05:
@@ -165,10 +155,8 @@ rule draw_fig06:
         svg="results/figures/fig06.svg",
     log:
         "results/logs/draw_fig06.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig06.py"
+    run:
+        work("draw_fig06.py", rule, input, output, params, log)
 
 
 rule fig06:
@@ -195,10 +183,8 @@ rule draw_fig07:
         svg="results/figures/fig07.svg",
     log:
         "results/logs/draw_fig07.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig07.py"
+    run:
+        work("draw_fig07.py", rule, input, output, params, log)
 
 
 rule fig07:
@@ -225,10 +211,8 @@ rule draw_fig08:
         svg="results/figures/fig08.svg",
     log:
         "results/logs/draw_fig08.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig08.py"
+    run:
+        work("draw_fig08.py", rule, input, output, params, log)
 
 
 rule fig08:
@@ -255,10 +239,8 @@ rule draw_fig09:
         svg="results/figures/fig09.svg",
     log:
         "results/logs/draw_fig09.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig09.py"
+    run:
+        work("draw_fig09.py", rule, input, output, params, log)
 
 
 rule fig09:
@@ -285,10 +267,8 @@ rule draw_fig10:
         svg="results/figures/fig10.svg",
     log:
         "results/logs/draw_fig10.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig10.py"
+    run:
+        work("draw_fig10.py", rule, input, output, params, log)
 
 
 rule fig10:
@@ -315,10 +295,8 @@ rule draw_fig11:
         svg="results/figures/fig11.svg",
     log:
         "results/logs/draw_fig11.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig11.py"
+    run:
+        work("draw_fig11.py", rule, input, output, params, log)
 
 
 rule fig11:
@@ -345,10 +323,8 @@ rule draw_fig12:
         svg="results/figures/fig12.svg",
     log:
         "results/logs/draw_fig12.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig12.py"
+    run:
+        work("draw_fig12.py", rule, input, output, params, log)
 
 
 rule fig12:
@@ -375,10 +351,8 @@ rule draw_fig13:
         svg="results/figures/fig13.svg",
     log:
         "results/logs/draw_fig13.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig13.py"
+    run:
+        work("draw_fig13.py", rule, input, output, params, log)
 
 
 rule fig13:
@@ -405,10 +379,8 @@ rule draw_fig14:
         svg="results/figures/fig14.svg",
     log:
         "results/logs/draw_fig14.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig14.py"
+    run:
+        work("draw_fig14.py", rule, input, output, params, log)
 
 
 rule fig14:
@@ -435,10 +407,8 @@ rule draw_fig15:
         svg="results/figures/fig15.svg",
     log:
         "results/logs/draw_fig15.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig15.py"
+    run:
+        work("draw_fig15.py", rule, input, output, params, log)
 
 
 rule fig15:
@@ -465,10 +435,8 @@ rule draw_fig16:
         svg="results/figures/fig16.svg",
     log:
         "results/logs/draw_fig16.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/draw_fig16.py"
+    run:
+        work("draw_fig16.py", rule, input, output, params, log)
 
 
 rule fig16:

@@ -22,10 +22,8 @@ rule accept:
         house=HOUSE,
     log:
         "results/logs/accept.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/accept.py"
+    run:
+        work(f"{ROOT}/workflow/scripts/accept.py", rule, input, output, params, log)
 
 
 # A local rule, because the jobs of a cluster do not know what else was requested.
@@ -41,10 +39,8 @@ rule diff:
         artifacts=lambda wildcards: names_of_artifacts(requested(workflow)),
     log:
         "results/logs/diff.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/diff.py"
+    run:
+        work(f"{ROOT}/workflow/scripts/diff.py", rule, input, output, params, log)
 
 
 # The limit of jobs per second is off: with it, each job that starts or ends makes Snakemake examine

@@ -20,10 +20,8 @@ rule set_table1:
         title=ARTIFACTS["table1"].title,
     log:
         "results/logs/set_table1.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/set_table1.py"
+    run:
+        work("set_table1.py", rule, input, output, params, log)
 
 
 rule table1:
@@ -52,10 +50,8 @@ rule set_thresholds:
         title=ARTIFACTS["thresholds"].title,
     log:
         "results/logs/set_thresholds.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/set_thresholds.py"
+    run:
+        work("set_thresholds.py", rule, input, output, params, log)
 
 
 rule thresholds:
@@ -84,10 +80,8 @@ rule set_formulas:
         title=ARTIFACTS["formulas"].title,
     log:
         "results/logs/set_formulas.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/set_formulas.py"
+    run:
+        work("set_formulas.py", rule, input, output, params, log)
 
 
 rule formulas:
@@ -116,10 +110,8 @@ rule set_forensics:
         title=ARTIFACTS["forensics"].title,
     log:
         "results/logs/set_forensics.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/set_forensics.py"
+    run:
+        work("set_forensics.py", rule, input, output, params, log)
 
 
 rule forensics:
@@ -148,10 +140,8 @@ rule set_witness:
         title=ARTIFACTS["witness"].title,
     log:
         "results/logs/set_witness.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/set_witness.py"
+    run:
+        work("set_witness.py", rule, input, output, params, log)
 
 
 rule witness:

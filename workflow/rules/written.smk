@@ -7,10 +7,8 @@ rule config_docs:
         "Writing config/README.md and config/schema.json"
     log:
         "results/logs/config_docs.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/config_docs.py"
+    run:
+        work(f"{ROOT}/workflow/scripts/config_docs.py", rule, input, output, params, log)
 
 
 # From the accepted record, so that it has no inputs that a run makes.
@@ -19,7 +17,5 @@ rule readme:
         "Writing the generated parts of README.md, and figures/README.md"
     log:
         "results/logs/readme.log",
-    conda:
-        ENVIRONMENT
-    script:
-        "../scripts/readme.py"
+    run:
+        work(f"{ROOT}/workflow/scripts/readme.py", rule, input, output, params, log)

@@ -3,9 +3,9 @@
 import os
 from pathlib import Path
 
-from bouncing_ball.pipeline.job import conclude, logged
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff.accept import accept
+from bouncing_ball.pipeline.job import conclude, logged
 
 with logged(snakemake) as lines:
     only = os.environ.get("ONLY", "").replace(",", " ").split()

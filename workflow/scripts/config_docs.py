@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from bouncing_ball.pipeline.job import logged
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.paper.configuration import Configuration
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
+from bouncing_ball.pipeline.job import logged
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 with logged(snakemake):

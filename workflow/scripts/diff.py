@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from bouncing_ball.pipeline.job import conclude, logged
 from bouncing_ball.pipeline.diff.report import write_reports
+from bouncing_ball.pipeline.job import conclude, logged
 
 with logged(snakemake):
     given = snakemake.params

@@ -1,7 +1,7 @@
 """Figure 15."""
 
-from bouncing_ball.pipeline.job import logged
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import both_domains
+from bouncing_ball.pipeline.job import logged
 from bouncing_ball.pipeline.pictures import draw
 
 with logged(snakemake):

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from bouncing_ball.pipeline.job import logged, read_input
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import claim_tables as rows
 from bouncing_ball.pipeline.article import render_article, sections_of
+from bouncing_ball.pipeline.job import logged, read_input
 from bouncing_ball.pipeline.yaml_files import read_yaml
 
 

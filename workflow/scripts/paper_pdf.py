@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from bouncing_ball.pipeline.job import logged
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.pipeline.article import article_pdf
+from bouncing_ball.pipeline.job import logged
 
 with logged(snakemake) as lines:
     for name, output in zip(snakemake.input.texts, snakemake.output, strict=True):

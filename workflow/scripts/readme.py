@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from bouncing_ball.pipeline.job import logged
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.artifacts import ARTIFACTS
 from bouncing_ball.paper.claims.claim_tables import Claims
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.front import links, thumbnails, with_parts
+from bouncing_ball.pipeline.job import logged
 
 
 def pages(top):

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from declared_artifacts import given_to
 
-from bouncing_ball.pipeline.job import arguments, typed
 from bouncing_ball.datasets.variables import budgeted
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
+from bouncing_ball.pipeline.job import arguments, typed
 from bouncing_ball.pipeline.yaml_files import read_yaml
 from bouncing_ball_beyond.exhibits.budgets import BUDGETS
 from bouncing_ball_beyond.exhibits.cascade_of_flights import cascade_of_flights

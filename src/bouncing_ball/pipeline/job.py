@@ -1,6 +1,6 @@
 """A job of the workflow: its log, an error of one line, its datasets and their provenance.
 
-Every script of the workflow imports this module first, and runs in :func:`logged`. The script of a
+Every script of the workflow runs in :func:`logged`. The script of a
 dataset calls :func:`make_dataset` with its study, that of a table :func:`write_table` with its
 columns, and that of a picture :func:`.pictures.draw` with its drawing. ``snakemake`` is the object
 that Snakemake provides for its scripts.
@@ -10,13 +10,6 @@ continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08
 the datasets that the job reads; and each further argument is the setting of the run with that name.
 """
 
-import gc
-
-# What a job imports stays until it ends. Looking for garbage there takes a fifth of its time, while
-# it imports and again when it ends.
-gc.disable()
-
-import atexit
 import inspect
 import signal
 import sys
@@ -42,10 +35,6 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.provenance import PREFIX, gather
 from bouncing_ball.pipeline.run import CONCLUSION
 from bouncing_ball.pipeline.sources import parts_of_note
-
-gc.freeze()
-gc.enable()
-atexit.register(gc.freeze)
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "

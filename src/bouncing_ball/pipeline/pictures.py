@@ -8,9 +8,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from bouncing_ball.pipeline.job import provenance, read_input, using
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import style
+from bouncing_ball.pipeline.job import provenance, read_input, using
 
 
 def draw(snakemake: Any, drawing: Callable[..., Figure]) -> None:

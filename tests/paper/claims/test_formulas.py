@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims import formulas as checks
 from bouncing_ball.paper.claims.formulas import (
@@ -18,6 +17,7 @@ from bouncing_ball.paper.claims.formulas import (
     measured_restitution,
 )
 from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch
+from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {"samples": 16, "seed": 2011}
 # What is wrong in the paper, and must be seen.

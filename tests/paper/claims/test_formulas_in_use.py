@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball import paper
 from bouncing_ball.paper.claims.formulas import formulas
+from bouncing_ball.pipeline.job import typed
 
 PACKAGE = Path(paper.__file__).parents[1]
 PARAMETERS = {"samples": 16, "seed": 2011}

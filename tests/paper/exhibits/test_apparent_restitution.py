@@ -5,7 +5,6 @@ import itertools
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.datasets.parameters import Span
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import damping_ratio
@@ -17,6 +16,7 @@ from bouncing_ball.paper.exhibits.apparent_restitution import (
     frequency_sweep,
     poincare_map,
 )
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 apparent_restitution, frequency_sweep = map(typed, (apparent_restitution, frequency_sweep))

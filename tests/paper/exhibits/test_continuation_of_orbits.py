@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
@@ -18,6 +17,7 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit, monodromy
 from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 both_domains, orbit_branches, stability_ranges = map(

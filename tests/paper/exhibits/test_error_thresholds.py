@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.errors import NoOrbitError
@@ -14,6 +13,7 @@ from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, heig
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {
     "n": 1,

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.restitution import RestitutionModel
 from bouncing_ball.models.simulation import impacts_of, next_impact
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.exhibits.kinds_of_motion import growth, kinds_of_motion
 from bouncing_ball.periodic.explicit import explicit_branch
+from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {
     "restitution": 0.5,

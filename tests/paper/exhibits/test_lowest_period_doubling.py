@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_period_doublings
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball.pipeline.job import typed
 
 PARAMETERS = {
     "n": [1, 2, 3],

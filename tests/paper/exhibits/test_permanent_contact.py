@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.paper.exhibits import permanent_contact_figures
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact
+from bouncing_ball.pipeline.job import typed
 
 permanent_contact = typed(permanent_contact)
 

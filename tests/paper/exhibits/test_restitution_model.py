@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.paper.exhibits.restitution_model import restitution_history, restitution_orbits
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 restitution_history, restitution_orbits = map(typed, (restitution_history, restitution_orbits))

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.time_histories import both_histories, contact_history
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import path
+from bouncing_ball.pipeline.job import typed
 
 # As the configuration gives them.
 both_histories = typed(both_histories)

@@ -1,0 +1,84 @@
+"""Processes that run the scripts of jobs, one script after another.
+
+The imports of a short job take longer than its work. A run of Snakemake therefore keeps its
+processes, as many as it has jobs at the same time, and each pays its imports once. A script is run
+as ``script:`` would run it, with ``snakemake`` as a name of its own. A job that fails ends its
+process, so that no later job meets what it has left.
+"""
+
+import atexit
+import gc
+import os
+import runpy
+import signal
+import subprocess
+import sys
+from multiprocessing.connection import Connection, Pipe
+from pathlib import Path
+from typing import Any
+
+_idle: list[tuple[subprocess.Popen[bytes], Connection]] = []
+
+
+def run_script(script: Path, job: Any) -> bool:
+    """Run a script in a process that is idle, or in a new one; whether it came to its end.
+
+    Parameters
+    ----------
+    script
+        The file of the script.
+    job
+        What the script knows as ``snakemake``; it must be possible to pickle it.
+    """
+    try:
+        process, connection = _idle.pop()
+    except IndexError:
+        process, connection = _started()
+    try:
+        connection.send((str(script), job))
+        connection.recv()
+    except (EOFError, OSError):
+        process.wait()
+        return False
+    _idle.append((process, connection))
+    return True
+
+
+def _started() -> tuple[subprocess.Popen[bytes], Connection]:
+    """A new process, and the connection that is its standard input."""
+    connection, theirs = Pipe()
+    with theirs:
+        command = [sys.executable, "-m", __spec__.name]
+        return subprocess.Popen(command, stdin=theirs.fileno()), connection
+
+
+@atexit.register
+def _end() -> None:
+    """End all processes."""
+    while _idle:
+        process, connection = _idle.pop()
+        connection.close()
+        process.wait()
+
+
+def serve() -> None:
+    """Run the scripts that come on the standard input until it is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # What scripts import stays: looking for garbage among it would take a tenth of the time.
+    gc.set_threshold(100_000)
+    atexit.register(gc.freeze)
+    connection = Connection(os.dup(sys.stdin.fileno()))
+    # What a job starts has no standard input.
+    with open(os.devnull) as nothing:
+        os.dup2(nothing.fileno(), sys.stdin.fileno())
+    while True:
+        try:
+            script, job = connection.recv()
+        except EOFError:
+            return
+        runpy.run_path(script, {"snakemake": job})
+        connection.send("done")
+
+
+if __name__ == "__main__":
+    serve()

@@ -17,6 +17,8 @@ from multiprocessing.connection import Connection, Pipe
 from pathlib import Path
 from typing import Any
 
+STANDARD_INPUT = 0
+
 _idle: list[tuple[subprocess.Popen[bytes], Connection]] = []
 
 
@@ -53,8 +55,8 @@ def _started() -> tuple[subprocess.Popen[bytes], Connection]:
 
 
 @atexit.register
-def _end() -> None:
-    """End all processes."""
+def end_processes() -> None:
+    """End all processes, which are idle."""
     while _idle:
         process, connection = _idle.pop()
         connection.close()
@@ -67,10 +69,10 @@ def serve() -> None:
     # What scripts import stays: looking for garbage among it would take a tenth of the time.
     gc.set_threshold(100_000)
     atexit.register(gc.freeze)
-    connection = Connection(os.dup(sys.stdin.fileno()))
+    connection = Connection(os.dup(STANDARD_INPUT))
     # What a job starts has no standard input.
     with open(os.devnull) as nothing:
-        os.dup2(nothing.fileno(), sys.stdin.fileno())
+        os.dup2(nothing.fileno(), STANDARD_INPUT)
     while True:
         try:
             script, job = connection.recv()

@@ -11,7 +11,6 @@ the datasets that the job reads; and each further argument is the setting of the
 """
 
 import inspect
-import signal
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
@@ -57,10 +56,6 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     The line begins with the name of the rule. The traceback is then in the log, whose last line is
     the same, and the process exits with status 1.
     """
-    # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
-    # closing the file would then wait forever. Because files are written completely or not at all,
-    # no file is damaged.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
     lines: list[str] = []
     log = Path(snakemake.log[0])
     log.unlink(missing_ok=True)

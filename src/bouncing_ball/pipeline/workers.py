@@ -65,6 +65,9 @@ def end_processes() -> None:
 
 def serve() -> None:
     """Run the scripts that come on the standard input until it is closed."""
+    # Ctrl-C ends the process at once. An exception could be raised while a netCDF file is locked,
+    # and closing the file would then wait forever. Because files are written completely or not at
+    # all, no file is damaged.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     # What scripts import stays: looking for garbage among it would take a tenth of the time.
     gc.set_threshold(100_000)

@@ -12,9 +12,12 @@ returns the finding that decides the claim::
         return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
 
 The id of a claim is the name of the function, unless another id is given. If a claim can be read in
-several ways, the function returns a mapping from the name of each reading to its finding. If it is
-clear which reading the paper means, this reading comes first, and the claim is ``meant``. A
-statement that cannot fail, whatever the equations are, is a ``definition``.
+several ways, the function returns a mapping from the name of each reading to its finding. The claim
+is reproduced *in one reading* if it holds in at least one of them and not in another. If the claim
+depends on something that the text at hand does not have, such as the difference that counts as
+visible, this is named as ``missing``, the readings are values tried for it, and the claim is
+*undecidable* if their verdicts differ. A statement that cannot fail, whatever the equations are, is
+a ``definition``.
 '''
 
 import inspect
@@ -111,8 +114,8 @@ class Claim:
         The decidable condition that stands for the statement, and a remark on its reading.
     answer : str
         A possible answer of the authors to a verdict other than reproduced.
-    meant : bool
-        Whether the paper means the first reading.
+    missing : str
+        What the verdict depends on and the text at hand does not have; empty if it has everything.
     definition : bool
         Whether the statement follows from the meaning of its words. It is checked as all others,
         but its verdict is no evidence and is not counted as reproduced.
@@ -131,7 +134,7 @@ class Claim:
     condition: str = ""
     remark: str = ""
     answer: str = ""
-    meant: bool = False
+    missing: str = ""
     definition: bool = False
     explanation: Explanation | None = None
     restates: "Claim | None" = None
@@ -154,15 +157,16 @@ class Claim:
             readings = {"": against_print(found, self.printed)}
         else:
             readings = found
-        first, *others = readings.values()
-        if all(other.verdict is first.verdict for other in others):
-            if self.definition and first.verdict is Verdict.REPRODUCED:
-                return replace(first, verdict=Verdict.DEFINITION), ""
-            return first, ""
+        best = min(readings.values(), key=lambda one: list(Verdict).index(one.verdict))
+        holds = best.verdict is Verdict.REPRODUCED
+        if all(one.verdict is best.verdict for one in readings.values()):
+            if self.definition and holds:
+                return replace(best, verdict=Verdict.DEFINITION), ""
+            return best, ""
         words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
-        if self.meant and first.verdict is Verdict.REPRODUCED:
-            return replace(first, verdict=Verdict.IN_ONE_READING), words
-        return Finding(np.nan, Verdict.UNDECIDABLE), words
+        if self.missing:
+            return Finding(np.nan, Verdict.UNDECIDABLE), words
+        return (replace(best, verdict=Verdict.IN_ONE_READING) if holds else best), words
 
 
 def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:

@@ -40,6 +40,11 @@ VARIABLES = {
     "period_doubling_lowest": Variable(
         "ϖ at which the period doubling is lowest", symbol="ϖ", budget=1e-05
     ),
+    "amplitude_matters_below": Variable(
+        "ϖ below which the velocities of Fig. 10 differ by more than the tolerance",
+        symbol="ϖ",
+        budget=1e-09,
+    ),
     "permanent_contact_error": Variable(
         "relative error of Λ_CR at the printed threshold", equation="Eq. 38"
     ),
@@ -50,6 +55,7 @@ VARIABLES = {
     "printed_text": Variable("the number as printed"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
+    "missing": Variable("what the verdict depends on and the text does not have"),
     "answer": Variable("what its author might answer to the verdict"),
     "decided_by": Variable("datasets that decide"),
     "required": Variable("the number as printed, or the bound to be met"),
@@ -96,6 +102,7 @@ def _row(
         "statement": claim.statement,
         "remark": claim.remark,
         "condition": claim.condition,
+        "missing": claim.missing,
         "answer": claim.answer,
         "group": claim.kind,
         "restates": claim.restates.id if claim.restates else "",
@@ -170,6 +177,7 @@ def claims(data: Data) -> xr.Dataset:
         evidence.range_error,
         evidence.printed_slight_move,
         evidence.period_doubling_lowest,
+        evidence.amplitude_matters_below,
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}

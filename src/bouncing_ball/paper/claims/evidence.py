@@ -16,7 +16,8 @@ TOLERANCE = 0.01
 """The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
 STIFF = 100.0
 """ϖ above which the paper treats both models as equal."""
-# A point of a logarithmic grid equals a round number, and a sample a bifurcation, up to rounding.
+# Up to rounding a point of a logarithmic grid equals a round number, a sample a bifurcation, and
+# without damping r_a equals r.
 GRID = 1e-9
 
 

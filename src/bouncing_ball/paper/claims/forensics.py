@@ -2,7 +2,7 @@
 
 Seven readings are the models of this package with another damping, release or rounding, and Eqs. 7
 and 8. Two readings alter an equation: a contact without gravity, and a period doubling whose
-linearised flight neglects the displacement of the table, as Holmes' map does.
+linearised flight neglects the displacement of the table against its height, as Holmes' map does.
 """
 
 from collections.abc import Callable

@@ -139,7 +139,8 @@ def ends_of_the_approximate_map(data):
 def scatter_of_the_printed_orbits(data):
     """The printed ranges of the more compliant contacts fit the exact stability of the orbits, with
     a scatter that is larger than that of rounding, and some of the printed saddle-nodes lie below
-    every orbit. A continuation that was converged loosely would give both.
+    every orbit. A continuation that was converged loosely could give both, but has more free
+    numbers than the table can decide.
     """
     # The second group of rows is that of the compliant contacts.
     rows = data["forensics"].isel(rows=1)

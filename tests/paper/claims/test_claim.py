@@ -101,6 +101,7 @@ def test_a_printed_number_is_judged_by_its_last_digit(data):
         "printed_text": "82",
         "remark": "read off a curve",
         "decided_by": "fig",
+        "parameters": "n = 1",
         "required": "82",
         "found": 82.18,
         "verdict": "reproduced",

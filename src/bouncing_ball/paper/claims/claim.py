@@ -7,6 +7,8 @@ returns the finding that decides the claim::
     def contact_shortens(data):
         """the contact gets shorter as its stiffness increases
 
+        Compared: the largest change of the contact duration
+
         Condition: the contact duration falls from every contact of Fig. 13 to the next
         """
         return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
@@ -22,7 +24,7 @@ a ``definition``.
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import Any
 
@@ -110,6 +112,11 @@ class Claim:
         with ``printed``, it may return the number instead.
     printed : str
         The number with the digits that the paper prints; empty if the claim is not a number.
+    compared : str
+        What the number found is, which is compared with the printed number or with a bound.
+    at : mapping of str to float or str
+        The parameters at which the number is found, by their names in the datasets, where these
+        have more: of one entry of a table, for example, or a text such as ``random numbers``.
     condition, remark : str
         The decidable condition that stands for the statement, and a remark on its reading.
     answer : str
@@ -131,6 +138,8 @@ class Claim:
     statement: str
     decide: Callable[[Data], Any]
     printed: str = ""
+    compared: str = ""
+    at: Mapping[str, float | str] = field(default_factory=dict)
     condition: str = ""
     remark: str = ""
     answer: str = ""
@@ -169,6 +178,10 @@ class Claim:
         return (replace(best, verdict=Verdict.IN_ONE_READING) if holds else best), words
 
 
+DISAGREEMENT = "the largest relative disagreement with a second computation"
+"""What is compared with a bound where a formula is decided."""
+
+
 def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:
     """Decorator that makes a claim of a function and its docstring.
 
@@ -196,9 +209,10 @@ def formula(name: str, item: str, text: str, *rows: str, **given: Any) -> Claim:
 
     The name of the row is ``item`` unless ``rows`` are given.
     """
-    compared = rows or (item,)
+    rows = rows or (item,)
+    given = {"compared": DISAGREEMENT, **given}
     kind = "restored formula"
-    return Claim(name, kind, item, text, lambda data: of_formula(data, *compared), **given)
+    return Claim(name, kind, item, text, lambda data: of_formula(data, *rows), **given)
 
 
 def of_formula(data: Data, *rows: str) -> Finding:

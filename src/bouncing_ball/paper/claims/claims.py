@@ -18,6 +18,7 @@ from bouncing_ball.paper.claims import (
 )
 from bouncing_ball.paper.claims.claim import Claim, checks_hold, defined_in, name_of, paragraphs
 from bouncing_ball.paper.claims.paper_parameters import PAPER, Data, Digests, PaperData
+from bouncing_ball.paper.claims.parameter_texts import parameters_of
 from bouncing_ball.paper.claims.verdict import LAST_DIGITS, Verdict
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
@@ -55,6 +56,8 @@ VARIABLES = {
     "printed_text": Variable("the number as printed"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
+    "compared": Variable("what the number found is"),
+    "parameters": Variable("r, n, Λ, ϖ and ζ at which the number is found"),
     "missing": Variable("what the verdict depends on and the text does not have"),
     "answer": Variable("what its author might answer to the verdict"),
     "decided_by": Variable("datasets that decide"),
@@ -102,6 +105,8 @@ def _row(
         "statement": claim.statement,
         "remark": claim.remark,
         "condition": claim.condition,
+        "compared": claim.compared,
+        "parameters": parameters_of({name: asked[name] for name in asked.used}, claim.at),
         "missing": claim.missing,
         "answer": claim.answer,
         "group": claim.kind,

@@ -64,8 +64,8 @@ def rise_of_error(data: Data) -> xr.DataArray:
 
 def dip(data: Data, amplitude: float) -> xr.DataArray:
     """Greatest depth below r that the curve of Fig. 6 for an amplitude reaches."""
-    curve = apparent(data).sel(orbit=f"fig06 r=0.65 Λ={amplitude:g}")
-    return -curve.min("frequency_ratio")
+    sweep = curves(data, "fig06").sel(orbit=f"fig06 r=0.65 Λ={amplitude:g}")
+    return -(sweep.apparent_restitution - sweep.restitution).min("frequency_ratio")
 
 
 def short_of_lift(data: Data) -> xr.DataArray:

@@ -108,7 +108,7 @@ def _quotient(nu: complex, pole: np.ndarray, time: np.ndarray) -> np.ndarray:
 def _double_quotient(
     nu: complex, time: np.ndarray, omega: np.ndarray, zeta: np.ndarray, g: np.ndarray
 ) -> np.ndarray:
-    """h of the module's docstring: the response to e^{νs}, with g of the same contact."""
+    """H of the module's docstring: the response to e^{νs}, with I of the same contact."""
     decay_rate = zeta * omega
     pole = -decay_rate + 1j * damped_frequency(zeta, omega)
     found = np.asarray((_quotient(nu, pole, time) - g) / (nu - np.conj(pole)))

@@ -17,10 +17,10 @@ The solution of this 3×3 system is the orbit. τ_b is therefore a parameter of 
 saddle-node and period doubling included, with ``Λ = √(X² + Y²)`` and ``φ = atan2(Y, X)``.
 
 For a stiff contact the branch occupies a range of τ_b of order 1/ϖ² around the free half period,
-and a double has too few digits of τ_b to distinguish its points. The curve is therefore parametrised by
-the *excess angle* ε, ``ϖ_d τ_b = θ₀ + ε``, where θ₀ is the angle at which the free contact would be
-released, π - 2α with sin α = κϖ/2. The one sensitive coefficient, that of u in the release
-condition, is then proportional to sin ε.
+and a double has too few digits of τ_b to distinguish its points. The curve is therefore
+parametrised by the *excess angle* ε, ``ϖ_d τ_b = θ₀ + ε``, where θ₀ is the angle at which the free
+contact would be released, π - 2α with sin α = κϖ/2. The one sensitive coefficient, that of u in the
+release condition, is then proportional to sin ε.
 
 The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact duration grows,
 until the saddle-node: this is the side that is stable next to it. The bifurcations and the orbits
@@ -28,7 +28,7 @@ at a given Λ are roots of functions of ε. A scan brackets the first root next 
 and Chandrupatla's method (:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the
 last digit. Λ turns where ::
 
-    ½ d(Λ²)/dD = -(1 - tr + det) u (δ′_b + κ δ″_b)/det A
+    ½ d(Λ²)/dτ_b = -(1 - tr + det) u (δ′_b + κ δ″_b)/det A
 
 vanishes, with the matrix A of the three equations: at the saddle-node, and also where the ball
 grazes at the impact or at the release, where no multiplier is 1.
@@ -87,7 +87,7 @@ class BranchPoint(NamedTuple):
         return kind.test(*trace_and_determinant(self.orbit))
 
     def slope(self) -> np.ndarray:
-        """½ d(Λ²)/dD, which vanishes where Λ turns; its sign changes at the poles as well."""
+        """½ d(Λ²)/dτ_b, which vanishes where Λ turns; its sign changes at the poles as well."""
         orbit = self.orbit
         contact: Any = orbit.model
         closing = orbit.relative_impact_velocity
@@ -180,8 +180,8 @@ def nearest_excess(orbit: Orbit) -> np.ndarray:
     """ε of the points of the branch that are nearest to orbits in (Λ cos φ, Λ sin φ, ε).
 
     Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact τ_b has too few
-    digits for a comparison at equal τ_b, because X and Y change rapidly with it. Elsewhere X and Y may
-    hardly change along the branch. The nearest point in all three variables is well conditioned
+    digits for a comparison at equal τ_b, because X and Y change rapidly with it. Elsewhere X and Y
+    may hardly change along the branch. The nearest point in all three variables is well conditioned
     everywhere.
 
     Examples

@@ -178,7 +178,7 @@ class Claim:
         return (replace(best, verdict=Verdict.IN_ONE_READING) if holds else best), words
 
 
-DISAGREEMENT = "the largest relative disagreement with a second computation"
+DISAGREEMENT = "the largest disagreement with a second computation"
 """What is compared with a bound where a formula is decided."""
 
 

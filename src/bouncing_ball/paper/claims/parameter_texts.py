@@ -56,11 +56,11 @@ def parameters_text(data: xr.Dataset, at: Mapping[str, float | str] | None = Non
     >>> parameters_text(study, {"frequency_ratio": 10.0})
     'r = 0.65, n = 1, ϖ = 10, ζ = 0.1359'
     >>> parameters_text(xr.Dataset(attrs={"samples": 64, "seed": 1}))
-    '64 random parameters'
+    '64 random sets of parameters'
     """
     at = at or {}
     if "seed" in data.attrs and not at:
-        return f"{data.attrs['samples']} random parameters"
+        return f"{data.attrs['samples']} random sets of parameters"
     of_study = {} if "seed" in data.attrs else {**data.attrs}
     if "case" in data.dims:
         of_study |= {name: data[name].values for name in ("restitution", "amplitude")}

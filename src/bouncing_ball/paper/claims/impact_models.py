@@ -330,8 +330,8 @@ def negligible_above_100(data):
 
     Compared: the largest difference from r at a frequency ratio of 100 or more
 
-    Condition: the difference is below a hundredth, the limit that the paper sets for errors, on every
-    curve from that frequency ratio on
+    Condition: on every curve the difference is below a hundredth from that frequency ratio on, the
+    limit that the paper sets for errors
 
     Remark: as a share of r the difference exceeds it for the smallest restitution coefficient only
 

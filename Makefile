@@ -35,7 +35,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
-	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
+	@echo "Results: results/paper.md, results/figures/. Compare with the record: make replication"
 
 # The same, and its comparison with the record: results/diff/index.html.
 replication: $(SETUP)

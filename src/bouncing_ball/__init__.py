@@ -26,7 +26,7 @@ radians. NaN stands for a number that does not exist, such as the phase of an or
 saddle-node.
 
 The package is a library, from ``numerics`` to ``accuracy``, and the replication on it, ``paper``.
-The docstring of each room says what is in it; ``CONTRIBUTING.md`` describes the rooms, and
+The docstring of each subpackage says what is in it; ``CONTRIBUTING.md`` describes them, and
 ``pyproject.toml`` states which imports from which.
 """
 

@@ -190,7 +190,7 @@ COMMANDS = {
         examples=(
             "diff",
             "diff . results fig08",
-            "diff --against runs/soft",
+            "diff --against runs/compliant",
         ),
         program=_diff,
         has_symbols=False,

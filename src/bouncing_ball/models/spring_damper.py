@@ -9,20 +9,20 @@ writes the solution, Eq. 12, with constants A and B, which the start of the cont
 they are eliminated: the flow is affine in (δ₀, δ′₀, Λ cos φ, Λ sin φ), and regular at the resonance
 ζ = 0, ϖ = 1::
 
-    δ(s) = δ₀ (g′ + 2ζϖ g) + δ′₀ g - G + Λ cos φ · P + Λ sin φ · Q
+    δ(s) = δ₀ (I′ + 2ζϖ I) + δ′₀ I - J + Λ cos φ · P + Λ sin φ · Q
 
-g is the impulse response of the oscillator, G its response to a constant force, and Q + iP that to
+I is the impulse response of the oscillator, J its response to a constant force, and Q + iP that to
 e^{is}. With its eigenvalues λ± = -ζϖ ± iϖ_d, ϖ_d = ϖ√(1 - ζ²), they are divided differences of the
-exponential function, of which the one with ν = 0 is G, and that with ν = i is Q + iP::
+exponential function, of which the one with ν = 0 is J, and that with ν = i is Q + iP::
 
-    g = (e^{λ₊s} - e^{λ₋s})/(λ₊ - λ₋)
-    h = [(e^{νs} - e^{λ₊s})/(ν - λ₊) - g]/(ν - λ₋)
+    I = (e^{λ₊s} - e^{λ₋s})/(λ₊ - λ₋)
+    H = [(e^{νs} - e^{λ₊s})/(ν - λ₊) - I]/(ν - λ₋)
 
 The second denominator is never small, and the first quotient is regular where ν = λ₊. For a short
 time the difference of the two numbers in the bracket loses digits, and the sum of a series is in
 use, with the complete homogeneous symmetric polynomials h_k of λ₊, λ₋ and ν::
 
-    h = Σ h_k s^{k+2}/(k + 2)!
+    H = Σ h_k s^{k+2}/(k + 2)!
 
 The contact ends at the first upward zero of y = δ + κ δ′, with κ = 0 for the displacement release
 (Eq. 23) and κ = 2ζ/ϖ for the force release, for which -ϖ² y is the force of the table over the
@@ -86,7 +86,7 @@ _ROUNDING = 8 * np.finfo(float).eps
 
 
 class Responses(NamedTuple):
-    """The responses of the contact a time after its start: g and its rate of change g′, G, and the
+    """The responses of the contact a time after its start: I and its rate of change I′, J, and the
     parts Q and P of the response to the table.
     """
 
@@ -108,7 +108,7 @@ def _quotient(nu: complex, pole: np.ndarray, time: np.ndarray) -> np.ndarray:
 def _double_quotient(
     nu: complex, time: np.ndarray, omega: np.ndarray, zeta: np.ndarray, g: np.ndarray
 ) -> np.ndarray:
-    """h of the module's docstring: the response to e^{νs}, with g of the same contact."""
+    """H of the module's docstring: the response to e^{νs}, with I of the same contact."""
     decay_rate = zeta * omega
     pole = -decay_rate + 1j * damped_frequency(zeta, omega)
     found = np.asarray((_quotient(nu, pole, time) - g) / (nu - np.conj(pole)))
@@ -231,7 +231,7 @@ def flow(
     g, rate, gravity, in_phase, quadrature = responses(time, frequency_ratio, damping_ratio)
     x, y = table(np.asarray(phase, dtype=float), np.asarray(amplitude, dtype=float))
     forced = x * quadrature + y * in_phase - gravity
-    # The responses obey Q′ = g - P, P′ = Q and G′ = g.
+    # The responses obey Q′ = I - P, P′ = Q and J′ = I.
     forced_rate = x * in_phase + y * (g - quadrature) - g
     gap = displacement * (rate + loss * g) + velocity * g + forced
     speed = velocity * rate - displacement * stiffness * g + forced_rate
@@ -379,8 +379,8 @@ class SpringDamper(Model):
     def derivative(self, duration: Any, phase: Any, velocity: Any, amplitude: Any) -> np.ndarray:
         """The derivative of (φ_b, δ′_b) by (φ, δ′), with the release condition, shape (..., 2, 2).
 
-        At a fixed time ``∂δ/∂φ = XQ - YP``, ``∂δ′/∂φ = X(g - P) - YQ``, ``∂δ/∂δ′₀ = g`` and
-        ``∂δ′/∂δ′₀ = g′``. The release is later by ``dD = -(dδ + κ dδ′)/(δ′ + κ δ″)``.
+        At a fixed time ``∂δ/∂φ = XQ - YP``, ``∂δ′/∂φ = X(I - P) - YQ``, ``∂δ/∂δ′₀ = I`` and
+        ``∂δ′/∂δ′₀ = I′``. The release is later by ``dτ_b = -(dδ + κ dδ′)/(δ′ + κ δ″)``.
         """
         state = self.flow(duration, phase, velocity, amplitude)
         found = responses(duration, self.frequency_ratio, self.damping_ratio)

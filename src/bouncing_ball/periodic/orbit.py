@@ -1,7 +1,7 @@
 """An n-T orbit of either model, or an array of orbits: one impact in n periods of the table.
 
 The impact, which is the start of the contact, is at the phase φ of the table. The contact lasts for
-D = τ_b, and the flight after it ends at the next impact, 2πn after the first one (Eqs. 18-20).
+τ_b, and the flight after it ends at the next impact, 2πn after the first one (Eqs. 18-20).
 Heights and velocities are absolute unless they are called relative, which means relative to the
 table: δ = z - w.
 
@@ -121,7 +121,7 @@ class Orbit(Batch):
     phase : float or array
         φ, the table's phase at the impact.
     contact_duration : float or array
-        D = τ_b, which is 0 for an impact with a restitution coefficient.
+        τ_b, which is 0 for an impact with a restitution coefficient.
     impact_velocity : float or array
         The absolute velocity z′_i of the ball just before the impact.
 
@@ -162,10 +162,10 @@ class Orbit(Batch):
 
     @property
     def flight_time(self) -> Values:
-        """T, the time from the release to the next impact.
+        """L, the time from the release to the next impact.
 
-        It is τ_2 - τ_b = 2πn - D, because τ_i = 0 (Eq. 18), τ_2 = τ_i + 2πn (Eq. 19) and D = τ_b;
-        that z′_2 = z′_i (Eq. 20) is a condition on the orbit.
+        It is τ_2 - τ_b = 2πn - τ_b, because τ_i = 0 (Eq. 18) and τ_2 = τ_i + 2πn
+        (Eq. 19); that z′_2 = z′_i (Eq. 20) is a condition on the orbit.
         """
         return 2 * np.pi * self.n - self.contact_duration
 
@@ -431,7 +431,7 @@ def release_margin(orbit: Orbit) -> np.ndarray:
 
 
 def difference(orbit: Orbit, other: Orbit) -> np.ndarray:
-    """Largest difference of two orbits in Λ, φ, z′_i and, in units of its π-th part, in D."""
+    """Largest difference of two orbits in Λ, φ, z′_i and, in units of its π-th part, in τ_b."""
     clock = np.pi / np.where(np.asarray(orbit.contact_duration) > 0, orbit.contact_duration, np.pi)
     parts = np.broadcast_arrays(
         np.asarray(orbit.amplitude) - other.amplitude,

@@ -1,26 +1,26 @@
 r"""The branch of n-T orbits of the spring-damper model in closed form.
 
 The paper solves its six equations (Eqs. 21-26) by numerical continuation. At
-a fixed contact duration D they are *linear* in ::
+a fixed contact duration τ_b they are *linear* in ::
 
     X = Λ cos φ,    Y = Λ sin φ,    u = δ′ at impact
 
-Let T = 2πn - D be the flight time, and g, G, Q, P the responses of the contact at the time D (see
-:mod:`bouncing_ball.models.spring_damper`). The equations are then
+Let L = 2πn - τ_b be the flight time, and I, J, Q, P the responses of the contact at the time τ_b
+(see :mod:`bouncing_ball.models.spring_damper`). The equations are then
 
-* release (Eq. 23): ``δ_b + κ δ′_b = 0`` with ``δ_b = u g + X P + Y Q - G`` and
-  ``δ′_b = u g′ + X Q + Y (g - P) - g``;
-* velocity (Eqs. 24, 26, 20): ``δ′_b + Λ cos(φ + D) = u + X + T``;
-* landing (Eqs. 25, 19): ``-κ δ′_b + Λ sin(φ + D) + (u + X + T) T - T²/2 = Y``.
+* release (Eq. 23): ``δ_b + κ δ′_b = 0`` with ``δ_b = u I + X P + Y Q - J`` and
+  ``δ′_b = u I′ + X Q + Y (I - P) - I``;
+* velocity (Eqs. 24, 26, 20): ``δ′_b + Λ cos(φ + τ_b) = u + X + L``;
+* landing (Eqs. 25, 19): ``-κ δ′_b + Λ sin(φ + τ_b) + (u + X + L) L - L²/2 = Y``.
 
-The solution of this 3×3 system is the orbit. D is therefore a parameter of the entire branch,
+The solution of this 3×3 system is the orbit. τ_b is therefore a parameter of the entire branch,
 saddle-node and period doubling included, with ``Λ = √(X² + Y²)`` and ``φ = atan2(Y, X)``.
 
-For a stiff contact the branch occupies a range of D of order 1/ϖ² around the free half period, and
-a double has too few digits of D to distinguish its points. The curve is therefore parametrised by
-the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, where θ₀ is the angle at which the free contact would be
-released, π - 2α with sin α = κϖ/2. The one sensitive coefficient, that of u in the release
-condition, is then proportional to sin ε.
+For a stiff contact the branch occupies a range of τ_b of order 1/ϖ² around the free half period,
+and a double has too few digits of τ_b to distinguish its points. The curve is therefore
+parametrised by the *excess angle* ε, ``ϖ_d τ_b = θ₀ + ε``, where θ₀ is the angle at which the free
+contact would be released, π - 2α with sin α = κϖ/2. The one sensitive coefficient, that of u in the
+release condition, is then proportional to sin ε.
 
 The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact duration grows,
 until the saddle-node: this is the side that is stable next to it. The bifurcations and the orbits
@@ -28,7 +28,7 @@ at a given Λ are roots of functions of ε. A scan brackets the first root next 
 and Chandrupatla's method (:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the
 last digit. Λ turns where ::
 
-    ½ d(Λ²)/dD = -(1 - tr + det) u (δ′_b + κ δ″_b)/det A
+    ½ d(Λ²)/dτ_b = -(1 - tr + det) u (δ′_b + κ δ″_b)/det A
 
 vanishes, with the matrix A of the three equations: at the saddle-node, and also where the ball
 grazes at the impact or at the release, where no multiplier is 1.
@@ -87,7 +87,7 @@ class BranchPoint(NamedTuple):
         return kind.test(*trace_and_determinant(self.orbit))
 
     def slope(self) -> np.ndarray:
-        """½ d(Λ²)/dD, which vanishes where Λ turns; its sign changes at the poles as well."""
+        """½ d(Λ²)/dτ_b, which vanishes where Λ turns; its sign changes at the poles as well."""
         orbit = self.orbit
         contact: Any = orbit.model
         closing = orbit.relative_impact_velocity
@@ -100,9 +100,9 @@ class BranchPoint(NamedTuple):
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # at a pole Λ is infinite
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
-    """The n-T orbits whose contacts last for the time ``D = (θ₀ + ε)/ϖ_d``.
+    """The n-T orbits whose contacts last for the time ``τ_b = (θ₀ + ε)/ϖ_d``.
 
-    Each is the solution of Eqs. 23-26, which at this τ_b = D are the three linear equations at the
+    Each is the solution of Eqs. 23-26, which at this τ_b are the three linear equations at the
     top of this module.
 
     Parameters
@@ -126,13 +126,13 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     omega, zeta = contact.frequency_ratio, contact.damping_ratio
     duration = (contact.free_angle + eps) / contact.damped_frequency
     flight = 2 * np.pi * np.asarray(n) - duration
-    # ϖ_d D = θ₀ + ε, where sine and cosine of θ₀ = π - 2α are exact.
+    # ϖ_d τ_b = θ₀ + ε, where sine and cosine of θ₀ = π - 2α are exact.
     alpha_sine = contact.release.sine(zeta)
     sine = 2 * alpha_sine * np.sqrt((1 - alpha_sine) * (1 + alpha_sine))
     cosine = 2 * alpha_sine * alpha_sine - 1
     swing = sine * np.cos(eps) + cosine * np.sin(eps), cosine * np.cos(eps) - sine * np.sin(eps)
     g, rate, gravity, q, p = responses(duration, omega, zeta, swing)
-    # ϖ (g + κ g′), in which the terms of order 1 cancel but for sin ε.
+    # ϖ (I + κ I′), in which the terms of order 1 cancel but for sin ε.
     root = damped_frequency(zeta)
     push = -np.exp(-zeta * omega * duration) / root * np.sin(eps)
     cos_less_one = -2 * np.sin(duration / 2) ** 2
@@ -164,7 +164,7 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
 
 
 def excess_angle(contact: SpringDamper, duration: ArrayLike) -> np.ndarray:
-    """ε of contacts that last for the time D: the inverse of ``D = (θ₀ + ε)/ϖ_d``.
+    """ε of contacts that last for the time τ_b: the inverse of ``τ_b = (θ₀ + ε)/ϖ_d``.
 
     Examples
     --------
@@ -179,9 +179,9 @@ def excess_angle(contact: SpringDamper, duration: ArrayLike) -> np.ndarray:
 def nearest_excess(orbit: Orbit) -> np.ndarray:
     """ε of the points of the branch that are nearest to orbits in (Λ cos φ, Λ sin φ, ε).
 
-    Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact D has too few
-    digits for a comparison at equal D, because X and Y change rapidly with D. Elsewhere X and Y may
-    hardly change along the branch. The nearest point in all three variables is well conditioned
+    Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact τ_b has too few
+    digits for a comparison at equal τ_b, because X and Y change rapidly with it. Elsewhere X and Y
+    may hardly change along the branch. The nearest point in all three variables is well conditioned
     everywhere.
 
     Examples
@@ -208,7 +208,7 @@ def nearest_excess(orbit: Orbit) -> np.ndarray:
 
 
 def range_of_excess(contact: Any, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """ε of the shortest contacts, at which Λ is larger than needed, and ε for D → 2πn."""
+    """ε of the shortest contacts, at which Λ is larger than needed, and ε for τ_b → 2πn."""
     start = contact.free_angle
     high = contact.damped_frequency * 2 * np.pi * n * (1 - _FULL) - start
     return np.minimum(-start * (1 - _SHORTEST), high), high
@@ -407,7 +407,7 @@ class SpringDamperBranch:
         added to a fine grid first, so that two orbits next to one of them are not missed. The grid
         starts at contacts of a thousandth of the free duration, at which Λ exceeds 10⁶; if n
         periods are shorter than this, no orbit is found. It ends after 2·10⁵ steps of 0.02 radians
-        of ϖ_d D, so that for nϖ above about 600 the longest contacts are not searched.
+        of ϖ_d τ_b, so that for nϖ above about 600 the longest contacts are not searched.
 
         Examples
         --------

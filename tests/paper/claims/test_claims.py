@@ -57,6 +57,19 @@ def test_a_dip_is_visible_from_the_share_on_that_is_named(monkeypatch, dip, thou
     assert seen == {"a thousandth is visible": thousandth, "a hundredth is visible": hundredth}
 
 
+def test_every_row_says_what_is_compared_and_at_which_parameters(verdicts):
+    assert (verdicts.compared != "").all() and (verdicts.parameters != "").all()
+    of_table = verdicts.parameters.sel(claim="Table 1: 10, 3, saddle-node").item()
+    assert of_table == "r = 0.85, n = 3, ϖ = 10, ζ = 0.0517"
+    of_pairs = verdicts.parameters.sel(claim="negligible above 100").item()
+    pairs = "(r, Λ) = (1, 0.8), (0.85, 1), (0.65, 1), (0.1, 2.6)"
+    assert of_pairs.startswith(f"Fig. 5: {pairs}, n = 1, ϖ = 1 to 1000, ")
+    # What the text does not have is named where the verdict hangs on it, and nowhere else.
+    undecided = verdicts.verdict == "undecidable"
+    assert (verdicts.missing[undecided] != "").all() and undecided.any()
+    assert (verdicts.missing[verdicts.verdict == "in one reading"] == "").all()
+
+
 def test_every_formula_is_claimed_or_explains(data):
     named = " ".join(path.read_text("utf-8") for path in (ROOT / "src").glob("*/paper/claims/*.py"))
     rows = {*data["formulas"].formula.values} - {*DEFINITIONS}

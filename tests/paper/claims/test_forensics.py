@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import brentq, least_squares
 
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -17,6 +17,7 @@ from bouncing_ball.paper.claims.forensics import (
     weightless_orbits,
 )
 from bouncing_ball.periodic import restitution_branch
+from bouncing_ball.periodic.continuation import PaperEquations
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, monodromy
 from bouncing_ball.periodic.restitution_branch import ImpactMap
@@ -177,6 +178,27 @@ def test_digits_cut_off_and_what_no_orbit_reaches(study):
     below = (plain.computed - plain.printed).sel(bound="saddle-node") / 0.001
     assert plain.unreachable.item() == int((below > 0.5).sum()) == 3
     assert cut.unreachable.item() == int((below > 1).sum()) == 1
+
+
+def test_no_orbit_equations_are_met_better_than_by_the_needed_tolerance(study):
+    nodes = study.sel(reading="equations as they stand", bound="saddle-node")
+    for ratio, n in ((10.0, 1), (10.0, 3), (2.0, 1)):
+        one = nodes.sel(frequency_ratio=ratio, n=n)
+        equations = PaperEquations(SpringDamper(ratio, ZETA), n)
+        node = explicit_branch(equations.contact).bifurcation(Bifurcation.SADDLE_NODE, n)
+        start = equations.point(node)[:-1]
+
+        def residual(unknowns, equations=equations, amplitude=one.printed.item()):
+            return equations.residual(np.append(unknowns, amplitude))
+
+        # The least norm near the saddle-node, found without its derivatives. It differs from the
+        # linear one by the square of the distance, which is below a hundredth of the Λ there.
+        least = least_squares(residual, start, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+        assert np.linalg.norm(least.fun) == pytest.approx(one.needed_tolerance.item(), rel=1e-4)
+    # Where the printed end lies above the fold, orbits have it.
+    assert nodes.needed_tolerance.sel(frequency_ratio=2.0, n=[2, 3]).values.tolist() == [0, 0]
+    below = nodes.computed > nodes.printed
+    assert ((nodes.needed_tolerance > 0) == below).all()
 
 
 def test_the_table_has_a_row_for_each_reading(study):

@@ -7,19 +7,24 @@ returns the finding that decides the claim::
     def contact_shortens(data):
         """the contact gets shorter as its stiffness increases
 
+        Compared: the largest change of the contact duration
+
         Condition: the contact duration falls from every contact of Fig. 13 to the next
         """
         return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
 
 The id of a claim is the name of the function, unless another id is given. If a claim can be read in
-several ways, the function returns a mapping from the name of each reading to its finding. If it is
-clear which reading the paper means, this reading comes first, and the claim is ``meant``. A
-statement that cannot fail, whatever the equations are, is a ``definition``.
+several ways, the function returns a mapping from the name of each reading to its finding. The claim
+is reproduced *in one reading* if it holds in at least one of them and not in another. If the claim
+depends on something that the text at hand does not have, such as the difference that counts as
+visible, this is named as ``missing``, the readings are values tried for it, and the claim is
+*undecidable* if their verdicts differ. A statement that cannot fail, whatever the equations are, is
+a ``definition``.
 '''
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import Any
 
@@ -107,12 +112,17 @@ class Claim:
         with ``printed``, it may return the number instead.
     printed : str
         The number with the digits that the paper prints; empty if the claim is not a number.
+    compared : str
+        What the number found is, which is compared with the printed number or with a bound.
+    at : mapping of str to float or str
+        The parameters at which the number is found, by their names in the datasets, where these
+        have more: of one entry of a table, for example, or a text such as ``random numbers``.
     condition, remark : str
         The decidable condition that stands for the statement, and a remark on its reading.
     answer : str
         A possible answer of the authors to a verdict other than reproduced.
-    meant : bool
-        Whether the paper means the first reading.
+    missing : str
+        What the verdict depends on and the text at hand does not have; empty if it has everything.
     definition : bool
         Whether the statement follows from the meaning of its words. It is checked as all others,
         but its verdict is no evidence and is not counted as reproduced.
@@ -128,10 +138,12 @@ class Claim:
     statement: str
     decide: Callable[[Data], Any]
     printed: str = ""
+    compared: str = ""
+    at: Mapping[str, float | str] = field(default_factory=dict)
     condition: str = ""
     remark: str = ""
     answer: str = ""
-    meant: bool = False
+    missing: str = ""
     definition: bool = False
     explanation: Explanation | None = None
     restates: "Claim | None" = None
@@ -154,15 +166,20 @@ class Claim:
             readings = {"": against_print(found, self.printed)}
         else:
             readings = found
-        first, *others = readings.values()
-        if all(other.verdict is first.verdict for other in others):
-            if self.definition and first.verdict is Verdict.REPRODUCED:
-                return replace(first, verdict=Verdict.DEFINITION), ""
-            return first, ""
+        best = min(readings.values(), key=lambda one: list(Verdict).index(one.verdict))
+        holds = best.verdict is Verdict.REPRODUCED
+        if all(one.verdict is best.verdict for one in readings.values()):
+            if self.definition and holds:
+                return replace(best, verdict=Verdict.DEFINITION), ""
+            return best, ""
         words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
-        if self.meant and first.verdict is Verdict.REPRODUCED:
-            return replace(first, verdict=Verdict.IN_ONE_READING), words
-        return Finding(np.nan, Verdict.UNDECIDABLE), words
+        if self.missing:
+            return Finding(np.nan, Verdict.UNDECIDABLE), words
+        return (replace(best, verdict=Verdict.IN_ONE_READING) if holds else best), words
+
+
+DISAGREEMENT = "the largest disagreement with a second computation"
+"""What is compared with a bound where a formula is decided."""
 
 
 def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:
@@ -192,9 +209,10 @@ def formula(name: str, item: str, text: str, *rows: str, **given: Any) -> Claim:
 
     The name of the row is ``item`` unless ``rows`` are given.
     """
-    compared = rows or (item,)
+    rows = rows or (item,)
+    given = {"compared": DISAGREEMENT, **given}
     kind = "restored formula"
-    return Claim(name, kind, item, text, lambda data: of_formula(data, *compared), **given)
+    return Claim(name, kind, item, text, lambda data: of_formula(data, *rows), **given)
 
 
 def of_formula(data: Data, *rows: str) -> Finding:

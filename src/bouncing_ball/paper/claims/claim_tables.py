@@ -14,7 +14,7 @@ import xarray as xr
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
 from bouncing_ball.paper.claims.places import exhibits_in
-from bouncing_ball.paper.claims.verdict import compared_text, decimals
+from bouncing_ball.paper.claims.verdict import Verdict, compared_text, decimals
 
 # A claim about more figures than these is not repeated at each of them.
 _FEW = 3
@@ -86,19 +86,29 @@ def witness(data: xr.Dataset) -> TextTable:
 def claims(data: xr.Dataset) -> TextTable:
     """Claims of the paper: place, statement, number, deviation, verdict.
 
-    The column "printed or required" has the printed number, or the bound that a
-    formula or a statement must meet.
+    The number compared is named with the r, n, Λ, ϖ and ζ at which it is found. The column
+    "printed or required" has the printed number, or the bound that a formula or a statement must
+    meet.
     """
     columns: Columns = {
         "claim": text("claim"),
         "where": text("item"),
         "what the paper says": text("statement"),
+        "number compared": compared_of,
+        "at": text("parameters"),
         "printed or required": text("required"),
         "found": found_text,
         "deviation": deviation_text,
         "verdict": text("verdict"),
     }
     return text_table(each(data, "claim"), columns)
+
+
+def compared_of(claim: xr.Dataset) -> str:
+    """What the number is that decides a claim, or what is missing to decide it."""
+    if claim.verdict.item() == Verdict.UNDECIDABLE:
+        return f"{claim.compared.item()}; the text does not have {claim.missing.item()}"
+    return str(claim.compared.item())
 
 
 def found_text(claim: xr.Dataset) -> str:

@@ -18,6 +18,7 @@ from bouncing_ball.paper.claims import (
 )
 from bouncing_ball.paper.claims.claim import Claim, checks_hold, defined_in, name_of, paragraphs
 from bouncing_ball.paper.claims.paper_parameters import PAPER, Data, Digests, PaperData
+from bouncing_ball.paper.claims.parameter_texts import parameters_of
 from bouncing_ball.paper.claims.verdict import LAST_DIGITS, Verdict
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
@@ -40,6 +41,11 @@ VARIABLES = {
     "period_doubling_lowest": Variable(
         "ϖ at which the period doubling is lowest", symbol="ϖ", budget=1e-05
     ),
+    "amplitude_matters_below": Variable(
+        "ϖ below which the velocities of Fig. 10 differ by more than the tolerance",
+        symbol="ϖ",
+        budget=1e-09,
+    ),
     "permanent_contact_error": Variable(
         "relative error of Λ_CR at the printed threshold", equation="Eq. 38"
     ),
@@ -50,6 +56,9 @@ VARIABLES = {
     "printed_text": Variable("the number as printed"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
+    "compared": Variable("what the number found is"),
+    "parameters": Variable("r, n, Λ, ϖ and ζ at which the number is found"),
+    "missing": Variable("what the verdict depends on and the text does not have"),
     "answer": Variable("what its author might answer to the verdict"),
     "decided_by": Variable("datasets that decide"),
     "required": Variable("the number as printed, or the bound to be met"),
@@ -96,6 +105,9 @@ def _row(
         "statement": claim.statement,
         "remark": claim.remark,
         "condition": claim.condition,
+        "compared": claim.compared,
+        "parameters": parameters_of({name: asked[name] for name in asked.used}, claim.at),
+        "missing": claim.missing,
         "answer": claim.answer,
         "group": claim.kind,
         "restates": claim.restates.id if claim.restates else "",
@@ -170,6 +182,7 @@ def claims(data: Data) -> xr.Dataset:
         evidence.range_error,
         evidence.printed_slight_move,
         evidence.period_doubling_lowest,
+        evidence.amplitude_matters_below,
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}

@@ -16,7 +16,8 @@ TOLERANCE = 0.01
 """The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
 STIFF = 100.0
 """ϖ above which the paper treats both models as equal."""
-# A point of a logarithmic grid equals a round number, and a sample a bifurcation, up to rounding.
+# Up to rounding a point of a logarithmic grid equals a round number, a sample a bifurcation, and
+# without damping r_a equals r.
 GRID = 1e-9
 
 
@@ -63,8 +64,8 @@ def rise_of_error(data: Data) -> xr.DataArray:
 
 def dip(data: Data, amplitude: float) -> xr.DataArray:
     """Greatest depth below r that the curve of Fig. 6 for an amplitude reaches."""
-    curve = apparent(data).sel(orbit=f"fig06 r=0.65 Λ={amplitude:g}")
-    return -curve.min("frequency_ratio")
+    sweep = curves(data, "fig06").sel(orbit=f"fig06 r=0.65 Λ={amplitude:g}")
+    return -(sweep.apparent_restitution - sweep.restitution).min("frequency_ratio")
 
 
 def short_of_lift(data: Data) -> xr.DataArray:

@@ -2,7 +2,11 @@
 
 Seven readings are the models of this package with another damping, release or rounding, and Eqs. 7
 and 8. Two readings alter an equation: a contact without gravity, and a period doubling whose
-linearised flight neglects the displacement of the table, as Holmes' map does.
+linearised flight neglects the displacement of the table against its height, as Holmes' map does.
+
+A continuation that is converged loosely is no reading, because it has more free numbers than the
+table can decide: a tolerance, a step, and the Λ at which the steps of each branch begin. What can
+be computed is the tolerance that a printed saddle-node needs (:func:`needed_tolerance`).
 """
 
 from collections.abc import Callable
@@ -20,6 +24,7 @@ from bouncing_ball.models.spring_damper import ContactState, SpringDamper, respo
 from bouncing_ball.numerics.corrector import solve_linear
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
+from bouncing_ball.periodic.continuation import PaperEquations
 from bouncing_ball.periodic.explicit import explicit_branch
 from bouncing_ball.periodic.orbit import Bifurcation, Orbit
 from bouncing_ball.periodic.spring_damper_branch import branch_point
@@ -37,6 +42,12 @@ VARIABLES = {
     "unreachable": Variable("number of saddle-nodes printed below every computed orbit"),
     "stable_width": Variable(
         "√(Λ_PD² - Λ_SN²) of a range of stable orbits, which is 1 by Eqs. 7 and 8 for every n",
+        budget=1e-11,
+    ),
+    "needed_tolerance": Variable(
+        "norm of the residual of Eqs. 21-26 that a continuation must accept to reach the printed "
+        "saddle-node; 0 where orbits exist",
+        equation="Eqs. 21-26",
         budget=1e-11,
     ),
     "printed_stable_width": Variable("√(Λ_PD² - Λ_SN²) of the printed ends"),
@@ -194,6 +205,32 @@ def stable_width(ends: xr.DataArray) -> xr.DataArray:
     return (by_kind[1] ** 2 - by_kind[0] ** 2) ** 0.5
 
 
+def needed_tolerance(contact: SpringDamper, n: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+    """The smallest norm of the residual of Eqs. 21-26 at a given Λ, to first order in the distance
+    from the saddle-node; 0 for Λ above it, where orbits exist.
+
+    At the saddle-node the derivative of the residual R by the unknowns has a unit vector ψ with
+    ψ·∂R/∂y = 0. Below it no change of the unknowns removes the part of the residual along ψ, which
+    is ``ψ·∂R/∂Λ (Λ - Λ_SN)``. The residual is that of
+    :class:`~bouncing_ball.periodic.continuation.PaperEquations`, in which heights in contact are
+    multiplied by ϖ.
+
+    Examples
+    --------
+    The 1-T orbits at r = 0.85 and ϖ = 10 begin at Λ = 0.23999:
+
+    >>> contact = SpringDamper(np.array([10.0, 10.0]), float(damping_ratio(0.85)))
+    >>> needed_tolerance(contact, np.array([1, 1]), np.array([0.238, 0.241])).round(4).tolist()
+    [0.0024, 0.0]
+    """
+    node = explicit_branch(contact).bifurcation(Bifurcation.SADDLE_NODE, n)
+    equations = PaperEquations(contact, n)
+    jacobian = equations.jacobian(equations.point(node))
+    left = np.linalg.svd(jacobian[..., :-1])[0][..., -1]
+    by_amplitude = np.abs(np.sum(left * jacobian[..., -1], axis=-1))
+    return by_amplitude * np.maximum(np.asarray(node.amplitude) - amplitude, 0)
+
+
 def readings() -> dict[str, np.ndarray]:
     """Both ends of each range under the nine readings, shape (ϖ, n, 2).
 
@@ -269,7 +306,7 @@ def forensics() -> xr.Dataset:
         entries over (reading, rows); and ``unreachable`` over reading, the number of printed
         saddle-nodes that lie below the fold by more than rounding, where no orbit exists.
         ``stable_width`` over (reading, frequency_ratio, n), and that of the printed ends with the
-        change that rounding can make.
+        change that rounding can make, and ``needed_tolerance``, over (frequency_ratio, n).
     """
     found = readings()
     printed = printed_table()
@@ -280,6 +317,9 @@ def forensics() -> xr.Dataset:
     # The largest first-order change by rounding of both ends.
     width = stable_width(printed)
     rounding = LAST_DIGIT / 2 * printed.sum("bound") / width
+    nodes = printed.sel(bound=Bifurcation.SADDLE_NODE, drop=True)
+    ratio, n = xr.broadcast(nodes.frequency_ratio, nodes.n)
+    contact = SpringDamper(ratio.values, float(damping_ratio(RESTITUTION)))
     ratio = printed.frequency_ratio
     groups = {"all rows": ratio > 0, "compliant rows": ratio < ratio.max()}
     groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
@@ -297,6 +337,7 @@ def forensics() -> xr.Dataset:
             "entries": parts.isel(reading=0, drop=True).count(over),
             "unreachable": below.sum(["frequency_ratio", "n"]),
             "stable_width": stable_width(computed),
+            "needed_tolerance": nodes.copy(data=needed_tolerance(contact, n.values, nodes.values)),
             "printed_stable_width": width,
             "printed_stable_width_rounding": rounding,
         }

@@ -6,6 +6,18 @@ _NAMED = re.compile(r"(Fig|Table)s?\.? ([\d, and-]+)")
 _RANGE = re.compile(r"(\d+)(?:-(\d+))?")
 
 
+def place_of(name: str) -> str:
+    """The figure or table of the paper that an artifact is, or the name of any other artifact.
+
+    Examples
+    --------
+    >>> place_of("fig05"), place_of("table1"), place_of("formulas")
+    ('Fig. 5', 'Table 1', 'formulas')
+    """
+    found = re.fullmatch(r"(fig|table)(\d+)", name)
+    return f"{'Fig.' if found[1] == 'fig' else 'Table'} {int(found[2])}" if found else name
+
+
 def exhibits_in(place: str) -> list[str]:
     """The names of the artifacts of the figures and tables that a place names.
 

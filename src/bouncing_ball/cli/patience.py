@@ -32,11 +32,14 @@ def told_if_slow(cheaper: str) -> Iterator[None]:
     """
     ended = Event()
     advice = f"{cheaper} make the answer cheaper; " if cheaper else ""
-    Thread(target=_tell, args=(advice, ended), name="patience", daemon=True).start()
+    teller = Thread(target=_tell, args=(advice, ended), name="patience", daemon=True)
+    teller.start()
     try:
         yield
     finally:
         ended.set()
+        # No line comes after the answer.
+        teller.join()
 
 
 def _tell(advice: str, ended: Event) -> None:

@@ -19,10 +19,11 @@ from bouncing_ball_contacts.contact.families import ComparedOrbit, families
 from bouncing_ball_contacts.contact.judgement import MotionJudgement, OrbitJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion, of_family
 from bouncing_ball_contacts.contact.needed import Needed, finite, needed
-from bouncing_ball_contacts.contact.notes import notes, remarks
+from bouncing_ball_contacts.contact.notes import notes
 from bouncing_ball_contacts.contact.numbers_of_contact import NumbersOfImpact
 from bouncing_ball_contacts.contact.quantities import check_kinds
 from bouncing_ball_contacts.contact.question import Question
+from bouncing_ball_contacts.contact.remarks import remarks
 from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed

@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar
 from bouncing_ball.errors import ModelError, suggesting
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import deep
-from bouncing_ball_contacts.contact.notes import force_formula, remarks
 from bouncing_ball_contacts.contact.numbers_of_contact import NumbersOfContact
 from bouncing_ball_contacts.contact.quantities import Gravity, Speed, check_kinds, quantities
+from bouncing_ball_contacts.contact.remarks import force_formula, remarks
 from bouncing_ball_contacts.contact.resolve import needs_table, resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed

@@ -17,16 +17,11 @@ from dataclasses import replace
 import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
-from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball_contacts.contact.contact import STIFF, Contact
 from bouncing_ball_contacts.contact.diagnose import diagnosis
 from bouncing_ball_contacts.contact.hertz import hertz, reduced_modulus
@@ -188,6 +183,9 @@ def _of_law(
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
     r = float(unit.restitution)
     if not table.is_at_rest:
+        # Imported here, because orbits are imported for longer than most recipes are computed.
+        from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
+
         at = float(rigid_speed(first_stable_family(families, r, table.amplitude), r))
     elif speed is None:
         what = "{radius}" if kind is None else "{law}"
@@ -242,6 +240,10 @@ def first_stable_family(
     >>> first_stable_family([1, 2, 3], 0.85, 1.1)
     2
     """
+    # Imported here, because orbits are imported for longer than most recipes are computed.
+    from bouncing_ball_beyond.models.rigid import RestitutionModel
+    from bouncing_ball_beyond.periodic.one_impact import n_t
+
     orbits = n_t.orbit(RestitutionModel(restitution), np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
@@ -264,6 +266,9 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
     if case.impact_speed is not None:
         at = case.impact_speed * case.table.time / case.table.length
         return _with_impact(case, law.signature(at))
+    from bouncing_ball_beyond.models.contact_model import ContactModel
+    from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
+
     speed, impact = restitution_speed(asked, ContactModel(law), _LAST_STEP)
     n = first_stable_family(asked, impact.restitution, case.table.amplitude)
     return _with_impact(case, law.signature(float(speed[asked.index(n)])))

@@ -166,7 +166,8 @@ write it as '50 Hz'
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
         unit = str(value.units).replace("dimensionless", "")
         value = value.magnitude
-    if value is np.ma.masked:
+    # The first use of masked arrays imports them, which plain numbers do not need.
+    if not isinstance(value, str | float | int) and value is np.ma.masked:
         raise wrong("is masked: give a number", "a masked entry")
     try:
         plain = float(value)

@@ -8,7 +8,6 @@ from importlib.resources import files
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy
 
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball_beyond.models.damping import Release
@@ -20,10 +19,17 @@ from bouncing_ball_contacts.engines.drop_in_steps import (
     drop_in_steps,
     restitutions_in_steps,
 )
-from bouncing_ball_contacts.engines.given_step import AtStep, at_step
-from bouncing_ball_contacts.engines.hunt_crossley_steps import at_step_of_law, missing_speed
+from bouncing_ball_contacts.engines.given_step import AtStep, at_step, retuned_damping
+from bouncing_ball_contacts.engines.hunt_crossley_steps import (
+    at_step_of_law,
+    missing_speed,
+    retuned_damping_of_law,
+)
 from bouncing_ball_contacts.engines.impacts import steps_for
-from bouncing_ball_contacts.engines.least_error import stiffness_of_least_error
+from bouncing_ball_contacts.engines.least_error import (
+    damping_of_least_error,
+    stiffness_of_least_error,
+)
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated, represented
 from bouncing_ball_contacts.engines.settings import EngineParameters, EngineSettings
@@ -34,8 +40,6 @@ ERROR = 0.001
 
 # A whole number of steps is not rounded down.
 _ALMOST = 1 + 1e-9
-# Damping of a step or of a load is made up for by less than this multiple of that of the contact.
-_MOST_DAMPING = 3.0
 _PLACE = re.compile(r"@([\w.]+)@")
 _UNDERSCORE = re.compile("_([a-z])")
 _STEP = "time_step"
@@ -257,7 +261,9 @@ class Engine:
         contact = self.contact(values, mass)
         law = self.law(values, contact.mass)
         found = Written(self, contact, rule, None if law is None else LawInSI(law, speed))
-        return found, replace(found.at_step(time_step, error, asked), remarks=remarks)
+        at = found.at_step(time_step, error, asked)
+        tuned = None if at.is_within else found.retuned(at, asked)
+        return found, replace(at, remarks=remarks, retuned=tuned)
 
     def settings(
         self,
@@ -391,6 +397,18 @@ class Written:
         wanted = None if asked is None or asked.of_law is None else asked.of_law.law
         return at_step_of_law(of.law, of.speed, time_step, error, wanted)
 
+    def retuned(self, at: AtStep, asked: "Written") -> float | None:
+        """The damping of :meth:`with_damping` with which the mean r at the step of ``at`` is that
+        of the contact that was asked for; None if there is none.
+        """
+        of = self._by_speed
+        if of is not None:
+            return retuned_damping_of_law(at, of.law)
+        scheme = self.engine.scheme
+        # A compensated scheme is told the contact that was asked for, with another damping.
+        contact = asked.contact if scheme.is_compensated else self.contact
+        return retuned_damping(at, scheme, contact, self.release)
+
     def with_damping(self, damping: float) -> "Written":
         """The same with another damping, in N s/m, or in s/m if it is that of the law."""
         of = self._by_speed
@@ -496,18 +514,15 @@ class Written:
         restitution at the step of ``at``, and what it does there.
         """
 
-        def error(factor: float) -> float:
-            step = self.with_damping(factor * self.damping).step(at.time_step)
+        def error(damping: float) -> float:
+            step = self.with_damping(damping).step(at.time_step)
             half = self.engine.half_steps
             found = restitutions_in_steps(step, height, gravity, at.steps, half_steps=half)
             # A ball that rises higher than it fell is farther off than one that stays.
             gains = found.max() >= 1 > restitution
             return float(np.abs(found - restitution).max()) + gains
 
-        inner = scipy.optimize.minimize_scalar(error, bounds=(0.0, _MOST_DAMPING)).x
-        # The search does not reach its ends.
-        factor = min((0.0, inner), key=error)
-        found = self.with_damping(float(f"{factor * self.damping:.3g}"))
+        found = self.with_damping(damping_of_least_error(error, self.damping))
         return found, found.at_step(at.time_step, at.allowed, self)
 
     def suited(

@@ -55,17 +55,24 @@ def test_a_restitution_is_wanted_of_the_parameters(solref):
     assert again.diagnosis == ()
 
 
-def test_a_damper_that_pulls_holds_the_ball_in_one_line(refusal):
+def test_a_damper_that_pulls_holds_the_ball_which_a_note_says(refusal, said):
     given = {"mass": 1.0, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 1000.0}}
-    with refusal(
-        ModelError, "it does not bounce, because ζ = 1.581 leaves r = 0 at most; with gam"
-    ):
-        answered(**given, restitution=0.7)
-    try:
-        answered(**given, restitution=0.7)
-    except ModelError as error:
-        (loss,) = re.findall(r"gamma_n = (\S+),", str(error))
+    found = answered(**given, restitution=0.7, speed="1 m/s")
+    (text,) = found.diagnosis
+    assert text.startswith("it does not bounce, because ζ = 1.581 leaves r = 0 at most; with gam")
+    (loss,) = re.findall(r"gamma_n = (\S+),", text)
     assert least(1e5, float(loss), 1.0, False) == pytest.approx(0.7, abs=2e-3)
+    # The ball sinks in and stays: there is no contact time, no r, and nothing that a step changes.
+    contact = found.found
+    assert contact.contact_time is None and contact.measured_restitution == 0
+    assert contact.static_deflection == pytest.approx(9.80665e-5)
+    assert found.dropped.rebound_height == 0 and found.dropped.remarks == ()
+    assert answered(**given, time_step=1e-5).at_step is None
+    options = ["--from=lammps", "--mass=1", "--set=kn=1e5", "--set=gamma_n=1000"]
+    assert "Note: it does not bounce" in said("design", *options)
+    # On a table that moves it is no answer.
+    with refusal(ModelError, "it does not bounce, because ζ = 1.581 leaves r = 0 at most"):
+        answered(**given, frequency="50 Hz", acceleration="2 g")
 
 
 def test_a_step_that_is_too_long_is_named():

@@ -63,7 +63,7 @@ class Description(NumbersOfContact):
     @property
     def contact_time(self) -> Annotated[float | None, Listed("contact time", "s")]:
         """Duration of a free impact in s."""
-        return None if self.case.lacks_speed else self.case.contact_time
+        return None if self.case.lacks_speed or self.case.holds else self.case.contact_time
 
     @property
     def measured_restitution(
@@ -127,6 +127,8 @@ def description_of(case: ResolvedContact) -> Description:
         If the contact is longer than any that is simulated, or is to be written for an engine
         whereas its r depends on the speed.
     """
+    if case.holds:
+        return Description(case)
     if not case.lacks_speed:
         require_short(case.contact_time)
     elif case.written is not None:

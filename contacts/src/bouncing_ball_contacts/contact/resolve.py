@@ -84,8 +84,6 @@ def resolve(
     0.1
     """
     plain = contact.by_stiffness_and_loss(written)
-    if written is None:
-        _require_rebound(contact, plain)
     kind = law_type(plain)
     is_stiff = single(given(plain), STIFF, "the stiffness of the contact") != ""
     modulus = reduced_modulus(plain)
@@ -94,7 +92,10 @@ def resolve(
     if not is_stiff:
         instead = "" if written is None else f", or the {{time_step}} of {written}"
         raise ParameterError(f"no stiffness: give {{stiffness}}, or {{contact_time}}{instead}")
-    if kind is None and modulus is None:
+    held = _held(contact, plain, table) if written is None else None
+    if held is not None:
+        found = ResolvedContact(plain, table, held, held)
+    elif kind is None and modulus is None:
         found = _spring_damper(plain, table, speed)
     else:
         found = _of_law(plain, table, families, kind, modulus, speed)
@@ -102,19 +103,25 @@ def resolve(
     return _with_law_of_engine(found, families)
 
 
-def _require_rebound(contact: Contact, plain: Contact) -> None:
-    """Refuse parameters of an engine in which the damper pulls and holds the ball.
+def _held(contact: Contact, plain: Contact, table: TableMotion) -> SpringDamper | None:
+    """The spring and damper of an engine's parameters with which the damper pulls and holds the
+    ball; None if it does not.
 
     Raises
     ------
     ModelError
-        With the least change after which the ball bounces.
+        If the table moves; with the least change after which the ball bounces.
     """
     engine = contact.engine
-    if engine is None or engine.needs_speed or plain.rule is not Release.DISPLACEMENT:
-        return
-    if engine.contact(contact.engine_parameters, contact.mass).damping_ratio >= 1:
+    if engine is None or engine.needs_speed:
+        return None
+    ball = engine.contact(contact.engine_parameters, contact.mass)
+    if not ball.holds(plain.rule):
+        return None
+    if not table.is_at_rest:
         raise ModelError("; ".join(diagnosis(contact, None)))
+    ratio = ball.angular_frequency / table.angular_frequency
+    return SpringDamper(ratio, ball.damping_ratio, plain.rule)
 
 
 def law_type(contact: Contact) -> type[ContactLaw] | None:

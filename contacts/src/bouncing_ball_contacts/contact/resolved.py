@@ -107,6 +107,11 @@ class ResolvedContact:
         return self.is_spring_damper and self.law.release.is_linear
 
     @property
+    def holds(self) -> bool:
+        """Whether the damper of an engine's parameters pulls and holds the ball."""
+        return self.is_linear and self.physical.holds(self.equivalent.release)
+
+    @property
     def integrated_law(self) -> ContactLaw | None:
         """The law that is integrated in time; None for a linear contact."""
         return None if self.is_linear else self.law
@@ -160,7 +165,9 @@ class ResolvedContact:
 
     @property
     def restitution(self) -> float:
-        """r of a free impact, for a law with an impact speed at that speed."""
+        """r of a free impact, for a law with an impact speed at that speed; 0 if it does not end."""
+        if self.holds:
+            return 0.0
         impact = self._impact
         return float(self.equivalent.restitution if impact is None else impact.restitution)
 
@@ -190,8 +197,11 @@ class ResolvedContact:
     @property
     def slowed_speed(self) -> float | None:
         """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact: 0 if
-        it does at no speed, as without damping, and None if it lowers r by more at every speed.
+        it does at no speed, as without damping or without a bounce, and None if it lowers r by more
+        at every speed.
         """
+        if self.holds:
+            return 0.0
         if self.is_linear:
             zeta = float(self.equivalent.damping_ratio)
             # In units of 1/ω and g/ω² the contact has ϖ = 1.

@@ -370,7 +370,8 @@ def at_step_of_parameters(
     if own is not None and time_step is not None:
         raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
     step = own if time_step is None else time_step
-    if step is None:
+    # A ball that the damper holds has no impact whose r a step could change.
+    if step is None or case.holds:
         return None
     parameters = without_step(contact.engine_parameters)
     at_speed = speed if isinstance(found, Description) else found.judged.impact_speed

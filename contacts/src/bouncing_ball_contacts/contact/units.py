@@ -1,6 +1,6 @@
 """Quantities with units, read at the interface: SI numbers inside.
 
-A text is a number followed by its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
+A text is a number, or a fraction of two, followed by its unit: ``50 Hz``, ``2e6 N/m``, ``1/240 s``.
 A plain number is in SI units. Pint receives the unit alone and never an expression, so that texts
 of a command line are not evaluated.
 
@@ -139,6 +139,8 @@ def number_in_si(name: str, value: Any, kind: SIParameter) -> float:
     (2000000.0, 2000000.0)
     >>> number_in_si("frequency", "3000 rpm", frequency)
     50.0
+    >>> number_in_si("time_step", "1/250", SIParameter("s", "1 ms"))
+    0.004
     >>> number_in_si("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
@@ -163,6 +165,11 @@ write it as '50 Hz'
         if found is None:
             raise wrong(f"does not begin with a number: {example}", repr(short))
         value, unit = found.groups()
+        if fraction := _OVER.fullmatch(unit):
+            below, unit = fraction.groups()
+            if float(below) == 0:
+                raise wrong("is divided by 0")
+            value = repr(float(value) / float(below))
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
         unit = str(value.units).replace("dimensionless", "")
         value = value.magnitude
@@ -197,15 +204,9 @@ def _not_one_number(value: str, rest: str) -> str:
     --------
     >>> _not_one_number("0", ",65")
     "has a comma: write '0.65' with a decimal point, or without the comma"
-    >>> _not_one_number("1", "/2 kg")
-    "is a fraction: write '0.5 kg'"
     >>> _not_one_number("20", " ± 1 g")
     'is not one number and a unit: write numbers such as 1500, 0.5 or 1e6'
     """
-    fraction = _OVER.fullmatch(rest)
-    if fraction is not None and float(fraction[1]) > 0:
-        quotient = f"{float(value) / float(fraction[1]):.12g} {fraction[2]}".rstrip()
-        return f"is a fraction: write '{quotient}'"
     if rest[0] == "," and rest.count(",") == 1:
         return f"has a comma: write '{value}.{rest[1:]}' with a decimal point, or without the comma"
     return "is not one number and a unit: write numbers such as 1500, 0.5 or 1e6"

@@ -19,6 +19,9 @@ def _on_engine(case: ResolvedContact) -> tuple[str, ...]:
     if engine is None:
         return ()
     found = engine.notes(case.given.engine_parameters)
+    if defaults := case.given.defaults:
+        numbers = ", ".join(f"{name} = {value}" for name, value in defaults.items())
+        found = (f"these are the defaults of {engine.name}: {numbers}", *found)
     contact = engine.contact(case.given.engine_parameters, case.given.mass)
     own = engine.release()
     release = case.equivalent.release

@@ -165,7 +165,7 @@ class ResolvedContact:
 
     @property
     def restitution(self) -> float:
-        """r of a free impact, for a law with an impact speed at that speed; 0 if it does not end."""
+        """r of a free impact, for a law with an impact speed at that speed; 0 if none ends."""
         if self.holds:
             return 0.0
         impact = self._impact

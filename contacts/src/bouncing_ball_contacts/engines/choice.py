@@ -78,7 +78,13 @@ _ROWS = (
     ),
     DRAKE,
     MERCURYDPM,
-    proportional("newton-semi-implicit", ("ke", "kd"), (Release.APPROACH,), Scheme.SEMI_IMPLICIT),
+    proportional(
+        "newton-semi-implicit",
+        ("ke", "kd"),
+        (Release.APPROACH,),
+        Scheme.SEMI_IMPLICIT,
+        defaults={"ke": 2500, "kd": 100},
+    ),
     NEWTON_MUJOCO,
     GENESIS,
     proportional(

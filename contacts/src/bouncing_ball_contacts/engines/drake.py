@@ -92,6 +92,7 @@ DRAKE = Engine(
     scheme=Scheme.COMPENSATED,
     parameters=_by_relaxation_time,
     contact_of=lambda mass, double, half_time: (double / 2, double * half_time),
+    defaults={"point_contact_stiffness": 1_000_000, "relaxation_time": 0.1},
     laws={"hunt-crossley": HUNT_CROSSLEY},
 )
 """A discrete plant with the approximation "sap"."""

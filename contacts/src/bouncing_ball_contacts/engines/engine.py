@@ -114,6 +114,9 @@ class Engine:
     instant : callable, optional
         How impacts that are instants with a given r are set, in words, if r is a number beside
         those of the contact.
+    defaults : mapping, optional
+        The parameters that a contact has in the engine if none are set, by name; empty if it then
+        has no contact that lasts, or one that this row does not describe.
     laws : mapping, optional
         The rows of the engine's other contact laws, by the names that users may give.
     written_law : type of ContactLaw, optional
@@ -143,6 +146,7 @@ class Engine:
         lambda parameters, _: (parameters, ())
     )
     instant: Callable[[float], str] | None = None
+    defaults: Mapping[str, Any] = field(default_factory=dict)
     laws: Mapping[str, "Engine"] = field(default_factory=dict)
     written_law: type[ContactLaw] | None = None
     text: str = ""
@@ -192,10 +196,15 @@ class Engine:
             mass = values.pop("mass", mass)
         if unknown := set(values) - set(self.names):
             names = " and ".join(self.names)
+            # The dampings of the engine's other laws, whose parameters are read as well.
+            others = [row.names[1] for row in self.laws.values() if row.needs_speed]
+            names = " or ".join([names, *others])
             first = sorted(unknown)[0]
             if first == _STEP:
                 names += ", and the step of any engine is given by --time-step or time_step"
-            meant = did_you_mean(first, self.names)
+            known = (*self.names, *others)
+            longer = [name for name in known if first.casefold() in name.casefold()]
+            meant = f"; did you mean {longer[0]}?" if longer else did_you_mean(first, known)
             raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}{meant}")
         if mass is None:
             raise ModelError(

@@ -32,6 +32,12 @@ def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     assert f"Laws:{','.join(LAWS)}.".replace("-", "") in shown
 
 
+def test_the_package_is_run_as_the_program(said):
+    module = [sys.executable, "-m", "bouncing_ball_contacts", "--version"]
+    done = subprocess.run(module, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == said("--version").strip()
+
+
 def test_what_an_answer_does_not_need_is_not_imported():
     call = "design --mass 1 --frequency 1 --acceleration 5 --restitution 0.9 --n 1"
     recipe = "design --engine mujoco --mass 1 --stiffness 1e5 --restitution 0.75"

@@ -25,19 +25,21 @@ from bouncing_ball.errors import ParameterError, Range, shortened
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
 
-# The size of common units in SI units as they are written, by the SI unit of a parameter. They need
-# no pint, which takes as long as the rest of a recipe, and are hints on a wrong spelling.
-_COMMON: Mapping[str, Mapping[str, float]] = {
+COMMON: Mapping[str, Mapping[str, float]] = {
     "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},
     "Hz": {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "rad/s": 1 / (2 * math.pi)},
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9},
     "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
-    "m/s": {"m/s": 1.0, "mm/s": 1e-3, "km/h": 1 / 3.6},
+    "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6},
     "m/s^2": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": STANDARD_GRAVITY},
     "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
     "N*s/m": {"N s/m": 1.0, "kN s/m": 1e3, "N s/mm": 1e3, "kg/s": 1.0},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
 }
+"""The size of common units in SI units as they are written, by the SI unit of a parameter.
+
+They need no pint, which takes as long as the rest of a recipe, and are hints on a wrong spelling.
+"""
 # A frequency in 1/s, which pint takes for no angle at all.
 _PER_TIME = "does not say whether it counts turns or radians"
 _UNKNOWN = "has an unknown unit"
@@ -217,7 +219,7 @@ def _spelling(unit: str, kind: SIParameter) -> str:
     if unit in (friends := _FALSE_FRIENDS.get(kind.name, {}) | _PARTS.get(kind.name, {})):
         return friends[unit]
     typed = _BETWEEN.sub("", unit).casefold()
-    for spelling in _COMMON.get(kind.name, ()):
+    for spelling in COMMON.get(kind.name, ()):
         if _BETWEEN.sub("", spelling).casefold() == typed:
             return spelling
     return ""
@@ -229,7 +231,7 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     For an acceleration the unit g means standard gravity and not the gram. A unit that is common
     for the parameter needs no pint.
     """
-    common = _COMMON.get(kind.name, {})
+    common = COMMON.get(kind.name, {})
     if unit in common:
         return _digits(value * common[unit]), ""
     registry = _registry()

@@ -6,9 +6,9 @@ from bouncing_ball_contacts.cli.options import NAMES
 
 # Measured on one processor, for a table at 0.8 to 5 g; a single orbit n takes as long.
 _OF_DESIGN = (
-    "balls are followed over hundreds of impacts until their motion repeats, which takes 2 to 5 s of "
-    "a processor, and 10 to 20 s on a contact law: a lower acceleration, or a spring and a damper in "
-    "place of a contact law,"
+    "balls are followed over hundreds of impacts until their motion repeats, which takes 2 to 5 s "
+    "of a processor, and 10 to 20 s on a contact law: a lower acceleration, or a spring and a "
+    "damper in place of a contact law,"
 )
 
 

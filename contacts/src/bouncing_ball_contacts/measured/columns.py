@@ -9,14 +9,15 @@ The *heading* is the first line that names the columns of one of these ways to m
     interval                            the intervals between them
 
 A file with several ways is read by the first of them, because e and intervals may have been
-computed from the others. The heading may be in capitals, with its units in brackets or behind it, as in interval_ms. Columns
-are separated by commas, tabs or semicolons; beside tabs and semicolons, and in a single column,
-numbers may have decimal commas. Lines above the heading and columns that the way does not use are left out,
-with a note for each line and one for the columns; a column that only counts needs none.
+computed from the others. The heading may be in capitals, with its units in brackets or behind it,
+as in interval_ms. Columns are separated by commas, tabs or semicolons; beside tabs and semicolons,
+and in a single column, numbers may have decimal commas. Lines above the heading and columns that
+the way does not use are left out, with a note for each line and one for the columns; a column that
+only counts needs none.
 
-The numbers of a column of speeds that are all negative are read as velocities, with a note.
-Numbers that a wrong unit explains better than a ball are refused: an impact speed above 100 m/s, a
-height above 100 m, and above 10 m if the heading names no unit.
+The numbers of a column of speeds that are all negative are read as velocities, with a note. Numbers
+that a wrong unit explains better than a ball are refused: an impact speed above 100 m/s, a height
+above 100 m, and above 10 m if the heading names no unit.
 """
 
 import csv

@@ -58,12 +58,12 @@ def add_options(parser: Parser) -> None:
     """Add the options of :func:`design`."""
     add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
     add_file(parser, "script", "File for a script in Python that drops the ball in the engine.")
-    each = "By default a contact in an engine has no line, and each family one, unless n is given."
+    each = "By default a contact in an engine has no line, and each orbit one, unless n is given."
     parser.add_argument(
         option("all_families"),
         dest="all_families",
         action="store_true",
-        help=f"Print all numbers of the contact and of every family. {each}",
+        help=f"Print all numbers of the contact and of the orbits of every n. {each}",
     )
     for kind, names in _OPTIONS:
         add_optional(parser, kind, names)

@@ -104,7 +104,7 @@ class Assessment(NumbersOfImpact):
         return f"Assessment(n={self.n}, is_good_enough={good}, verdict={self.verdict!r})"
 
     @property
-    def amplitude(self) -> Annotated[float, Listed("excitation amplitude Λ")]:
+    def amplitude(self) -> Annotated[float, Listed("table's acceleration over gravity, Λ")]:
         """Λ."""
         return self.case.table.amplitude
 

@@ -34,22 +34,12 @@ def _on_engine(case: ResolvedContact) -> tuple[str, ...]:
     return (*found, f"r changes from {before} to {after}, because {why}")
 
 
-# The forces of the laws whose constants have other meanings elsewhere, over their stiffness k; x is
-# the depth and ẋ its rate.
-_FORCES = {
-    "hunt-crossley": "k x^1.5 (1 + C ẋ)",
-    "hunt-crossley-linear": "k x (1 + C ẋ)",
-    "tsuji": "k x^1.5 + C √(m k) x^0.25 ẋ",
-    "kuwabara-kono": "k (x^1.5 + C √x ẋ)",
-}
-
-
 def force_formula(case: ResolvedContact) -> tuple[str, ...]:
     """The force of a law, in which its stiffness and its damping stand."""
-    force = _FORCES.get(case.law.name)
-    if force is None:
+    law = case.law
+    if not law.formula:
         return ()
-    return (f"the force of {case.law.name} with stiffness k and damping C is {force}, of depth x",)
+    return (f"the force of {law.name} with stiffness k and damping C is {law.formula}, of depth x",)
 
 
 def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:

@@ -404,7 +404,7 @@ class Written:
         if of.speed is None:
             raise missing_speed()
         wanted = None if asked is None or asked.of_law is None else asked.of_law.law
-        return at_step_of_law(of.law, of.speed, time_step, error, wanted)
+        return at_step_of_law(self.engine.name, of.law, of.speed, time_step, error, wanted)
 
     def retuned(self, at: AtStep, asked: "Written") -> float | None:
         """The damping of :meth:`with_damping` with which the mean r at the step of ``at`` is that

@@ -44,6 +44,7 @@ def spread_of_damping(damping: float, step: float, most: int) -> Spread:
 
 
 def at_step_of_law(
+    engine: str,
     law: LinearHuntCrossley,
     speed: float,
     time_step: float,
@@ -62,7 +63,7 @@ def at_step_of_law(
 
     Examples
     --------
-    >>> found = at_step_of_law(LinearHuntCrossley(2e5, 0.5), 1.0, 1e-3, 0.001)
+    >>> found = at_step_of_law("drake", LinearHuntCrossley(2e5, 0.5), 1.0, 1e-3, 0.001)
     >>> found.is_within, found.least < found.most < found.restitution
     (False, True)
     """
@@ -82,7 +83,7 @@ def at_step_of_law(
     found = Spread(exact, exact, exact)
     if steps <= _MOST_STEPS:
         found = spread_of_damping(damping, h, patience(steps))
-    return replace(AtStep.of("drake", time_step, steps, wanted, found, error), speed=speed)
+    return replace(AtStep.of(engine, time_step, steps, wanted, found, error), speed=speed)
 
 
 def retuned_damping_of_law(at: AtStep, law: LinearHuntCrossley) -> float | None:

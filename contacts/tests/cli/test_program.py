@@ -43,6 +43,8 @@ def test_what_an_answer_does_not_need_is_not_imported():
     recipe = "design --engine mujoco --mass 1 --stiffness 1e5 --restitution 0.75"
     pairs = [("--help", "numpy"), (call, "pint"), (recipe, "xarray"), (recipe, "pandas")]
     pairs += [(recipe, "bouncing_ball_contacts.contact.assess")]
+    described = "design --mass 1 --stiffness 1e5 --restitution 0.75 --json"
+    pairs += [(described, "scipy.optimize"), (f"{recipe} --json", "scipy.optimize")]
     for engine in ("mujoco", "pybullet", "drake", "lammps"):
         at_step = f"design --engine {engine} --mass 0.5 --restitution 0.75 --time-step 0.004"
         pairs.append((at_step, "scipy.optimize"))

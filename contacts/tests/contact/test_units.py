@@ -135,7 +135,7 @@ def test_a_whole_number_beyond_all_floats_is_refused_in_one_line():
 
 def test_common_units_have_the_sizes_that_pint_gives_them():
     registry = units._registry()
-    for name, common in units._COMMON.items():
+    for name, common in units.COMMON.items():
         for unit, size in common.items():
             written = "standard_gravity" if (name, unit) == ("m/s^2", "g") else unit
             exact = registry.Quantity(1.0, registry.parse_units(written)).m_as(name)

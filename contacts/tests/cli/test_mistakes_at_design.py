@@ -98,7 +98,7 @@ BALL --frequency "1e-6 Hz" --acceleration "0.8 g"
     no stiffness: give --stiffness, or --contact-time
 --mass "20 g" --restitution 0.8 --engine mujoco --time-step "1 ms" --restitution-error 1e-12
     no contact shorter than 1000 s has its r within --restitution-error 1e-12 at --time-step
---mass "20 g" --from mujoco
+--mass "20 g" --from mujoco --solimp "1e-4"
     solref is missing: give it, such as the default of MuJoCo, '0.02 1'
 --mass "20 g" --from mujoco --solref "0.02,1"
     solref = '0.02,1' is not 2 numbers: write it without commas, '0.02 1'
@@ -124,10 +124,12 @@ BALL --json --plot
     argument --plot: expected one argument
 -m 20
     unrecognized arguments: -m 20; did you mean --mass?
---mass "1/2 kg" --stiffness 1e6 --restitution 0.8
-    --mass = 1/2 kg is a fraction: write '0.5 kg'
-BALL --engine mujoco --time-step 1/250
-    --time-step = 1/250 is a fraction: write '0.004'
+--mass "1/0 kg" --stiffness 1e6 --restitution 0.8
+    --mass = 1/0 kg is divided by 0
+--mass "1/2/3 kg" --stiffness 1e6 --restitution 0.8
+    --mass = 1/2/3 kg is not one number and a unit: write numbers such as 1500, 0.5 or 1e6
+BALL --engine mujoco --time-step "1/250 Hz"
+    --time-step = 1/250 Hz is a rate: did you mean '250 s'?
 BALL --engine mujoco --time-step "250 Hz"
     --time-step = 250 Hz is a rate: did you mean '0.004 s'?
 BALL --engine mujoco --time-step 125fps

@@ -32,10 +32,22 @@ def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     assert f"Laws:{','.join(LAWS)}.".replace("-", "") in shown
 
 
+def test_the_package_is_run_as_the_program(said):
+    module = [sys.executable, "-m", "bouncing_ball_contacts", "--version"]
+    done = subprocess.run(module, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == said("--version").strip()
+
+
 def test_what_an_answer_does_not_need_is_not_imported():
     call = "design --mass 1 --frequency 1 --acceleration 5 --restitution 0.9 --n 1"
     recipe = "design --engine mujoco --mass 1 --stiffness 1e5 --restitution 0.75"
-    pairs = ("--help", "numpy"), (call, "pint"), (recipe, "xarray"), (recipe, "pandas")
+    pairs = [("--help", "numpy"), (call, "pint"), (recipe, "xarray"), (recipe, "pandas")]
+    pairs += [(recipe, "bouncing_ball_contacts.contact.assess")]
+    described = "design --mass 1 --stiffness 1e5 --restitution 0.75 --json"
+    pairs += [(described, "scipy.optimize"), (f"{recipe} --json", "scipy.optimize")]
+    for engine in ("mujoco", "pybullet", "drake", "lammps"):
+        at_step = f"design --engine {engine} --mass 0.5 --restitution 0.75 --time-step 0.004"
+        pairs.append((at_step, "scipy.optimize"))
     for arguments, unneeded in pairs:
         code = (
             "import sys\n"

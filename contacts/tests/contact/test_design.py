@@ -400,7 +400,8 @@ def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():
     assert n_t.orbit(RestitutionModel(0.614), 4, 3.118).is_stable()
     assert found.n == 4 and "of the 4-T orbit" in found.verdict
     assert [one.exists for one in found.orbits if one.n == 4] == [False]
-    assert found.notes[0] == "at this Λ the contact has no 4-T orbit"
+    why = f"at this acceleration, Λ = {found.amplitude:.4g} times gravity, the contact has no"
+    assert found.notes[0] == f"{why} 4-T orbit"
 
 
 def test_a_tolerance_in_percent_and_one_with_many_digits():

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from asked_contacts import answered
+from installed_engines import only_if_installed
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball_contacts.engines.choice import ENGINES, engine_named
@@ -55,17 +56,24 @@ def test_a_restitution_is_wanted_of_the_parameters(solref):
     assert again.diagnosis == ()
 
 
-def test_a_damper_that_pulls_holds_the_ball_in_one_line(refusal):
+def test_a_damper_that_pulls_holds_the_ball_which_a_note_says(refusal, said):
     given = {"mass": 1.0, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 1000.0}}
-    with refusal(
-        ModelError, "it does not bounce, because ζ = 1.581 leaves r = 0 at most; with gam"
-    ):
-        answered(**given, restitution=0.7)
-    try:
-        answered(**given, restitution=0.7)
-    except ModelError as error:
-        (loss,) = re.findall(r"gamma_n = (\S+),", str(error))
+    found = answered(**given, restitution=0.7, speed="1 m/s")
+    (text,) = found.diagnosis
+    assert text.startswith("it does not bounce, because ζ = 1.581 leaves r = 0 at most; with gam")
+    (loss,) = re.findall(r"gamma_n = (\S+),", text)
     assert least(1e5, float(loss), 1.0, False) == pytest.approx(0.7, abs=2e-3)
+    # The ball sinks in and stays: there is no contact time, no r, and nothing that a step changes.
+    contact = found.found
+    assert contact.contact_time is None and contact.measured_restitution == 0
+    assert contact.static_deflection == pytest.approx(9.80665e-5)
+    assert found.dropped.rebound_height == 0 and found.dropped.remarks == ()
+    assert answered(**given, time_step=1e-5).at_step is None
+    options = ["--from=lammps", "--mass=1", "--set=kn=1e5", "--set=gamma_n=1000"]
+    assert "Note: it does not bounce" in said("design", *options)
+    # On a table that moves it is no answer.
+    with refusal(ModelError, "it does not bounce, because ζ = 1.581 leaves r = 0 at most"):
+        answered(**given, frequency="50 Hz", acceleration="2 g")
 
 
 def test_a_step_that_is_too_long_is_named():
@@ -77,6 +85,41 @@ def test_a_step_that_is_too_long_is_named():
     fine = answered(mass=1.0, from_engine="pybullet", parameters=given, time_step=step).at_step
     assert fine.error <= 0.0101 < answer.at_step.error
     assert np.isfinite(fine.mean) and "a contact takes 3.32 steps" in text
+
+
+@pytest.mark.parametrize("name", ["mujoco", "drake", "newton-semi-implicit"])
+def test_an_engine_without_parameters_has_its_defaults(name):
+    defaults = dict(ENGINES[name].defaults)
+    by_name = {key: defaults.pop(key) for key in ("solref", "solimp") if key in defaults}
+    given = answered(mass=1.0, from_engine=name, **by_name, parameters=defaults, restitution=0.8)
+    answer = answered(mass=1.0, from_engine=name, restitution=0.8)
+    assert answer.diagnosis == given.diagnosis != ()
+    assert answer.found.stiffness == given.found.stiffness
+    said, *others = answer.found.notes
+    assert said.startswith(f"these are the defaults of {name}: ") and tuple(others) == (
+        given.found.notes
+    )
+    # With the time step alone, too.
+    at_step = answered(mass=1.0, from_engine=name, time_step="1 ms").at_step
+    assert at_step.restitution == given.found.measured_restitution
+
+
+@pytest.mark.engines
+def test_the_defaults_are_those_of_the_engines():
+    only_if_installed("mujoco")
+    mujoco = pytest.importorskip("mujoco")
+    text = "<mujoco><worldbody><geom type='sphere' size='1'/></worldbody></mujoco>"
+    model = mujoco.MjModel.from_xml_string(text)
+    defaults = ENGINES["mujoco"].defaults
+    assert [float(x) for x in defaults["solref"].split()] == model.geom_solref[0].tolist()
+    assert [float(x) for x in defaults["solimp"].split()] == model.geom_solimp[0].tolist()
+    only_if_installed("drake")
+    geometry = pytest.importorskip("pydrake.geometry")
+    found = geometry.SceneGraphConfig().default_proximity_properties
+    assert ENGINES["drake"].defaults == {
+        "point_contact_stiffness": found.point_stiffness,
+        "relaxation_time": found.relaxation_time,
+    }
 
 
 def test_engines_of_physx_lead_to_what_is_known(refusal):

@@ -54,7 +54,7 @@ def test_a_ball_that_rests_differs_from_one_that_is_thrown_off():
     undecided = FinalMotion(Kind.PERMANENT_CONTACT, 1, 0, restitution_kind=Kind.UNDECIDED)
     below, above = (MotionJudgement(undecided, 0.01, 1, None, x) for x in (0.9, 2.0))
     assert not below.is_decided and "not known" in said_of_motion(below).verdict
-    assert above.is_decided and "Λ = 2 is above 1" in said_of_motion(above).verdict
+    assert above.is_decided and "with Λ = 2 times gravity" in said_of_motion(above).verdict
     assert not above.is_good_enough
 
 

@@ -64,8 +64,25 @@ def test_a_plain_number_is_in_si_units(name, value):
 
 
 @pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [
+        ("time_step", "1/240", 1 / 240),
+        ("time_step", "1 / 240 s", 1 / 240),
+        ("time_step", "2/3 ms", 2e-3 / 3),
+        ("mass", "1/2 kg", 0.5),
+        ("restitution", "3/4", 0.75),
+        ("stiffness", "1e6/4 N/m", 2.5e5),
+    ],
+)
+def test_a_fraction_of_two_numbers_is_a_number(name, text, value):
+    assert read(name, text) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(
     ("name", "value", "says"),
     [
+        ("time_step", "1/0 s", "is divided by 0"),
+        ("time_step", "1/240/2", "is not one number and a unit"),
         ("frequency", "20 ms", "is in millisecond, not in Hz: write it as '50 Hz'"),
         ("frequency", "314 s^-1", "turns or radians: write '314 Hz' or '314 rad/s'"),
         ("frequency", "5 Bq", "is in becquerel, not in Hz"),
@@ -118,7 +135,7 @@ def test_a_whole_number_beyond_all_floats_is_refused_in_one_line():
 
 def test_common_units_have_the_sizes_that_pint_gives_them():
     registry = units._registry()
-    for name, common in units._COMMON.items():
+    for name, common in units.COMMON.items():
         for unit, size in common.items():
             written = "standard_gravity" if (name, unit) == ("m/s^2", "g") else unit
             exact = registry.Quantity(1.0, registry.parse_units(written)).m_as(name)

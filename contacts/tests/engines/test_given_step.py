@@ -181,15 +181,15 @@ def test_of_a_contact_that_is_too_stiff_the_nearest_one_is_written(name):
 def test_the_retuned_damping_restores_the_mean_at_the_step():
     engine = ENGINES["mujoco"]
     ball = Physical(0.5, 1e5, 40.0)
-    asked = engine.settings(ball, time_step=1e-3)
-    tuned = Written(engine, ball, Release.FORCE).with_damping(asked.at_step.retuned)
-    at = tuned.at_step(1e-3, 0.001)
-    assert at.mean == pytest.approx(asked.at_step.restitution, abs=1e-8)
-    assert at.least < asked.at_step.restitution < at.most
+    written, asked = engine.at_step_of(engine.parameters(ball), ball.mass, 1e-3)
+    at = written.with_damping(asked.retuned).at_step(1e-3, 0.001)
+    assert at.mean == pytest.approx(asked.restitution, abs=1e-8)
+    assert at.least < asked.restitution < at.most
     # A compensated step alone damps more than the contact.
     engine = ENGINES["pybullet"]
-    coarse = Written(engine, ball, Release.FORCE).at_step(1e-3, 0.001)
-    assert coarse.mean < coarse.restitution and coarse.retuned is None
+    coarse = Written(engine, ball, Release.FORCE)
+    at = coarse.at_step(1e-3, 0.001)
+    assert at.mean < at.restitution and coarse.retuned(at, coarse) is None
 
 
 def test_the_contact_of_a_drop_test_rebounds_as_measured_at_the_step():

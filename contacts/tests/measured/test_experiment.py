@@ -197,7 +197,7 @@ HOSTILE = {
     "# a remark\ninterval\n0.5\n0.3\n0.4\n": "line 5, recording 1: 0.4 s after 0.3 s, where each",
     "recording,interval\n1,0.5\n1,0.3\n2,0.4\n2,0.6\n": "line 5, recording 2: 0.6 s after 0.4 s",
     HEAD + "1.0,\n": "line 2: restitution = ",
-    HEAD + "-1.0,0.8\n": "line 2: speed = -1",
+    HEAD + "-1.0,0.8\n1.0,0.8\n": "line 2: speed = -1",
     HEAD + "1 m/s,0.8 m\n": "line 2: restitution = 0.8 m",
     "speed [kg],restitution\n1,0.8\n": "line 1: speed = 1 kg is in",
     "speed,velocity\n1,0.8\n": "line 1: the columns must be drop_height and rebound_height; or",
@@ -259,6 +259,55 @@ def test_what_is_not_known_is_left_out_with_a_note(tmp_path, text):
     assert len(found.notes) == len(PASSED_OVER[text])
     for note, part in zip(found.notes, PASSED_OVER[text], strict=True):
         assert note.startswith("Left out: ") and part in note
+
+
+@pytest.mark.parametrize("sign", ["-", "\N{MINUS SIGN}"])
+def test_velocities_that_are_all_negative_are_speeds_with_a_note(tmp_path, refusal, sign):
+    file = tmp_path / "a.csv"
+    file.write_text(f"v_in,v_out\n{sign}2,1.6\n{sign}4,3\n", encoding="utf-8")
+    found = read(file)
+    plain = tmp_path / "b.csv"
+    plain.write_text("v_in,v_out\n2,1.6\n4,3\n", encoding="utf-8")
+    assert found.speeds.tolist() == read(plain).speeds.tolist() == [2.0, 4.0]
+    assert found.restitutions.tolist() == [0.8, 0.75]
+    (note,) = found.notes
+    assert note == "The velocities 'v_in' are all negative: their sizes are the speeds."
+    # The axis may point down instead.
+    file.write_text(f"v_in,v_out\n2,{sign}1.6\n4,{sign}3\n", encoding="utf-8")
+    assert read(file).restitutions.tolist() == [0.8, 0.75]
+    # If one of them has another sign, it is a mistake.
+    file.write_text("v_in,v_out\n-2,1.6\n4,3\n", encoding="utf-8")
+    with refusal(ModelError, "line 2: speed = -2 is not a number in"):
+        read(file)
+
+
+@pytest.mark.parametrize(
+    ("heading", "unit"),
+    [
+        ("interval_ms", 1e-3),
+        ("Interval ms", 1e-3),
+        ("interval_s", 1.0),
+        ("t_us", 1e-6),
+        ("t_ms", 1e-3),
+    ],
+)
+def test_a_unit_may_stand_behind_a_heading_without_brackets(tmp_path, heading, unit):
+    intervals = np.array([0.6, 0.54, 0.486])
+    heard = np.cumsum([0.0, *intervals]) if heading.startswith("t") else intervals
+    text = "\n".join([heading, *(f"{x / unit:.12g}" for x in heard)])
+    file = tmp_path / "a.csv"
+    file.write_text(text, encoding="utf-8")
+    assert read(file).restitutions == pytest.approx([0.9, 0.9], rel=1e-9)
+
+
+def test_speeds_with_a_unit_behind_the_heading(tmp_path, refusal):
+    file = tmp_path / "a.csv"
+    file.write_text("v_in cm/s,v_out_cm/s\n200,160\n", encoding="utf-8")
+    assert read(file).speeds.tolist() == [2.0]
+    # A word that is no unit of the column makes it another column.
+    file.write_text("v_in,v_out_left\n2,1\n", encoding="utf-8")
+    with refusal(ModelError, "not known: 'v_out_left'"):
+        read(file)
 
 
 def test_speeds_before_and_after_are_a_restitution(tmp_path):

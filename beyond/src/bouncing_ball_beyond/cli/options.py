@@ -1,6 +1,7 @@
 """The options of subcommands that the root's commands do not have."""
 
 import argparse
+import math
 from typing import Any
 
 from bouncing_ball.cli import options
@@ -54,9 +55,23 @@ def add_assignments(parser: Parser, name: str, text: str) -> None:
     )
 
 
+def _number(text: str) -> float:
+    """The number that a text represents, also as a fraction; NaN if it is no number.
+
+    Examples
+    --------
+    >>> _number("1/250"), _number("0.5"), _number("1/0"), _number("1/x")
+    (0.004, 0.5, nan, nan)
+    """
+    above, slash, below = text.partition("/")
+    number = options.to_number(above)
+    divisor = options.to_number(below) if slash else 1.0
+    return number / divisor if divisor else math.nan
+
+
 def _assignment(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
-    number = options.to_number(value)
+    number = _number(value)
     if not name.strip() or number not in Range():
         why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
         plain = value.lstrip("=")

@@ -4,9 +4,12 @@ from bouncing_ball.cli.commands import Command, Program
 from bouncing_ball_contacts.cli.advice import advice_of_design, advice_of_fit
 from bouncing_ball_contacts.cli.options import NAMES
 
+# Measured at 0.8 and 3 g: 2.2 and 4.4 s of a processor on a spring and a damper, 11 and 16 s on a
+# contact law, with a single n as well.
 _OF_DESIGN = (
-    "the orbits of eight families and the ends of many starts are computed, and each impact on a "
-    "contact law is integrated: a single family n, or a spring and a damper in place of a law"
+    "balls are followed over hundreds of impacts until their motion repeats, which takes four to "
+    "five times as long on a contact law as on a spring and a damper: a lower acceleration, or a "
+    "spring and a damper in place of a contact law,"
 )
 
 

@@ -7,17 +7,15 @@ A contact without a table is described. The answer is printed as JSON, as a page
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bouncing_ball.cli.options import Parser
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball_beyond.cli.options import add_file
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
-from bouncing_ball_contacts.cli.design_text import contact_numbers
+from bouncing_ball_contacts.cli.engine_text import contact_numbers
 from bouncing_ball_contacts.cli.options import add_optional, option
 from bouncing_ball_contacts.contact import rows
-from bouncing_ball_contacts.contact.assess import Assessment, LargestTimeStep, assess
-from bouncing_ball_contacts.contact.choose import choose
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import Description, describe_contact
 from bouncing_ball_contacts.contact.diagnose import diagnosis
@@ -34,6 +32,10 @@ from bouncing_ball_contacts.contact.write import (
 )
 from bouncing_ball_contacts.engines.drop_scripts import drop_script
 from bouncing_ball_contacts.engines.engine import ERROR, EngineSettings
+
+# It imports orbits, for longer than most recipes are computed.
+if TYPE_CHECKING:
+    from bouncing_ball_contacts.contact.assess import Assessment, LargestTimeStep
 
 # Parameters of which each implies that there is a table.
 _OF_TABLE = ("frequency", "table_amplitude", "acceleration")
@@ -56,12 +58,12 @@ def add_options(parser: Parser) -> None:
     """Add the options of :func:`design`."""
     add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
     add_file(parser, "script", "File for a script in Python that drops the ball in the engine.")
-    each = "By default a contact in an engine has no line, and each family one, unless n is given."
+    each = "By default a contact in an engine has no line, and each orbit one, unless n is given."
     parser.add_argument(
         option("all_families"),
         dest="all_families",
         action="store_true",
-        help=f"Print all numbers of the contact and of every family. {each}",
+        help=f"Print all numbers of the contact and of the orbits of every n. {each}",
     )
     for kind, names in _OPTIONS:
         add_optional(parser, kind, names)
@@ -132,7 +134,7 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
         require_writable(script, (".py",))
         text = drop_script(engine, contact.radius, found.case.table.gravity)
         script.write_text(text, encoding="utf-8")
-    if engine is not None and isinstance(found, Assessment):
+    if engine is not None and not isinstance(found, Description):
         found = replace(found, time_step=_step_of(engine))
     error = si.get("restitution_error", ERROR)
     if "restitution_error" in si and setup is None and contact.from_engine is None:
@@ -170,8 +172,11 @@ def _quantities_of(data: Any) -> dict[str, Any]:
 
 def _on_table(
     contact: Contact, table: Table, question: Question, written: str | None
-) -> Assessment:
+) -> "Assessment":
     """The assessment of the contact that is given, or of the one that is chosen."""
+    from bouncing_ball_contacts.contact.assess import assess
+    from bouncing_ball_contacts.contact.choose import choose
+
     with table.hinting():
         if contact.is_stiff:
             case = resolve(contact, table.motion, question.families, written)
@@ -182,8 +187,10 @@ def _on_table(
     return replace(found, hint=table.hint)
 
 
-def _step_of(engine: EngineSettings) -> LargestTimeStep:
+def _step_of(engine: EngineSettings) -> "LargestTimeStep":
     """The time step of an engine, which is the only one of the answer, and what r it has."""
+    from bouncing_ball_contacts.contact.assess import LargestTimeStep
+
     at = engine.at_step
     within = f"within {engine.error:g}" if at is None or at.is_within else at.span
     return LargestTimeStep(engine.time_step, f"r of a free impact in {engine.name} is {within}")

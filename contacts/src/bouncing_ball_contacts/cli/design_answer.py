@@ -1,8 +1,7 @@
 """The answer of ``bouncing-ball design`` about a contact."""
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from bouncing_ball_contacts.contact.assess import Assessment
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import Description
 from bouncing_ball_contacts.contact.drops import Dropped, drop_at_rest
@@ -12,6 +11,10 @@ from bouncing_ball_contacts.contact.table import Table
 from bouncing_ball_contacts.engines.drop_in_steps import DropInSteps
 from bouncing_ball_contacts.engines.engine import EngineSettings
 from bouncing_ball_contacts.engines.given_step import AtStep
+
+# It imports orbits, for longer than most recipes are computed.
+if TYPE_CHECKING:
+    from bouncing_ball_contacts.contact.assess import Assessment
 
 KINDS = (
     quantities(Contact)
@@ -34,7 +37,7 @@ class DesignAnswer(NamedTuple):
     numbers are printed, those of the contact in an engine and those of each family.
     """
 
-    found: Assessment | Description
+    found: "Assessment | Description"
     dropped: Dropped | None
     engine: EngineSettings | None
     at_step: AtStep | None

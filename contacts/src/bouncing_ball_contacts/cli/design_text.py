@@ -3,119 +3,49 @@
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
-from bouncing_ball_contacts.cli.engine_text import engine_lines, law_lines, line
-from bouncing_ball_contacts.cli.options import option
-from bouncing_ball_contacts.contact import rows
-from bouncing_ball_contacts.contact.assess import Assessment
+from bouncing_ball_contacts.cli.engine_text import contact_numbers, engine_lines, law_lines, line
 from bouncing_ball_contacts.contact.describe import Description
-from bouncing_ball_contacts.contact.families import ComparedOrbit, ErrorsByQuantity
-from bouncing_ball_contacts.contact.needed import Needed
-from bouncing_ball_contacts.contact.texts import lines, percent, shown, signed
+from bouncing_ball_contacts.contact.texts import lines, shown
 
-_SIMPLE = "error law", "corrected"
-# The row that has a range if parameters contain a time step.
-_FREE = "restitution of a free impact"
-# The row that an engine's time step takes the place of.
-_STEP = "largest time step"
 # More digits than a user types.
 _TYPED = 12
 # What has a default, and is said in the answer.
 _NOT_ECHOED = {"quantity", "tolerance", "restitution_error"}
 
 
-def contact_numbers(given: DesignAnswer) -> list[tuple[str, str]]:
-    """The numbers of the contact and of a drop, by name."""
-    dropped = [] if given.dropped is None else rows.texts(given.dropped)
-    found = rows.texts(given.found)
-    at = given.at_step
-    if at is not None and at.is_of_parameters and not at.is_within:
-        found = [(name, f"{at.span} at this step" if name == _FREE else x) for name, x in found]
-    return found + dropped
+def design_lines(given: DesignAnswer) -> list[str]:
+    """The answer as text, with the verdict first; for an engine, or parameters at a time step, with
+    what the contact does there.
+    """
+    found = given.found
+    by_itself = given.engine is None and given.at_step is None
+    numbers = []
+    if isinstance(found, Description):
+        if given.whole or by_itself:
+            numbers = _of_contact(given, found)
+    elif given.whole or given.engine is None:
+        # Imported here, because orbits are imported for longer than most recipes are computed.
+        from bouncing_ball_contacts.cli.table_text import table_numbers
 
-
-def _error(one: ComparedOrbit, quantity: Quantity) -> str:
-    """The errors of a quantity in all models, or which of them has no orbit."""
-    found = []
-    for model, errors in (
-        ("restitution", one.errors),
-        ("error law", one.law_errors),
-        ("corrected", one.corrected_errors),
-    ):
-        missing = _without(one, quantity, model)
-        if errors[quantity] is None and missing:
-            found.append("no contact orbit" if missing == "contact" else "no orbit")
-        else:
-            found.append(signed(errors[quantity]))
-    return line(f"    {QUANTITIES[quantity]}", *found)
-
-
-def _without(one: ComparedOrbit, quantity: str, model: str) -> str:
-    """The first of contact and model that lacks the orbit of a quantity; empty if both have it."""
-    if model == "error law":
-        # The law starts from an orbit of the restitution model, for the limits of orbits as well.
-        return "" if one.standing["restitution"].exists else "restitution"
-    if quantity not in OF_ORBITS:
-        return ""
-    if not one.exists:
-        return "contact"
-    return "" if one.standing[model].exists else model
-
-
-def _off(one: ComparedOrbit, need: Needed, model: str, errors: ErrorsByQuantity) -> str:
-    """The error of the judged quantity, or the reason why there is none."""
-    error = errors[need.quantity]
-    missing = _without(one, need.quantity, model)
-    if error is None and missing:
-        return f"no orbit ({missing})"
-    return signed(error, need.tolerance)
-
-
-def _family_lines(one: ComparedOrbit) -> list[str]:
-    lines = ["", f"{one.n}-T orbit", line("", *one.standing)]
-    for columns in zip(*map(rows.texts, one.standing.values()), strict=True):
-        lines.append(line(f"  {columns[0][0]}", *(text for _, text in columns)))
-    if one.exists:
-        lines += [line(f"  {name}", text) for name, text in rows.texts(one)]
-    holds = "error law" if one.law_holds else "law, out of range"
-    lines.append(line("  relative error", "restitution", holds, "corrected"))
-    return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
-
-
-def _short(found: Assessment) -> list[str]:
-    """One line for each family, and a line on the options that print the other results."""
-    need = found.needed
-    error = f"{QUANTITIES[Quantity(need.quantity)]} off by"
-    head = (
-        f"{'orbit':<9}{'stable':<9}{'greatest height':<18}{'peak force':<13}{error:<40}corrected by"
-    )
-    about = f"{option('n')} {found.n} prints all results for one, {option('all_families')} for all"
-    return ["", head, *(_one_line(one, need) for one in found.orbits), f"({about}.)"]
-
-
-def _one_line(one: ComparedOrbit, need: Needed) -> str:
-    of_contact = {row.key: row.text for row in rows.rows(one) if row.words}
-    height, force = (
-        of_contact[name,] if one.exists else "no orbit" for name in ("max_height", "peak_force")
-    )
-    return (
-        f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{height:<18}{force:<13}"
-        f"{_off(one, need, 'restitution', one.errors):<40}"
-        f"{_off(one, need, 'corrected', one.corrected_errors)}"
+        numbers = table_numbers(given, found)
+    return lines(
+        "design",
+        given=given,
+        found=found,
+        is_on_table=not isinstance(found, Description),
+        echo=_echo(given.question),
+        steps=engine_lines(given),
+        numbers=numbers,
     )
 
 
-def _whole(found: Assessment) -> list[str]:
-    """All results for each family."""
+def _of_contact(given: DesignAnswer, found: Description) -> list[str]:
+    """The numbers of the contact, with its release and its law."""
     return [
-        *(line for one in found.orbits for line in _family_lines(one)),
-        "",
-        # The error of the permanent contact is the same in all families.
-        line("relative error", "restitution", *_SIMPLE),
-        _error(found.orbits[0], Quantity.PERMANENT_CONTACT),
+        *(line(*row) for row in contact_numbers(given)),
+        line("release", found.release),
+        *law_lines(found),
     ]
 
 
@@ -141,66 +71,3 @@ def _plain(value: Any) -> str:
     if isinstance(value, dict):
         return " ".join(f"{name}={number:g}" for name, number in value.items())
     return str(value)
-
-
-def _ratio(value: float | None, status: str) -> str:
-    """The ϖ that is needed, or the reason why there is none: the model may have no orbit."""
-    return status if value is None else shown(value)
-
-
-def design_lines(given: DesignAnswer) -> list[str]:
-    """The answer as text, with the verdict first; for an engine, or parameters at a time step, with
-    what the contact does there.
-    """
-    found = given.found
-    by_itself = given.engine is None and given.at_step is None
-    numbers = []
-    if isinstance(found, Assessment) and (given.whole or given.engine is None):
-        numbers = _numbers(given, found)
-    elif isinstance(found, Description) and (given.whole or by_itself):
-        numbers = _of_contact(given, found)
-    return lines(
-        "design",
-        given=given,
-        found=found,
-        is_on_table=isinstance(found, Assessment),
-        echo=_echo(given.question),
-        steps=engine_lines(given),
-        numbers=numbers,
-    )
-
-
-def _of_contact(given: DesignAnswer, found: Description) -> list[str]:
-    """The numbers of the contact, with its release and its law."""
-    return [
-        *(line(*row) for row in contact_numbers(given)),
-        line("release", found.release),
-        *law_lines(found),
-    ]
-
-
-def _numbers(given: DesignAnswer, found: Assessment) -> list[str]:
-    """The numbers of the contact, the ϖ that the tolerance needs, and the families."""
-    need = found.needed
-    always = ThresholdStatus.ALWAYS_WITHIN
-    asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
-    exact, corrected = (
-        "any" if status == always else _ratio(value, status)
-        for value, status in (
-            (need.frequency_ratio, need.status),
-            (need.corrected, need.corrected_status),
-        )
-    )
-    by_engine = given.engine is not None
-    models = {"exact": exact, "error law": _ratio(need.by_law, need.status), "corrected": corrected}
-    if by_engine:
-        del models["error law"]
-    return [
-        *(line(*row) for row in contact_numbers(given) if not by_engine or row[0] != _STEP),
-        *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
-        *law_lines(found),
-        "",
-        line(asked, *models),
-        line("", *models.values()),
-        *(_whole(found) if given.whole else _short(found)),
-    ]

@@ -3,9 +3,11 @@
 The sentences are in ``templates/engine.txt.j2``.
 """
 
+from typing import TYPE_CHECKING
+
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.options import option
-from bouncing_ball_contacts.contact.assess import Assessment
+from bouncing_ball_contacts.contact import rows
 from bouncing_ball_contacts.contact.describe import Description
 from bouncing_ball_contacts.contact.drops import deep
 from bouncing_ball_contacts.contact.hertz import rayleigh_time
@@ -14,6 +16,12 @@ from bouncing_ball_contacts.engines.choice import engine_named
 from bouncing_ball_contacts.engines.drop_in_steps import Range
 from bouncing_ball_contacts.engines.engine import ERROR, EngineParameters, Written, without_step
 
+# It imports orbits, for longer than most recipes are computed.
+if TYPE_CHECKING:
+    from bouncing_ball_contacts.contact.assess import Assessment
+
+# The row that has a range if parameters contain a time step.
+_FREE = "restitution of a free impact"
 # More time steps in a contact than simulations have.
 _MANY = 100_000
 
@@ -23,7 +31,17 @@ def line(name: str, *columns: str) -> str:
     return f"{name:<38}" + "".join(f"{column + ' ':<18}" for column in columns).rstrip()
 
 
-def law_lines(found: Assessment | Description) -> list[str]:
+def contact_numbers(given: DesignAnswer) -> list[tuple[str, str]]:
+    """The numbers of the contact and of a drop, by name."""
+    dropped = [] if given.dropped is None else rows.texts(given.dropped)
+    found = rows.texts(given.found)
+    at = given.at_step
+    if at is not None and at.is_of_parameters and not at.is_within:
+        found = [(name, f"{at.span} at this step" if name == _FREE else x) for name, x in found]
+    return found + dropped
+
+
+def law_lines(found: "Assessment | Description") -> list[str]:
     """The parameters of a contact law, with their units."""
     values = dict(found.law or {})
     name = values.pop("name", "")

@@ -21,7 +21,7 @@ from bouncing_ball_contacts.measured.experiment import (
     experiment_names,
     read,
 )
-from bouncing_ball_contacts.measured.law_fit import LawFit
+from bouncing_ball_contacts.measured.law_fit import LawFit, orbit_speed
 from bouncing_ball_contacts.measured.verdicts import (
     JudgedLaw,
     RestitutionAtSpeed,
@@ -106,9 +106,13 @@ def fit(
     fitted = found.fit()
     judged = judge(fitted)
     best = fitted.best
+
+    def used(speed: float) -> float:
+        return restitution_at_speed(fitted, judged, speed).restitution
+
     if frequency is not None:
         # The impact speed of an orbit is the same at every amplitude.
-        v = best.speed_on(Table(frequency=frequency, acceleration="1 g"))
+        v = orbit_speed(Table(frequency=frequency, acceleration="1 g"), used)
     elif speed is not None:
         v = in_si("speed", speed, quantities(_At)["speed"])
     else:

@@ -20,7 +20,7 @@ The way of a contact through the modules:
     the numbers of a contact without a table; ``drops`` and ``rebounds`` have those of a drop
 ``numbers_of_contact``
     the numbers that the answers of ``assess``, ``choose`` and ``describe`` read from the contact
-``verdict``, ``notes``
+``verdict``, ``notes``, ``remarks``
     the sentences on these facts, written when they are shown: by the library, as text, JSON or page
 ``rows``, ``texts``, ``page_data``, ``page_figures``
     results as text, as JSON and on a page

@@ -19,10 +19,11 @@ from bouncing_ball_contacts.contact.families import ComparedOrbit, families
 from bouncing_ball_contacts.contact.judgement import MotionJudgement, OrbitJudgement
 from bouncing_ball_contacts.contact.motion import FinalMotion, of_family
 from bouncing_ball_contacts.contact.needed import Needed, finite, needed
-from bouncing_ball_contacts.contact.notes import notes, remarks
+from bouncing_ball_contacts.contact.notes import notes
 from bouncing_ball_contacts.contact.numbers_of_contact import NumbersOfImpact
 from bouncing_ball_contacts.contact.quantities import check_kinds
 from bouncing_ball_contacts.contact.question import Question
+from bouncing_ball_contacts.contact.remarks import remarks
 from bouncing_ball_contacts.contact.resolve import resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed
@@ -103,7 +104,7 @@ class Assessment(NumbersOfImpact):
         return f"Assessment(n={self.n}, is_good_enough={good}, verdict={self.verdict!r})"
 
     @property
-    def amplitude(self) -> Annotated[float, Listed("excitation amplitude Λ")]:
+    def amplitude(self) -> Annotated[float, Listed("table's acceleration over gravity, Λ")]:
         """Λ."""
         return self.case.table.amplitude
 

@@ -20,10 +20,10 @@ from bouncing_ball_contacts.contact.families import families
 from bouncing_ball_contacts.contact.hertz import reduced_modulus
 from bouncing_ball_contacts.contact.loss import of_loss
 from bouncing_ball_contacts.contact.needed import Needed, needed
-from bouncing_ball_contacts.contact.notes import remarks
 from bouncing_ball_contacts.contact.numbers_of_contact import NumbersOfImpact
 from bouncing_ball_contacts.contact.quantities import check_kinds
 from bouncing_ball_contacts.contact.question import Question
+from bouncing_ball_contacts.contact.remarks import remarks
 from bouncing_ball_contacts.contact.resolve import first_stable_family, resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.table import Table, TableMotion

@@ -30,7 +30,7 @@ from bouncing_ball_contacts.contact.quantities import (
     text_of_given,
 )
 from bouncing_ball_contacts.engines.choice import engine_named, engine_of
-from bouncing_ball_contacts.engines.engine import Engine
+from bouncing_ball_contacts.engines.engine import Engine, without_step
 from bouncing_ball_contacts.engines.laws import LAWS
 
 STIFF = ("stiffness", "contact_time", "penetration", "reduced_modulus", "youngs_modulus")
@@ -130,7 +130,8 @@ class Contact:
         Name of a contact law, such as hunt-crossley, in place of the linear one. It has the given
         restitution coefficient and contact time at the impact speed of the orbit.
     from_engine
-        Physics engine whose parameters are given, in place of stiffness and loss.
+        Physics engine whose parameters are given, in place of stiffness and loss. Without any of
+        them it has its defaults.
     solref
         For MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
     solimp
@@ -190,8 +191,8 @@ class Contact:
                 raise ParameterError(f"{{parameters}} solref={one:g} {why}")
         if self.from_engine is not None and not isinstance(self.from_engine, str):
             raise ParameterError("{from_engine} = {} is not a name", shortened(self.from_engine))
-        if self.from_engine is None and self.engine_parameters:
-            first = next(iter(self.engine_parameters))
+        if self.from_engine is None and self.named_parameters:
+            first = next(iter(self.named_parameters))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
         if self.from_engine is not None:
@@ -238,11 +239,29 @@ class Contact:
         return self.from_engine is not None or not given(self).keys().isdisjoint(STIFF)
 
     @property
-    def engine_parameters(self) -> dict[str, Any]:
+    def named_parameters(self) -> dict[str, Any]:
         """The parameters of an engine that are given, by name."""
         values = {name: getattr(self, name) for name in _OF_MUJOCO}
         values |= self.parameters or {}
         return {name: value for name, value in values.items() if value is not None}
+
+    @property
+    def defaults(self) -> Mapping[str, Any]:
+        """The parameters that the engine has by default, if none but the time step is given."""
+        if self.from_engine is None or without_step(self.named_parameters):
+            return {}
+        return engine_named(self.from_engine).defaults
+
+    @property
+    def engine_parameters(self) -> dict[str, Any]:
+        """The parameters of an engine by name: those that are given, or its defaults.
+
+        Examples
+        --------
+        >>> Contact(mass=1.0, from_engine="mujoco").engine_parameters["solref"]
+        '0.02 1'
+        """
+        return {**self.defaults, **self.named_parameters}
 
     @property
     def engine(self) -> Engine | None:

@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar
 from bouncing_ball.errors import ModelError, suggesting
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import deep
-from bouncing_ball_contacts.contact.notes import force_formula, remarks
 from bouncing_ball_contacts.contact.numbers_of_contact import NumbersOfContact
 from bouncing_ball_contacts.contact.quantities import Gravity, Speed, check_kinds, quantities
+from bouncing_ball_contacts.contact.remarks import force_formula, remarks
 from bouncing_ball_contacts.contact.resolve import needs_table, resolve
 from bouncing_ball_contacts.contact.resolved import ResolvedContact
 from bouncing_ball_contacts.contact.rows import Listed
@@ -63,7 +63,7 @@ class Description(NumbersOfContact):
     @property
     def contact_time(self) -> Annotated[float | None, Listed("contact time", "s")]:
         """Duration of a free impact in s."""
-        return None if self.case.lacks_speed else self.case.contact_time
+        return None if self.case.lacks_speed or self.case.holds else self.case.contact_time
 
     @property
     def measured_restitution(
@@ -127,6 +127,8 @@ def description_of(case: ResolvedContact) -> Description:
         If the contact is longer than any that is simulated, or is to be written for an engine
         whereas its r depends on the speed.
     """
+    if case.holds:
+        return Description(case)
     if not case.lacks_speed:
         require_short(case.contact_time)
     elif case.written is not None:

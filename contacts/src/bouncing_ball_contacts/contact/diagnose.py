@@ -43,13 +43,13 @@ of the same stiffness, r is 0.8 with small steps",)
     ball = engine.read(without_step(contact.engine_parameters), contact.mass)
     release = engine.release(contact.release)
     zeta = ball.damping_ratio
-    holds = zeta >= 1 and release is Release.DISPLACEMENT
+    holds = ball.holds(release)
     r = 0.0 if holds else ball.restitution(release)
     wanted = contact.restitution
     found = []
-    if zeta >= 1 or (wanted is not None and abs(r - wanted) > _NEAR):
+    if holds or zeta >= 1 or (wanted is not None and abs(r - wanted) > _NEAR):
         why = f"r is {r:.4g} with small steps, as ζ = {zeta:.4g}"
-        if zeta >= 1:
+        if holds or zeta >= 1:
             why = f"it does not bounce, because ζ = {zeta:.4g} leaves r = {r:.2g} at most"
         change = _with_restitution(engine, ball, _SOME if wanted is None else wanted, release)
         found.append(f"{why}; {change}")

@@ -116,13 +116,16 @@ def deep(depth: float, radius: float | None, when: str) -> tuple[str, ...]:
 def _remarks(case: ResolvedContact, found: Dropped) -> tuple[str, ...]:
     """What a user should know of a drop: gravity rules it, or the ball sinks in deeply."""
     said = deep(found.greatest_compression, case.given.radius, "in this drop")
-    free = float(case.law.signature(found.speed / case.table.length * case.table.time).restitution)
     resting = shown(case.static_deflection, "m")
+    # The damper is the reason, which another sentence gives.
+    if case.holds:
+        return said
     if found.restitution == 0:
         return (
             *said,
             f"gravity rules this contact: the ball does not rebound, it rests {resting} deep",
         )
+    free = float(case.law.signature(found.speed / case.table.length * case.table.time).restitution)
     if found.restitution < (1 - 10 * SLOWED) * free:
         less = shown(1 - found.restitution / free, "%")
         why = f"√(h′/h) is {less} below the r of a free impact, {free:.4g}"

@@ -73,13 +73,15 @@ def of_family(
     is_laid = first is None
     # A ball is laid on the table at the phase where the table moves down fastest.
     first = first or _Impact(np.pi, -case.table.amplitude)
-    # The exact model and the restitution model.
-    ends = {name: _end_of(case, name, first) for name in list(case.models)[:2]}
+    contact = next(iter(case.models))
+    ends = {contact: _end_of(case, contact, first)}
     if start is None and family.standing["restitution"].attracts:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
         orbit = n_t.orbit(case.models["restitution"], family.n, case.table.amplitude)
         impact = _Impact(float(orbit.phase), float(orbit.impact_velocity))
         ends["restitution"] = MotionName(Kind.ORBIT, family.n, 1), impact
+    else:
+        ends["restitution"] = _end_of(case, "restitution", first)
     exact, simple = (motion for motion, _ in ends.values())
     rests = Kind.PERMANENT_CONTACT in (exact.kind, simple.kind)
     repeat = exact.periods > 0 and simple.periods > 0

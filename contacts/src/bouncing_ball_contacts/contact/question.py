@@ -31,7 +31,8 @@ class Question:
     Parameters
     ----------
     n
-        Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
+        Index n of the orbits, which repeat after n periods of the table, with one impact. By
+        default n = 1 to 8, with a verdict on the first stable orbit.
     quantity
         Name of the quantity that must be accurate.
     tolerance
@@ -57,7 +58,7 @@ class Question:
         convert(self)
         one_of("quantity", self.quantity, {each: each for each in get_args(_Judged)})
         if self.n is not None and (isinstance(self.n, bool) or self.n not in FAMILY):
-            raise ModelError(f"index of the family n = {shortened(self.n)} is not {FAMILY}")
+            raise ModelError(f"index of the orbits n = {shortened(self.n)} is not {FAMILY}")
 
     @property
     def families(self) -> Sequence[int]:

@@ -32,6 +32,10 @@ _AROUND = 1001
 # steps from there to the half of the speed.
 _DECADES = 6
 _HALVES = 80
+# Speeds between which the last one is found, as many at once as take hardly longer than one, and
+# how closely its logarithm is found.
+_GRID = 33
+_CLOSE = 1e-10
 # A loss of r that is rounding of its signature.
 _ROUNDING = 1e-13
 
@@ -138,17 +142,17 @@ def greatest_loads(
     return found[0], found[1]
 
 
-def _restitution(law: ContactLaw, speed: float) -> float:
-    """r of a free impact; NaN if it does not end, as a fast one if the loss grows with the speed.
+def _restitutions(law: ContactLaw, speed: np.ndarray) -> np.ndarray:
+    """r of free impacts; NaN if one does not end, as a fast one if the loss grows with the speed.
 
     The signature of a law has this r too, but is computed with all its derivatives.
     """
     known = law.constant_signature
     if known is not None:
-        return float(known.restitution)
-    zero = np.zeros(1)
-    start = Start(depth=zero, rate=zero + speed, phase=zero, amplitude=zero, weight=zero)
-    return float(-march(law, start).rate[0] / speed)
+        return np.full(speed.shape, float(known.restitution))
+    zero = np.zeros(speed.shape)
+    start = Start(depth=zero, rate=speed, phase=zero, amplitude=zero, weight=zero)
+    return -march(law, start).rate / speed
 
 
 # An answer asks for it of the same contact several times.
@@ -171,15 +175,16 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     [0.99]
     """
 
-    @cache
     def restitution(logarithm: float) -> float:
-        return _restitution(law, math.exp(logarithm))
+        return float(_restitutions(law, np.exp([logarithm]))[0])
+
+    def surpluses(logarithms: np.ndarray) -> np.ndarray:
+        speed = np.exp(logarithms)
+        return np.sqrt(2 * rises(law, speed)) / speed - (1 - SLOWED) * _restitutions(law, speed)
 
     @cache
     def surplus(logarithm: float) -> float:
-        speed = np.exp([logarithm])
-        rebound = float((np.sqrt(2 * rises(law, speed)) / speed)[0])
-        return rebound - (1 - SLOWED) * restitution(logarithm)
+        return float(surpluses(np.array([logarithm]))[0])
 
     # A loss that grows with the speed stops fast balls.
     tried = (math.log(fast) - math.log(10) * np.arange(_DECADES)).tolist()
@@ -191,6 +196,14 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     for _ in range(_HALVES):
         lower = upper - math.log(2)
         if surplus(lower) < 0:
-            return math.exp(scipy.optimize.brentq(surplus, lower, upper, xtol=1e-10))
+            break
         upper = lower
-    return 0.0
+    else:
+        return 0.0
+    while upper - lower > _CLOSE:
+        grid = np.linspace(lower, upper, _GRID)
+        above = surpluses(grid) >= 0
+        # The ends are known.
+        first = 1 + int(np.argmax([*above[1:-1], True]))
+        lower, upper = grid[first - 1 : first + 1].tolist()
+    return math.exp((lower + upper) / 2)

@@ -17,16 +17,11 @@ from dataclasses import replace
 import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
-from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact import n_t
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
-from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
 from bouncing_ball_contacts.contact.contact import STIFF, Contact
 from bouncing_ball_contacts.contact.diagnose import diagnosis
 from bouncing_ball_contacts.contact.hertz import hertz, reduced_modulus
@@ -89,8 +84,6 @@ def resolve(
     0.1
     """
     plain = contact.by_stiffness_and_loss(written)
-    if written is None:
-        _require_rebound(contact, plain)
     kind = law_type(plain)
     is_stiff = single(given(plain), STIFF, "the stiffness of the contact") != ""
     modulus = reduced_modulus(plain)
@@ -99,7 +92,10 @@ def resolve(
     if not is_stiff:
         instead = "" if written is None else f", or the {{time_step}} of {written}"
         raise ParameterError(f"no stiffness: give {{stiffness}}, or {{contact_time}}{instead}")
-    if kind is None and modulus is None:
+    held = _held(contact, plain, table) if written is None else None
+    if held is not None:
+        found = ResolvedContact(plain, table, held, held)
+    elif kind is None and modulus is None:
         found = _spring_damper(plain, table, speed)
     else:
         found = _of_law(plain, table, families, kind, modulus, speed)
@@ -107,19 +103,25 @@ def resolve(
     return _with_law_of_engine(found, families)
 
 
-def _require_rebound(contact: Contact, plain: Contact) -> None:
-    """Refuse parameters of an engine in which the damper pulls and holds the ball.
+def _held(contact: Contact, plain: Contact, table: TableMotion) -> SpringDamper | None:
+    """The spring and damper of an engine's parameters with which the damper pulls and holds the
+    ball; None if it does not.
 
     Raises
     ------
     ModelError
-        With the least change after which the ball bounces.
+        If the table moves; with the least change after which the ball bounces.
     """
     engine = contact.engine
-    if engine is None or engine.needs_speed or plain.rule is not Release.DISPLACEMENT:
-        return
-    if engine.contact(contact.engine_parameters, contact.mass).damping_ratio >= 1:
+    if engine is None or engine.needs_speed:
+        return None
+    ball = engine.contact(contact.engine_parameters, contact.mass)
+    if not ball.holds(plain.rule):
+        return None
+    if not table.is_at_rest:
         raise ModelError("; ".join(diagnosis(contact, None)))
+    ratio = ball.angular_frequency / table.angular_frequency
+    return SpringDamper(ratio, ball.damping_ratio, plain.rule)
 
 
 def law_type(contact: Contact) -> type[ContactLaw] | None:
@@ -188,6 +190,9 @@ def _of_law(
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
     r = float(unit.restitution)
     if not table.is_at_rest:
+        # Imported here, because orbits are imported for longer than most recipes are computed.
+        from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
+
         at = float(rigid_speed(first_stable_family(families, r, table.amplitude), r))
     elif speed is None:
         what = "{radius}" if kind is None else "{law}"
@@ -242,6 +247,10 @@ def first_stable_family(
     >>> first_stable_family([1, 2, 3], 0.85, 1.1)
     2
     """
+    # Imported here, because orbits are imported for longer than most recipes are computed.
+    from bouncing_ball_beyond.models.rigid import RestitutionModel
+    from bouncing_ball_beyond.periodic.one_impact import n_t
+
     orbits = n_t.orbit(RestitutionModel(restitution), np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
@@ -264,6 +273,9 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
     if case.impact_speed is not None:
         at = case.impact_speed * case.table.time / case.table.length
         return _with_impact(case, law.signature(at))
+    from bouncing_ball_beyond.models.contact_model import ContactModel
+    from bouncing_ball_beyond.periodic.one_impact.searched_orbits import restitution_speed
+
     speed, impact = restitution_speed(asked, ContactModel(law), _LAST_STEP)
     n = first_stable_family(asked, impact.restitution, case.table.amplitude)
     return _with_impact(case, law.signature(float(speed[asked.index(n)])))

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, models_of_law
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.scales import rest
@@ -16,7 +15,6 @@ from bouncing_ball_beyond.models.laws.steady_contact import known_threshold
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.models.named_laws import model_name
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.rebounds import slowed
@@ -109,6 +107,11 @@ class ResolvedContact:
         return self.is_spring_damper and self.law.release.is_linear
 
     @property
+    def holds(self) -> bool:
+        """Whether the damper of an engine's parameters pulls and holds the ball."""
+        return self.is_linear and self.physical.holds(self.equivalent.release)
+
+    @property
     def integrated_law(self) -> ContactLaw | None:
         """The law that is integrated in time; None for a linear contact."""
         return None if self.is_linear else self.law
@@ -162,7 +165,9 @@ class ResolvedContact:
 
     @property
     def restitution(self) -> float:
-        """r of a free impact, for a law with an impact speed at that speed."""
+        """r of a free impact, for a law with an impact speed at that speed; 0 if none ends."""
+        if self.holds:
+            return 0.0
         impact = self._impact
         return float(self.equivalent.restitution if impact is None else impact.restitution)
 
@@ -192,8 +197,11 @@ class ResolvedContact:
     @property
     def slowed_speed(self) -> float | None:
         """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact: 0 if
-        it does at no speed, as without damping, and None if it lowers r by more at every speed.
+        it does at no speed, as without damping or without a bounce, and None if it lowers r by more
+        at every speed.
         """
+        if self.holds:
+            return 0.0
         if self.is_linear:
             zeta = float(self.equivalent.damping_ratio)
             # In units of 1/ω and g/ω² the contact has ϖ = 1.
@@ -216,6 +224,9 @@ class ResolvedContact:
         """
         if self.impact_speed is not None:
             return self.impact_speed
+        # Imported here, because orbits are imported for longer than most recipes are computed.
+        from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
+
         return float(rigid_speed(1, self.equivalent.restitution)) * self.unit_speed
 
     @property
@@ -242,6 +253,8 @@ class ResolvedContact:
         """The models by name: first the exact model, then the two simple models, in which r is
         that of a free impact.
         """
+        from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, models_of_law
+
         models = models_of_law(self.law, self.equivalent.restitution)
         exact = models[0].name if self.is_linear else model_name(self.law)
         return dict(zip((exact, *SIMPLE), models, strict=True))
@@ -252,6 +265,8 @@ class ResolvedContact:
         return self._interpolated_instant(n)._replace(restitution=self.equivalent.restitution)
 
     def _interpolated_instant(self, n: ArrayLike) -> Instant:
+        from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
+
         corrected: Any = self.models["corrected"]
         return corrected.signature(rigid_speed(n, self.equivalent.restitution))
 

@@ -33,7 +33,7 @@ _NAMED = 3
 
 _WORDS = {
     Kind.SUBHARMONIC: "on a subharmonic orbit",
-    Kind.LOCKED: "on a locked motion",
+    Kind.LOCKED: "on a motion that sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "at rest on the table",
     Kind.CHAOTIC: "in chaotic motion",
     Kind.UNDECIDED: "in no motion that is recognized",

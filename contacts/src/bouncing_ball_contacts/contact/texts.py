@@ -105,6 +105,8 @@ def _templates() -> Any:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        # A template is used once, so that constants in it are not worth a search.
+        optimized=False,
     )
     found.globals |= {each.__name__: each for each in (percent, shown, signed, in_place_of)}
     return found

@@ -1,6 +1,6 @@
 """Quantities with units, read at the interface: SI numbers inside.
 
-A text is a number followed by its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
+A text is a number, or a fraction of two, followed by its unit: ``50 Hz``, ``2e6 N/m``, ``1/240 s``.
 A plain number is in SI units. Pint receives the unit alone and never an expression, so that texts
 of a command line are not evaluated.
 
@@ -25,19 +25,21 @@ from bouncing_ball.errors import ParameterError, Range, shortened
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
 
-# The size of common units in SI units as they are written, by the SI unit of a parameter. They need
-# no pint, which takes as long as the rest of a recipe, and are hints on a wrong spelling.
-_COMMON: Mapping[str, Mapping[str, float]] = {
+COMMON: Mapping[str, Mapping[str, float]] = {
     "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},
     "Hz": {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "rad/s": 1 / (2 * math.pi)},
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9},
     "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
-    "m/s": {"m/s": 1.0, "mm/s": 1e-3, "km/h": 1 / 3.6},
+    "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6},
     "m/s^2": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": STANDARD_GRAVITY},
     "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
     "N*s/m": {"N s/m": 1.0, "kN s/m": 1e3, "N s/mm": 1e3, "kg/s": 1.0},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
 }
+"""The size of common units in SI units as they are written, by the SI unit of a parameter.
+
+They need no pint, which takes as long as the rest of a recipe, and are hints on a wrong spelling.
+"""
 # A frequency in 1/s, which pint takes for no angle at all.
 _PER_TIME = "does not say whether it counts turns or radians"
 _UNKNOWN = "has an unknown unit"
@@ -139,6 +141,8 @@ def number_in_si(name: str, value: Any, kind: SIParameter) -> float:
     (2000000.0, 2000000.0)
     >>> number_in_si("frequency", "3000 rpm", frequency)
     50.0
+    >>> number_in_si("time_step", "1/250", SIParameter("s", "1 ms"))
+    0.004
     >>> number_in_si("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
@@ -163,10 +167,16 @@ write it as '50 Hz'
         if found is None:
             raise wrong(f"does not begin with a number: {example}", repr(short))
         value, unit = found.groups()
+        if fraction := _OVER.fullmatch(unit):
+            below, unit = fraction.groups()
+            if float(below) == 0:
+                raise wrong("is divided by 0")
+            value = repr(float(value) / float(below))
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
         unit = str(value.units).replace("dimensionless", "")
         value = value.magnitude
-    if value is np.ma.masked:
+    # The first use of masked arrays imports them, which plain numbers do not need.
+    if not isinstance(value, str | float | int) and value is np.ma.masked:
         raise wrong("is masked: give a number", "a masked entry")
     try:
         plain = float(value)
@@ -196,15 +206,9 @@ def _not_one_number(value: str, rest: str) -> str:
     --------
     >>> _not_one_number("0", ",65")
     "has a comma: write '0.65' with a decimal point, or without the comma"
-    >>> _not_one_number("1", "/2 kg")
-    "is a fraction: write '0.5 kg'"
     >>> _not_one_number("20", " ± 1 g")
     'is not one number and a unit: write numbers such as 1500, 0.5 or 1e6'
     """
-    fraction = _OVER.fullmatch(rest)
-    if fraction is not None and float(fraction[1]) > 0:
-        quotient = f"{float(value) / float(fraction[1]):.12g} {fraction[2]}".rstrip()
-        return f"is a fraction: write '{quotient}'"
     if rest[0] == "," and rest.count(",") == 1:
         return f"has a comma: write '{value}.{rest[1:]}' with a decimal point, or without the comma"
     return "is not one number and a unit: write numbers such as 1500, 0.5 or 1e6"
@@ -215,7 +219,7 @@ def _spelling(unit: str, kind: SIParameter) -> str:
     if unit in (friends := _FALSE_FRIENDS.get(kind.name, {}) | _PARTS.get(kind.name, {})):
         return friends[unit]
     typed = _BETWEEN.sub("", unit).casefold()
-    for spelling in _COMMON.get(kind.name, ()):
+    for spelling in COMMON.get(kind.name, ()):
         if _BETWEEN.sub("", spelling).casefold() == typed:
             return spelling
     return ""
@@ -227,7 +231,7 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     For an acceleration the unit g means standard gravity and not the gram. A unit that is common
     for the parameter needs no pint.
     """
-    common = _COMMON.get(kind.name, {})
+    common = COMMON.get(kind.name, {})
     if unit in common:
         return _digits(value * common[unit]), ""
     registry = _registry()

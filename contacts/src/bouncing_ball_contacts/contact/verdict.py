@@ -33,7 +33,7 @@ _NO_CROSSING = {
 _DOES: Mapping[str, str] = {
     Kind.ORBIT: "settles on a periodic orbit, which repeats",
     Kind.SUBHARMONIC: "settles on a subharmonic orbit, which repeats",
-    Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
+    Kind.LOCKED: "settles on a motion that sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "comes to rest on the table",
     Kind.CHAOTIC: "ends in chaotic motion",
     Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",

@@ -8,13 +8,13 @@ error, or the stiffest one within an error that is given.
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
-from bouncing_ball_contacts.contact.assess import Assessment, assess
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.describe import LONGEST, Description, description_of
 from bouncing_ball_contacts.contact.hertz import MATERIALS
@@ -37,6 +37,10 @@ from bouncing_ball_contacts.engines.engine import (
 from bouncing_ball_contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.steps import InstantStep
+
+# It imports orbits, for longer than most recipes are computed.
+if TYPE_CHECKING:
+    from bouncing_ball_contacts.contact.assess import Assessment
 
 HEIGHT = 1.0
 """The height in m of the drop by which a contact is judged if no speed and no height is given."""
@@ -100,6 +104,9 @@ def write_contact(
     check_kinds("write_contact", **of, question=(asked, Question))
     if table is None:
         return settings_for(describe_for(contact, setup), setup)
+    # Imported here, because orbits are imported for longer than most recipes are computed.
+    from bouncing_ball_contacts.contact.assess import assess
+
     case = resolve(contact, table.motion, asked.families, setup.engine)
     return settings_for(assess(case, asked), setup)
 
@@ -180,7 +187,7 @@ def _height(contact: Contact, gravity: float, speed: float | None) -> float:
 
 
 def settings_for(
-    found: Assessment | Description, setup: EngineSetup, speed: float | None = None
+    found: "Assessment | Description", setup: EngineSetup, speed: float | None = None
 ) -> EngineSettings:
     """The settings for a contact, what a drop onto it does in the engine, and on a table the orbit
     that the engine will show.
@@ -196,7 +203,7 @@ def settings_for(
         not known what the engine does there.
     """
     case = found.case
-    judged = found.judged if isinstance(found, Assessment) else None
+    judged = None if isinstance(found, Description) else found.judged
     engine, law = _of_law(case, setup.engine, None if judged is None else judged.impact_speed)
     steps_known = law is None or engine.needs_speed
     if setup.time_step is not None and not steps_known:
@@ -332,7 +339,7 @@ def _of_law(case: ResolvedContact, name: str, speed: float | None) -> tuple[Engi
 
 
 def at_step_of_parameters(
-    found: Assessment | Description,
+    found: "Assessment | Description",
     time_step: float | None,
     error: float,
     speed: float | None = None,
@@ -363,7 +370,8 @@ def at_step_of_parameters(
     if own is not None and time_step is not None:
         raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
     step = own if time_step is None else time_step
-    if step is None:
+    # A ball that the damper holds has no impact whose r a step could change.
+    if step is None or case.holds:
         return None
     parameters = without_step(contact.engine_parameters)
     at_speed = speed if isinstance(found, Description) else found.judged.impact_speed

@@ -14,8 +14,9 @@
   instead, so that r is 0; below ``restitutionVelocityThreshold`` it is 0 as well; and
   ``contactERP`` adds up to its own value to r, as it pushes the ball out of the table.
 * *Newton*, SolverSemiImplicit and SolverFeatherstone: ke = k in N/m and kd = c in N s/m, averaged
-  over both shapes. The damper acts while the ball approaches only, and a step is one of
-  semi-implicit Euler. Newton computes with single precision.
+  over both shapes; by default, says its documentation, they are 2500 and 100. The damper acts while
+  the ball approaches only, and a step is one of semi-implicit Euler. Newton computes with single
+  precision.
 * *PhysX*, in Isaac Sim and Isaac Lab as well: the compliant contact of a material, with k in N/m
   and c in N s/m. Two materials of the same numbers have these numbers together, and so has one of
   them with a material that is not compliant. A step is one of implicit Euler, and the contact is
@@ -78,7 +79,13 @@ _ROWS = (
     ),
     DRAKE,
     MERCURYDPM,
-    proportional("newton-semi-implicit", ("ke", "kd"), (Release.APPROACH,), Scheme.SEMI_IMPLICIT),
+    proportional(
+        "newton-semi-implicit",
+        ("ke", "kd"),
+        (Release.APPROACH,),
+        Scheme.SEMI_IMPLICIT,
+        defaults={"ke": 2500, "kd": 100},
+    ),
     NEWTON_MUJOCO,
     GENESIS,
     proportional(

@@ -3,7 +3,7 @@ dissipation d of Hunt and Crossley, f = k p (1 + d p′) ≥ 0.
 
 Drake combines the parameters of two bodies: their springs are in series, and their relaxation times
 are added. If ball and table have the same parameters, these are 2k in N/m, and τ/2 = c/(2k) in s or
-d in s/m.
+d in s/m. The defaults of a body are those of ``SceneGraphConfig`` in Drake 1.51.
 
 A discrete plant with the approximation "sap" has the linear spring-damper, the other approximations
 have Hunt and Crossley's damper. This damper grows with the penetration, so that it cannot take back
@@ -92,6 +92,7 @@ DRAKE = Engine(
     scheme=Scheme.COMPENSATED,
     parameters=_by_relaxation_time,
     contact_of=lambda mass, double, half_time: (double / 2, double * half_time),
+    defaults={"point_contact_stiffness": 1_000_000, "relaxation_time": 0.1},
     laws={"hunt-crossley": HUNT_CROSSLEY},
 )
 """A discrete plant with the approximation "sap"."""

@@ -8,7 +8,6 @@ from importlib.resources import files
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy
 
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball_beyond.models.damping import Release
@@ -20,10 +19,17 @@ from bouncing_ball_contacts.engines.drop_in_steps import (
     drop_in_steps,
     restitutions_in_steps,
 )
-from bouncing_ball_contacts.engines.given_step import AtStep, at_step
-from bouncing_ball_contacts.engines.hunt_crossley_steps import at_step_of_law, missing_speed
+from bouncing_ball_contacts.engines.given_step import AtStep, at_step, retuned_damping
+from bouncing_ball_contacts.engines.hunt_crossley_steps import (
+    at_step_of_law,
+    missing_speed,
+    retuned_damping_of_law,
+)
 from bouncing_ball_contacts.engines.impacts import steps_for
-from bouncing_ball_contacts.engines.least_error import stiffness_of_least_error
+from bouncing_ball_contacts.engines.least_error import (
+    damping_of_least_error,
+    stiffness_of_least_error,
+)
 from bouncing_ball_contacts.engines.physical import Physical
 from bouncing_ball_contacts.engines.scheme import Scheme, compensated, represented
 from bouncing_ball_contacts.engines.settings import EngineParameters, EngineSettings
@@ -34,8 +40,6 @@ ERROR = 0.001
 
 # A whole number of steps is not rounded down.
 _ALMOST = 1 + 1e-9
-# Damping of a step or of a load is made up for by less than this multiple of that of the contact.
-_MOST_DAMPING = 3.0
 _PLACE = re.compile(r"@([\w.]+)@")
 _UNDERSCORE = re.compile("_([a-z])")
 _STEP = "time_step"
@@ -110,6 +114,9 @@ class Engine:
     instant : callable, optional
         How impacts that are instants with a given r are set, in words, if r is a number beside
         those of the contact.
+    defaults : mapping, optional
+        The parameters that a contact has in the engine if none are set, by name; empty if it then
+        has no contact that lasts, or one that this row does not describe.
     laws : mapping, optional
         The rows of the engine's other contact laws, by the names that users may give.
     written_law : type of ContactLaw, optional
@@ -139,6 +146,7 @@ class Engine:
         lambda parameters, _: (parameters, ())
     )
     instant: Callable[[float], str] | None = None
+    defaults: Mapping[str, Any] = field(default_factory=dict)
     laws: Mapping[str, "Engine"] = field(default_factory=dict)
     written_law: type[ContactLaw] | None = None
     text: str = ""
@@ -188,10 +196,15 @@ class Engine:
             mass = values.pop("mass", mass)
         if unknown := set(values) - set(self.names):
             names = " and ".join(self.names)
+            # The dampings of the engine's other laws, whose parameters are read as well.
+            others = [row.names[1] for row in self.laws.values() if row.needs_speed]
+            names = " or ".join([names, *others])
             first = sorted(unknown)[0]
             if first == _STEP:
                 names += ", and the step of any engine is given by --time-step or time_step"
-            meant = did_you_mean(first, self.names)
+            known = (*self.names, *others)
+            longer = [name for name in known if first.casefold() in name.casefold()]
+            meant = f"; did you mean {longer[0]}?" if longer else did_you_mean(first, known)
             raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}{meant}")
         if mass is None:
             raise ModelError(
@@ -257,7 +270,9 @@ class Engine:
         contact = self.contact(values, mass)
         law = self.law(values, contact.mass)
         found = Written(self, contact, rule, None if law is None else LawInSI(law, speed))
-        return found, replace(found.at_step(time_step, error, asked), remarks=remarks)
+        at = found.at_step(time_step, error, asked)
+        tuned = None if at.is_within else found.retuned(at, asked)
+        return found, replace(at, remarks=remarks, retuned=tuned)
 
     def settings(
         self,
@@ -389,7 +404,19 @@ class Written:
         if of.speed is None:
             raise missing_speed()
         wanted = None if asked is None or asked.of_law is None else asked.of_law.law
-        return at_step_of_law(of.law, of.speed, time_step, error, wanted)
+        return at_step_of_law(self.engine.name, of.law, of.speed, time_step, error, wanted)
+
+    def retuned(self, at: AtStep, asked: "Written") -> float | None:
+        """The damping of :meth:`with_damping` with which the mean r at the step of ``at`` is that
+        of the contact that was asked for; None if there is none.
+        """
+        of = self._by_speed
+        if of is not None:
+            return retuned_damping_of_law(at, of.law)
+        scheme = self.engine.scheme
+        # A compensated scheme is told the contact that was asked for, with another damping.
+        contact = asked.contact if scheme.is_compensated else self.contact
+        return retuned_damping(at, scheme, contact, self.release)
 
     def with_damping(self, damping: float) -> "Written":
         """The same with another damping, in N s/m, or in s/m if it is that of the law."""
@@ -496,18 +523,15 @@ class Written:
         restitution at the step of ``at``, and what it does there.
         """
 
-        def error(factor: float) -> float:
-            step = self.with_damping(factor * self.damping).step(at.time_step)
+        def error(damping: float) -> float:
+            step = self.with_damping(damping).step(at.time_step)
             half = self.engine.half_steps
             found = restitutions_in_steps(step, height, gravity, at.steps, half_steps=half)
             # A ball that rises higher than it fell is farther off than one that stays.
             gains = found.max() >= 1 > restitution
             return float(np.abs(found - restitution).max()) + gains
 
-        inner = scipy.optimize.minimize_scalar(error, bounds=(0.0, _MOST_DAMPING)).x
-        # The search does not reach its ends.
-        factor = min((0.0, inner), key=error)
-        found = self.with_damping(float(f"{factor * self.damping:.3g}"))
+        found = self.with_damping(damping_of_least_error(error, self.damping))
         return found, found.at_step(at.time_step, at.allowed, self)
 
     def suited(

@@ -18,7 +18,7 @@ the bounds of r are the limits at the jumps.
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -67,8 +67,9 @@ class AtStep:
     ``error`` is the largest difference from ``restitution``; ``is_within`` tells whether it is
     ``allowed``. ``mean`` is the mean r over all these instants. A ball that does not leave has r =
     0. The contact takes so many ``steps``; it is unstable if the steps of a lasting contact grow.
-    With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``; it is
-    None if no damping achieves that, or if the contact is within the error as it is. ``remarks``
+    With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``. It is
+    sought for parameters that are given; it is None if no damping achieves that, or if the contact
+    is within the error as it is. ``remarks``
     are sentences on how the engine changes the contact at this step, and ``is_of_parameters`` tells
     whether parameters that contain the step were given. If r depends on the impact ``speed`` in
     m/s, all this holds at this speed, and the damping is that of Hunt and Crossley in s/m.
@@ -333,7 +334,7 @@ def at_step(
             )
     step = contact.angular_frequency * time_step
     zeta = contact.damping_ratio
-    found = AtStep.of(
+    return AtStep.of(
         engine,
         time_step,
         wanted.contact_time(release) / time_step,
@@ -342,12 +343,15 @@ def at_step(
         error,
         is_stable=has_stable_steps(scheme, zeta, step),
     )
-    # A compensated scheme is told the contact that was asked for, with another damping.
-    tuned = wanted if scheme.is_compensated else contact
-    omega = tuned.angular_frequency
-    ratio = None
-    if not found.is_within:
-        ratio = retuned(scheme, tuned.damping_ratio, release, omega * time_step, r)
-    if ratio is None:
-        return found
-    return replace(found, retuned=2 * ratio * contact.mass * omega)
+
+
+def retuned_damping(
+    at: AtStep, scheme: Scheme, contact: Physical, release: Release
+) -> float | None:
+    """The damping in N s/m with which the mean r of a contact is the one that was asked for; None
+    if there is none. For a compensated scheme the contact is that before it compensates the step.
+    """
+    omega = contact.angular_frequency
+    step = omega * at.time_step
+    zeta = retuned(scheme, contact.damping_ratio, release, step, at.restitution)
+    return None if zeta is None else 2 * zeta * contact.mass * omega

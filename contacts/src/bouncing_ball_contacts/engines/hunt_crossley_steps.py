@@ -44,6 +44,7 @@ def spread_of_damping(damping: float, step: float, most: int) -> Spread:
 
 
 def at_step_of_law(
+    engine: str,
     law: LinearHuntCrossley,
     speed: float,
     time_step: float,
@@ -62,7 +63,7 @@ def at_step_of_law(
 
     Examples
     --------
-    >>> found = at_step_of_law(LinearHuntCrossley(2e5, 0.5), 1.0, 1e-3, 0.001)
+    >>> found = at_step_of_law("drake", LinearHuntCrossley(2e5, 0.5), 1.0, 1e-3, 0.001)
     >>> found.is_within, found.least < found.most < found.restitution
     (False, True)
     """
@@ -79,19 +80,23 @@ def at_step_of_law(
     h = math.sqrt(float(law.stiffness)) * time_step
     damping = float(law.damping) * speed
 
-    def found(ratio: float) -> Spread:
-        if steps > _MOST_STEPS:
-            return Spread(exact, exact, exact)
-        return spread_of_damping(ratio, h, patience(steps))
+    found = Spread(exact, exact, exact)
+    if steps <= _MOST_STEPS:
+        found = spread_of_damping(damping, h, patience(steps))
+    return replace(AtStep.of(engine, time_step, steps, wanted, found, error), speed=speed)
+
+
+def retuned_damping_of_law(at: AtStep, law: LinearHuntCrossley) -> float | None:
+    """The damping in s/m with which the mean r at the step is that of the law; None if none is."""
+    h = math.sqrt(float(law.stiffness)) * at.time_step
 
     def surplus(ratio: float) -> float:
-        return found(ratio).mean - exact
+        return spread_of_damping(ratio, h, patience(at.steps)).mean - at.restitution
 
-    of_law = AtStep.of("drake", time_step, steps, wanted, found(damping), error)
-    tuned = None
-    if not of_law.is_within and asked is None and surplus(0.0) >= 0:
-        tuned = float(scipy.optimize.brentq(surplus, 0.0, damping, xtol=_FINE))
-    return replace(of_law, retuned=None if tuned is None else tuned / speed, speed=speed)
+    if at.speed is None or surplus(0.0) < 0:
+        return None
+    damping = float(law.damping) * at.speed
+    return float(scipy.optimize.brentq(surplus, 0.0, damping, xtol=_FINE)) / at.speed
 
 
 def missing_speed() -> ParameterError:

@@ -1,4 +1,4 @@
-r"""The stiffness that suits a time step: the one whose r is nearest to the one asked for in a drop.
+r"""The contact that suits a time step: the one whose r is nearest to the one asked for in a drop.
 
 Two errors oppose each other. A stiff contact takes few steps, so that its r depends on where in a
 step the ball meets the wall; a compliant one is long, and gravity, which acts in it, takes
@@ -14,6 +14,11 @@ from bouncing_ball_contacts.engines.impacts import FEWEST
 # Steps in the contacts that are tried, in ratios of 3 %: the error is flat around its least value.
 _MOST = 512
 _RATIO = 1.03
+# Damping of a step or of a load is made up for by less than this multiple of that of the contact.
+_MOST_DAMPING = 3.0
+# Each grid of dampings lies between the neighbours of the best one of the grid before.
+_GRID = 13
+_GRIDS = 4
 # Beyond these multiples of the best contact and of its error, gravity only takes more.
 _FAR = 2.0
 
@@ -56,3 +61,31 @@ def stiffness_of_least_error(
         steps *= _RATIO
     assert best is not None
     return best
+
+
+def damping_of_least_error(error: Callable[[float], float], damping: float) -> float:
+    """The damping, with three digits, of which the greatest error of r is the least.
+
+    Parameters
+    ----------
+    error : callable
+        The greatest error of r with a damping; it has bends and jumps.
+    damping : float
+        That of the contact with small steps, in any unit.
+
+    Examples
+    --------
+    >>> damping_of_least_error(lambda damping: abs(damping - 1.234), 2.0)
+    1.23
+    >>> damping_of_least_error(lambda damping: damping, 2.0)
+    0.0
+    """
+    low = 0.0
+    high = _MOST_DAMPING * damping
+    for _ in range(_GRIDS):
+        tried = np.linspace(low, high, _GRID).tolist()
+        best = min(tried, key=error)
+        width = tried[1] - tried[0]
+        low = max(0.0, best - width)
+        high = best + width
+    return float(f"{best:.3g}")

@@ -264,6 +264,7 @@ MUJOCO = Engine(
     law=_law,
     remarks=_remarks,
     kept_stable=_kept_stable,
+    defaults={"solref": "0.02 1", "solimp": " ".join(f"{number:g}" for number in _DEFAULT)},
 )
 """The direct form of ``solref``, with the smallest impedance."""
 

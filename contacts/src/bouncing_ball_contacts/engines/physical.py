@@ -32,6 +32,20 @@ class Physical(NamedTuple):
         """ζ = c/(2mω) of the contact."""
         return self.damping / (2 * self.mass * self.angular_frequency)
 
+    def holds(self, release: Release) -> bool:
+        """Whether the damper pulls until the table's level, which the ball never reaches again.
+
+        Examples
+        --------
+        >>> ball = Physical(mass=1.0, stiffness=100.0, damping=20.0)
+        >>> ball.holds(Release.DISPLACEMENT), ball.holds(Release.FORCE)
+        (True, False)
+        """
+        if release is not Release.DISPLACEMENT:
+            return False
+        # Just below the critical damping r is too small for a number.
+        return self.damping_ratio >= 1 or self.restitution(release) == 0
+
     def restitution(self, release: Release) -> float:
         """r of a free impact under a release rule.
 

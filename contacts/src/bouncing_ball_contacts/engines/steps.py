@@ -302,7 +302,8 @@ def steps_inside(
     for _ in range(most):
         free = v - step.size * gravity
         # Without contact x + h free is the place after the step.
-        inside = np.minimum(x, x + step.ahead * step.size * free) < 0
+        first = np.minimum(x, x + step.size * free) if step.ahead else x
+        inside = first < 0
         if not inside.any():
             return
         after = step.velocity(x, v, free)

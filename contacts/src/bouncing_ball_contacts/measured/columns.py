@@ -9,13 +9,15 @@ The *heading* is the first line that names the columns of one of these ways to m
     interval                            the intervals between them
 
 A file with several ways is read by the first of them, because e and intervals may have been
-computed from the others. The heading may be in capitals, with its units in brackets. Columns are
-separated by commas, tabs or semicolons; beside tabs and semicolons, and in a single column, numbers
-may have decimal commas. Lines above the heading and columns that the way does not use are left out,
-with a note for each line and one for the columns; a column that only counts needs none.
+computed from the others. The heading may be in capitals, with its units in brackets or behind it,
+as in interval_ms. Columns are separated by commas, tabs or semicolons; beside tabs and semicolons,
+and in a single column, numbers may have decimal commas. Lines above the heading and columns that
+the way does not use are left out, with a note for each line and one for the columns; a column that
+only counts needs none.
 
-Numbers that a wrong unit explains better than a ball are refused: an impact speed above 100 m/s, a
-height above 100 m, and above 10 m if the heading names no unit.
+The numbers of a column of speeds that are all negative are read as velocities, with a note. Numbers
+that a wrong unit explains better than a ball are refused: an impact speed above 100 m/s, a height
+above 100 m, and above 10 m if the heading names no unit.
 """
 
 import csv
@@ -28,7 +30,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.errors import ModelError, ParameterError, Range
-from bouncing_ball_contacts.contact.units import SIParameter, number_in_si
+from bouncing_ball_contacts.contact.units import COMMON, SIParameter, number_in_si
 
 COLUMNS = {
     "speed": SIParameter("m/s", "1 m/s"),
@@ -74,6 +76,8 @@ _SPEED = re.compile(r"(?:v|speed|velocity) (?:(in|before)|out|after)(?: impact)?
 # Columns that only count.
 _COUNT = re.compile(r"(?:numbers?(?: of \w+)?|no\.?|nr\.?|n|#|index|events?|bounces?|impacts?|)")
 _HEADING = re.compile(r"([^\[\]]*)(?:\[(.*)\])?")
+# The hyphen and the minus sign.
+_MINUS = ("-", "\N{MINUS SIGN}")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 _FASTEST = 100.0
 HIGHEST = 100.0
@@ -132,13 +136,26 @@ def _heading(text: str) -> _Heading:
     found = _HEADING.fullmatch(text.translate(str.maketrans("()", "[]")))
     if found is None:
         return _Heading(text, None, "")
-    words = " ".join(found[1].casefold().replace("_", " ").split())
-    speed = _SPEED.fullmatch(words)
+    words = found[1].replace("_", " ").split()
+    name = _name(words)
+    unit = found[2] or ""
+    # A unit behind the words, without brackets.
+    if name is None and not unit and words:
+        name = _name(words[:-1])
+        unit = words[-1]
+        if name is not None and unit not in COMMON.get(COLUMNS[name].name, {}):
+            name = None
+    return _Heading(text, name, unit if name is not None else "")
+
+
+def _name(words: list[str]) -> str | None:
+    """The column that the words of a heading name, if they name one."""
+    text = " ".join(words).casefold()
+    speed = _SPEED.fullmatch(text)
     if speed is not None:
-        name = "speed" if speed[1] else "rebound_speed"
-    else:
-        name = _ALIASES.get(words, words.replace(" ", "_"))
-    return _Heading(text, name if name in COLUMNS else None, found[2] or "")
+        return "speed" if speed[1] else "rebound_speed"
+    name = _ALIASES.get(text, text.replace(" ", "_"))
+    return name if name in COLUMNS else None
 
 
 def _cells(line: str, mark: str) -> list[str]:
@@ -224,6 +241,7 @@ def read_columns(
         ]
     if not body:
         raise ModelError(f"{where} has no line of numbers")
+    notes += _without_signs(headings, used, body, leave_out)
     values = _values(where, used, body, leave_out)
     return Columns(values, [at for at, _ in body], leave_out, tuple(notes))
 
@@ -333,6 +351,26 @@ def _without_starts(
             kept.append((at, cells))
         seen.add(key)
     return kept, starts
+
+
+def _without_signs(
+    headings: list[_Heading],
+    used: dict[str, _Column],
+    body: list[tuple[int, list[str]]],
+    leave_out: tuple[int, ...],
+) -> list[str]:
+    """Take the signs from columns of velocities that are all negative; the notes on them."""
+    notes = []
+    for name in ("speed", "rebound_speed"):
+        if name not in used:
+            continue
+        place = used[name].place
+        if all(cells[place].startswith(_MINUS) for at, cells in body if at not in leave_out):
+            for _, cells in body:
+                cells[place] = cells[place].lstrip("".join(_MINUS))
+            text = headings[place].text
+            notes.append(f"The velocities {text!r} are all negative: their sizes are the speeds.")
+    return notes
 
 
 def _values(

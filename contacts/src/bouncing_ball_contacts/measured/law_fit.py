@@ -298,16 +298,29 @@ class LawFit:
 
     def speed_on(self, table: Table, n: int = 1) -> float:
         """Impact speed in m/s of the n-T orbit on a table, 2πn/(1 + r(v)) g/Ω."""
-        motion = table.motion
-        unit = motion.gravity / motion.angular_frequency
-        v = unit
-        for _ in range(_SPEEDS):
-            v = float(rigid_speed(n, self.restitution_at(v))) * unit
-        return v
+        return orbit_speed(table, self.restitution_at, n)
 
     def contact_on(self, table: Table, n: int = 1, mass: Any = None) -> Contact:
         """The contact at the impact speed of the n-T orbit on a table."""
         return self.contact(self.speed_on(table, n), mass)
+
+
+def orbit_speed(table: Table, restitution: Callable[[float], Any], n: int = 1) -> float:
+    """Impact speed in m/s of the n-T orbit on a table, 2πn/(1 + r(v)) g/Ω, with r as a function of
+    the speed in m/s.
+
+    Examples
+    --------
+    >>> v = orbit_speed(Table(frequency=1.0, acceleration=20.0, gravity=10.0), lambda v: 0.6)
+    >>> round(v * 1.6, 12)
+    10.0
+    """
+    motion = table.motion
+    unit = motion.gravity / motion.angular_frequency
+    v = unit
+    for _ in range(_SPEEDS):
+        v = float(rigid_speed(n, restitution(v))) * unit
+    return v
 
 
 def fit_law(curve: LawCurve, points: MeasuredPoints) -> LawFit:

@@ -69,6 +69,10 @@ class ForceLaw(Batch, ABC):
     """The units of all parameters, :data:`NUMBER` for a pure number. A law that has a name on the
     command line, or whose parameters are given in SI units, must declare them.
     """
+    formula: ClassVar[str] = ""
+    """The force as text, of mass m, stiffness k, damping C, depth x and its rate ẋ, if other
+    programs give these constants another meaning.
+    """
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 

@@ -139,6 +139,7 @@ class HuntCrossley(Hertz):
     """
 
     name: ClassVar[str] = "hunt-crossley"
+    formula: ClassVar[str] = "k x^1.5 (1 + C ẋ)"
     group_exponent: ClassVar[float] = 1.0
 
     units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s/m", 0, -1, 1)}
@@ -171,6 +172,7 @@ class LinearHuntCrossley(HuntCrossley):
     """
 
     name: ClassVar[str] = "hunt-crossley-linear"
+    formula: ClassVar[str] = "k x (1 + C ẋ)"
     root: ClassVar[int] = 1
     power: ClassVar[float] = 1.0
     units: ClassVar[dict[str, Unit]] = HuntCrossley.units | {"stiffness": Unit("N/m", 1, 0, -2)}
@@ -197,6 +199,7 @@ class KuwabaraKono(Hertz):
     """
 
     name: ClassVar[str] = "kuwabara-kono"
+    formula: ClassVar[str] = "k (x^1.5 + C √x ẋ)"
     group_exponent: ClassVar[float] = 0.2
     release = Release.FORCE
 
@@ -250,6 +253,7 @@ class Tsuji(Hertz):
     """
 
     name: ClassVar[str] = "tsuji"
+    formula: ClassVar[str] = "k x^1.5 + C √(m k) x^0.25 ẋ"
     root: ClassVar[int] = 4
 
     def __post_init__(self):

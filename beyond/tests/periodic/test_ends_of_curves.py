@@ -12,6 +12,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.periodic.restitution_branch import restitution_period_doubling
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 
 # Step of the central differences in 40 digits.
 STEP = mpf("1e-13")
@@ -344,8 +345,8 @@ def test_a_curve_of_grazings_ends_with_its_reason():
     assert last.startswith("the curve could not be continued beyond amplitude = 2.54, frequency")
     # δ = δ′ = δ″ = 0 there, by the motion of a ball that leaves as the first orbit does.
     one = next(found.states())
-    problem = one.problem("amplitude")
-    flight = problem.legs(one.point(problem)).departure.flight
+    problem, y = equations_of(one, "amplitude")
+    flight = problem.legs(y).departure.flight
     time = np.linspace(0.5, 1.1, 601)
     height, rate, second, _ = np.array([flight.gap(np.array([t])) for t in time])[..., 0].T
     at = np.argmin(np.abs(rate))

@@ -34,6 +34,7 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
     with_explained_ends,
 )
 from bouncing_ball_beyond.periodic.orbits.halves import halves, turns_apart, turns_of_half, twice
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short, solution_near
@@ -270,8 +271,8 @@ def branch_from(
     ParameterError
         If the balls have no such parameter.
     """
-    equations = start.problem(along)
-    here = point_near(equations, start.point(equations))
+    equations, guess = equations_of(start, along)
+    here = point_near(equations, guess)
     if increasing is None:
         increasing = to is None or bool(to > equations.values(here)[equations.along[0]])
     if towards is None:

@@ -18,6 +18,7 @@ from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import Condition
 from bouncing_ball.numerics.events import Event
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of, point_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
@@ -53,7 +54,7 @@ class PaperUnknowns:
     @classmethod
     def of(cls, orbit: Orbit) -> "PaperUnknowns":
         """The equations of given n-T orbits."""
-        equations = orbit.problem(LAMBDA)
+        equations, _ = equations_of(orbit, LAMBDA)
         dynamics = orbit.model.dynamics(1.0)
         oscillates = equations.selects and dynamics.contact is not None
         return cls(equations, dynamics.law.frequency_ratio if oscillates else 1.0)
@@ -87,7 +88,7 @@ class PaperUnknowns:
 
     def point(self, orbit: Orbit) -> np.ndarray:
         """y of n-T orbits, shape (..., N + 1)."""
-        return self.outer(orbit.point(self.equations))
+        return self.outer(point_of(orbit, self.equations))
 
     def outer(self, inner: np.ndarray) -> np.ndarray:
         """y at the unknowns (φ, δ′, D, arsinh Λ)."""

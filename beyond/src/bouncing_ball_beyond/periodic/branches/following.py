@@ -113,8 +113,12 @@ class Followed:
         """The orbits, and after them those at :attr:`special_points`, as one row, because its
         equations cost hardly more than those of a part of it.
         """
-        special = [each.point for each in self.special_points]
-        return orbits_on(self.problem, np.stack([*self.branch.points, *special]))
+        return orbits_on(self.problem, self.points_with_special)
+
+    @property
+    def points_with_special(self) -> np.ndarray:
+        """The points of the branch, and after them those of the special orbits."""
+        return np.stack([*self.branch.points, *(each.point for each in self.special_points)])
 
     @property
     def special_points(self) -> list[SpecialPoint]:

@@ -210,7 +210,7 @@ class Orbit(OrbitImpacts):
 
         def largest(part: OrbitImpacts) -> np.ndarray:
             problem, y = part.own_equations
-            return np.max(np.abs(problem.residual(y)), axis=-1)
+            return largest_defect(problem.residual(y))
 
         return number_or_row(of_existing(self, largest))
 
@@ -228,15 +228,7 @@ class Orbit(OrbitImpacts):
             problem, y = part.own_equations
             if part.kind:
                 problem, y = equations_of(part, part.along[0])
-            # Next to a release without speed the slopes are infinite.
-            with np.errstate(invalid="ignore", over="ignore"):
-                matrix = np.nan_to_num(problem.jacobian(y))
-                size = np.max(np.abs(matrix) @ np.abs(y)[..., np.newaxis], axis=(-2, -1))
-            largest = np.max(np.abs(y), axis=-1)
-            error = np.max(np.abs(problem.residual(y)), axis=-1) + _EPS * size
-            smallest = np.linalg.svd(matrix, compute_uv=False)[..., -1]
-            with np.errstate(divide="ignore"):
-                return np.maximum(np.log10(largest * smallest / error), 0.0)
+            return certain_digits(y, *problem.equations_at(y))
 
         return number_or_row(of_existing(self, digits))
 
@@ -251,6 +243,24 @@ class Orbit(OrbitImpacts):
         of_impacts = np.max(np.abs(np.broadcast_arrays(turned, longer, faster)), axis=(0, -1))
         larger = np.abs(np.asarray(self.amplitude) - other.amplitude)
         return number_or_row(np.maximum(of_impacts, larger))
+
+
+def largest_defect(residual: np.ndarray) -> np.ndarray:
+    """Largest absolute value of the defects of the equations, shape (...,) for (..., N)."""
+    return np.max(np.abs(residual), axis=-1)
+
+
+def certain_digits(y: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """:meth:`Orbit.digits_left` of points y, with the defects and the Jacobian there."""
+    # Next to a release without speed the slopes are infinite.
+    with np.errstate(invalid="ignore", over="ignore"):
+        matrix = np.nan_to_num(matrix)
+        size = np.max(np.abs(matrix) @ np.abs(y)[..., np.newaxis], axis=(-2, -1))
+    largest = np.max(np.abs(y), axis=-1)
+    error = largest_defect(residual) + _EPS * size
+    smallest = np.linalg.svd(matrix, compute_uv=False)[..., -1]
+    with np.errstate(divide="ignore"):
+        return np.maximum(np.log10(largest * smallest / error), 0.0)
 
 
 def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Orbit:

@@ -52,12 +52,16 @@ def test_differences_are_accurate_on_a_stiff_contact():
     power = np.array([1.0, 3.0, 1.0, 2.0])
     orbit = long_contact(20.0, 4.0)
     problem, here = equations_of(orbit, "amplitude")
-    held = permanent_contact_threshold(np.array([20.0, ratio]), damping_ratio(0.85))
+    ratios = np.array([20.0, ratio])
+    held = permanent_contact_threshold(ratios, damping_ratio(0.85))
     limit, origin = (np.array([np.pi / 2, 0, 2 * np.pi, np.arcsinh(lam)]) for lam in held)
     unit = ratio**-power
+    here[2] = np.sinh(here[2]) / 20.0
     y = origin + unit * 20.0**power * (here - limit)
+    y[2] = np.arcsinh(ratio * y[2])
     stiff = replace(problem, balls=problem.balls.at({"frequency_ratio": ratio}))
-    step = 1e-5 * unit
+    # With D = 2π, arsinh ϖD changes by dD/2π.
+    step = 1e-5 * unit / np.array([1.0, 1.0, 2 * np.pi, 1.0])
     moved = [stiff.residual(y + sign * np.diag(step)) for sign in (1, -1)]
     slopes = (moved[0] - moved[1]).T / (2 * step)
 

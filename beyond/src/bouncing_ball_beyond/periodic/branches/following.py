@@ -39,7 +39,7 @@ from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short, solution_near
 from bouncing_ball_beyond.periodic.orbits.special import Coordinates, Degenerate, Special
-from bouncing_ball_beyond.periodic.orbits.steps import PATIENT, STEPS
+from bouncing_ball_beyond.periodic.orbits.steps import PATIENT, STEPS, STEPS_OF_DECADES
 
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.
 # If there is no period doubling near, it is followed up to a smaller distance, several times.
@@ -235,6 +235,12 @@ def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) 
     return Window(low, min(high, _FARTHEST * max(abs(here), 1.0)))
 
 
+def _in_decades(equations: OrbitEquations, start: np.ndarray) -> bool:
+    """Whether the parameter is one of the law, and large."""
+    ((name, value),) = equations.values(start).items()
+    return name in equations.balls.model.numbers() and bool(value > 1)
+
+
 def branch_from(
     start: Orbit,
     along: str | Path = LAMBDA,
@@ -243,7 +249,7 @@ def branch_from(
     increasing: bool | None = None,
     towards: np.ndarray | None = None,
     within: Window | None = None,
-    control: StepControl = STEPS,
+    control: StepControl | None = None,
     most: int = 2000,
 ) -> Followed:
     """Follow an orbit along a parameter, up to a value, the end of the branch or of the range.
@@ -264,7 +270,9 @@ def branch_from(
         stands still, it chooses the side.
     within : Window, optional
         The range of the parameter; by default that of :func:`range_ahead`.
-    control : StepControl
+    control : StepControl, optional
+        By default :data:`.STEPS`, or :data:`.STEPS_OF_DECADES` along a parameter of the law that is
+        above 1 at the start, where arsinh is a logarithm.
     most : int
         Number of points after which the branch is left unfinished.
 
@@ -283,6 +291,8 @@ def branch_from(
         towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
     if within is None:
         within = range_ahead(equations, here, to)
+    if control is None:
+        control = STEPS_OF_DECADES if _in_decades(equations, here) else STEPS
     near = min(_NEAR, float(turns_apart(equations, here)) / 2)
     with np.errstate(all="ignore"):
         branch = _up_to_equal_turns(

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,9 +31,6 @@ from bouncing_ball_beyond.periodic.orbits.legs import (
 )
 from bouncing_ball_beyond.periodic.orbits.paths import balls_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # The fields with an entry for each impact.
 _OF_IMPACTS = ("turns", "phases", "velocities", "durations")
@@ -134,26 +131,6 @@ class OrbitImpacts(Suggesting, Batch):
     def __getstate__(self) -> dict[str, Any]:
         # Computed quantities are left out: the equations of an orbit hold functions.
         return {field.name: getattr(self, field.name) for field in fields(self)}
-
-    def to_dataset(self) -> xr.Dataset:
-        """The orbit, or a row of orbits, as a labelled dataset with the model and its parameters.
-
-        :func:`bouncing_ball_beyond.read_orbits` makes equal orbits from it, also from a netCDF file
-        of it.
-
-        Examples
-        --------
-        >>> from bouncing_ball_beyond import read_orbits
-        >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
-        >>> from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-        >>> orbit = Orbit.of(RestitutionModel(0.5), 1, 1.5, 0.7)
-        >>> read_orbits(orbit.to_dataset()) == orbit
-        True
-        """
-        # Imported here, because a single orbit needs no labels.
-        from bouncing_ball_beyond.periodic.orbits.saved import dataset_of
-
-        return dataset_of(self)
 
     # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 

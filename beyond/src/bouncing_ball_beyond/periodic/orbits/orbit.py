@@ -31,6 +31,7 @@ from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -147,6 +148,25 @@ class Orbit(OrbitImpacts):
         :meth:`history`.
         """
         return self.history().plot(path, ax=ax, size=size, font_size=font_size)
+
+    def to_dataset(self) -> xr.Dataset:
+        """The orbit, or a row of orbits, as a labelled dataset with the model and its parameters.
+
+        :func:`bouncing_ball_beyond.read_orbits` makes equal orbits from it, also from a netCDF file
+        of it.
+
+        Examples
+        --------
+        >>> from bouncing_ball_beyond import read_orbits
+        >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
+        >>> orbit = Orbit.of(RestitutionModel(0.5), 1, 1.5, 0.7)
+        >>> read_orbits(orbit.to_dataset()) == orbit
+        True
+        """
+        # Imported here, because a single orbit needs no labels.
+        from bouncing_ball_beyond.periodic.orbits.saved import dataset_of
+
+        return dataset_of(self)
 
     # Stability and admissibility.
 

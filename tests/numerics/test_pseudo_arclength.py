@@ -131,43 +131,6 @@ def test_a_branch_ends_exactly_at_the_bound_of_its_parameter():
     assert steps.max() == pytest.approx(StepControl().largest, rel=EXACT)
 
 
-def in_a_plane(bound):
-    """The end of a branch at p = ``bound``, as an event that is linear in y."""
-
-    def condition(y):
-        return bound - y[..., 1], np.broadcast_to([0.0, -1.0], y.shape)
-
-    event = parameter_bound(bound, True, "window")
-    return Event(event.name, event.function, True, event.reason, condition, is_linear=True)
-
-
-def test_a_step_ends_in_the_plane_of_a_linear_event():
-    """The point there is that which is located after a step beyond it, with other events
-    located before it and none beyond it.
-    """
-    before, beyond = (Event(str(p), lambda y, p=p: p - y[..., 1]) for p in (0.59, 0.61))
-    control = StepControl(largest=0.1)
-    found, located = (
-        along(CIRCLE, 1.0, 0.0, events=[before, beyond, end], control=control)
-        for end in (in_a_plane(0.6), parameter_bound(0.6, True, "window"))
-    )
-    for branch in (found, located):
-        assert str(branch.end) == "window"
-        assert [special.name for special in branch.special] == ["0.59", "parameter bound"]
-        assert branch.points[-1] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
-        assert branch.tangents[-1] == pytest.approx(np.array([-0.6, 0.8]), abs=EXACT)
-    assert len(found.points) == len(located.points)
-
-
-def test_a_branch_that_runs_along_a_plane_is_not_corrected_in_it():
-    """At p = 1 - 1e-4 the circle makes an angle of 0.014 with the line p = constant."""
-    bound = 1 - 1e-4
-    start = np.array([np.sqrt(1 - (1 - 2e-4) ** 2), 1 - 2e-4])
-    branch = along(CIRCLE, *start, events=[in_a_plane(bound)])
-    assert str(branch.end) == "window"
-    assert branch.points[-1] == pytest.approx(np.array([np.sqrt(1 - bound**2), bound]), abs=1e-10)
-
-
 def test_events_of_one_step_come_in_order_and_none_after_the_end():
     # All within one step of 0.2, given out of order; the last is behind the end.
     def at(p, name, terminal=False):

@@ -9,8 +9,7 @@ in order, up to the first step between neighbours at which the corrector fails, 
 turns too much, or on which an event cannot be located. If this is the first of them, the next round
 tries several shorter steps in its place, of which the longest one that succeeds is taken.
 :class:`StepControl` chooses the steps. The branch ends at a terminal event, where no step is short
-enough, or after a given number of points. A prediction beyond a terminal event that is linear in y,
-such as an end of the parameter's range, is moved into the plane of this event and corrected there.
+enough, or after a given number of points.
 
 Several branches are followed side by side for the same reason. Each branch has steps of its own and
 ends on its own, so that it is the same as if it were followed alone.

@@ -48,9 +48,6 @@ class Event:
         The reason why the branch ends at a terminal event, as a sentence.
     condition : callable, optional
         g(y) with its gradient; by default the gradient is a central difference.
-    is_linear : bool
-        Whether g is linear in y, as the distance of a parameter from an end of its range. A
-        terminal event of this kind is met by a step that ends in the plane g = 0.
     """
 
     name: str
@@ -58,7 +55,6 @@ class Event:
     terminal: bool = False
     reason: str = ""
     condition: Condition | None = None
-    is_linear: bool = False
 
     def locate(
         self,

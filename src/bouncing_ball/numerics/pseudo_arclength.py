@@ -31,11 +31,8 @@ from bouncing_ball.numerics.corrector import (
     satisfies,
     tangent,
 )
-from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import Attempt, State, StepControl, Way, WithEvents, end_at
 
-# A branch is steep to a plane if the sine of the angle between them is above this.
-_STEEP = 0.1
 # The planes of a round are normal to one tangent, so that its steps become longer as the branch
 # turns. A round ends before a step that is longer than intended by this factor.
 _STRETCHED = 1.25
@@ -115,13 +112,7 @@ def _attempts(
     steps = np.concatenate([steps for steps, _ in plans])
     distance = np.concatenate([distances for _, distances in plans])[:, np.newaxis]
     predicted = point + distance * (along + distance / 2 * curvature)
-    normal = along.copy()
-    limit: list[Event | None] = [None] * len(predicted)
-    for event in events:
-        if event.is_linear:
-            for row in np.flatnonzero(_onto_limit(event, point, predicted, normal)):
-                limit[row] = event
-    found = newton(problem, predicted, plane(normal, predicted))
+    found = newton(problem, predicted, plane(along, predicted))
     # A branch whose corrector failed stays where it is.
     reached = np.where(found.converged[:, np.newaxis], found.point, point)
     ahead = tangent(problem.jacobian(reached), along)
@@ -138,29 +129,8 @@ def _attempts(
         for k, event in enumerate(events):
             values[:, k] = event.function(reached)
     columns = steps, found.converged, found.residual, found.iterations, angle
-    known = (column.tolist() for column in columns)
-    rows = zip(reached, ahead, values, *known, limit, strict=True)
+    rows = zip(reached, ahead, values, *(column.tolist() for column in columns), strict=True)
     return [[Attempt(*row) for row in islice(rows, count)] for count in counts]
-
-
-def _onto_limit(
-    event: Event, start: np.ndarray, predicted: np.ndarray, normal: np.ndarray
-) -> np.ndarray:
-    """Which predictions lie beyond a plane at which a branch ends; they are moved into it, and the
-    planes of their correctors become this plane.
-    """
-    assert event.condition is not None
-    before = event.function(start)
-    after, gradient = event.condition(predicted)
-    beyond = (before > 0) & (after < 0)
-    chord = predicted - start
-    share = np.where(beyond, before / np.where(beyond, before - after, 1.0), 1.0)[:, np.newaxis]
-    # A branch that runs along the plane is not corrected in it.
-    steep = np.abs((gradient * normal).sum(axis=-1)) > _STEEP * np.linalg.norm(gradient, axis=-1)
-    met = beyond & steep
-    predicted[met] = (start + share * chord)[met]
-    normal[met] = gradient[met]
-    return met
 
 
 def _angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:

@@ -103,7 +103,6 @@ class State(NamedTuple):
 class Attempt(NamedTuple):
     """A corrected next point of a branch, with the tangent and the values of the test functions.
 
-    ``limit`` is the terminal event in whose plane the point lies, if it does.
     ``step`` is the one from the point before. ``angle`` is the larger one of those that the tangent
     and the chord make with the tangent there, NaN if the Jacobian is not defined.
     """
@@ -116,7 +115,6 @@ class Attempt(NamedTuple):
     residual: float
     iterations: int
     angle: float
-    limit: Event | None = None
 
 
 class _Rejected(Exception):
@@ -225,10 +223,9 @@ class Way:
         curvature = (attempt.tangent - state.tangent) / moved
         reached = State(attempt.point, attempt.tangent, curvature, attempt.values)
         problem, events = tested
-        changes = changes_of_sign(events, state.values, attempt.values)
-        changed = [change for change in changes if change.event is not attempt.limit]
+        changed = changes_of_sign(events, state.values, attempt.values)
         if not changed:
-            return self._at_limit(reached, attempt.limit)
+            return reached, None
         tangents = state.tangent, attempt.tangent
         passage = locate_all(problem, changed, state.point, attempt.point, tangents)
         if passage.missed is not None:
@@ -238,20 +235,13 @@ class Way:
             raise _Rejected(event.reason or why, event.terminal)
         self.special.extend(passage.special)
         if passage.terminal is None:
-            return self._at_limit(reached, attempt.limit)
+            return reached, None
         point = passage.special[-1].point
         matrix = problem.jacobian(point)
         # At the end of its domain the derivative may be undefined; the branch keeps its direction.
         defined = np.all(np.isfinite(matrix))
         ahead = tangent(matrix, attempt.tangent) if defined else attempt.tangent
         return State(point, ahead, curvature, np.empty(0)), end_at(passage.terminal)
-
-    def _at_limit(self, reached: State, limit: Event | None) -> tuple[State, End | None]:
-        """The next state, which is the end of the branch if it lies in the plane of a limit."""
-        if limit is None:
-            return reached, None
-        self.special.append(SpecialPoint(limit.name, reached.point))
-        return reached, end_at(limit)
 
     def branch(self) -> Branch:
         """The branch; without an end it is left unfinished."""

@@ -113,7 +113,6 @@ class PaperUnknowns:
             event,
             function=lambda y: event.function(self.inner(y)),
             condition=None if known is None else self.condition(known),
-            is_linear=False,
         )
 
     def condition(self, known: Condition) -> Condition:

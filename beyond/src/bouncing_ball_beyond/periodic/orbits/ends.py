@@ -263,7 +263,7 @@ def _limit(bound: float, sign: float, column: int, reason: str) -> Event:
         gradient[..., column] = sign
         return inside(y), gradient
 
-    return Event(BOUND, inside, True, reason, condition, is_linear=True)
+    return Event(BOUND, inside, True, reason, condition)
 
 
 def with_explained_ends(

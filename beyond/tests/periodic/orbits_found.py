@@ -40,8 +40,8 @@ def first(found, kind):
 
 def legs_of(orbit):
     """The contacts and flights of an orbit."""
-    problem = orbit.problem()
-    return problem.legs(orbit.point(problem))
+    problem, y = orbit.own_equations
+    return problem.legs(y)
 
 
 # Model, impacts, periods, r, ϖ, Λ, φ and z′ of an impact: found by a random search.

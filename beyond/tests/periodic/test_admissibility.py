@@ -20,6 +20,7 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     orbits_on_branch,
 )
 from bouncing_ball_beyond.periodic.orbits.domain_limits import domain_limits
+from bouncing_ball_beyond.periodic.orbits.motion import flight_path
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 
@@ -39,7 +40,7 @@ def sampled(orbit):
     lam = orbit.amplitude
     flow = SpringDamper(omega, zeta).flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam)
     time = orbit.contact_duration + SHARES * orbit.flight_time
-    height, velocity = orbit.flight_path(time)
+    height, velocity = flight_path(orbit, time)
     over = height - lam * np.sin(orbit.phase + time)
     signal = flow.displacement
     if orbit.law.release is Release.FORCE:

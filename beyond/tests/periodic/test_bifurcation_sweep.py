@@ -48,7 +48,7 @@ def test_every_bifurcation_found_has_a_multiplier_of_plus_or_minus_one(release, 
     # The rounding of a phase after n turns moves the speed of the table by Λ 2πn ε, of which the
     # entries have the part over the slowest speed of the ball.
     slowest = np.minimum(-orbit.relative_impact_velocity, orbit.relative_bounce_velocity)
-    value = np.abs(KINDS[kind](trace, orbit.determinant()))
+    value = np.abs(KINDS[kind](trace, orbit.trace_and_determinant()[1]))
     # Balls that rise at the impact, or fall at the release, follow no orbit, and land with another
     # rounding.
     bounces = slowest > 0

@@ -22,6 +22,7 @@ from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
 from bouncing_ball_beyond.periodic.orbits.domain_limits import domain_limits
 from bouncing_ball_beyond.periodic.orbits.halves import turns_apart, twice
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of, point_of
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 from bouncing_ball_beyond.periodic.orbits.special import Special
@@ -278,7 +279,7 @@ def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
         rises = there.branch.tangents[-2, -1] > 0
         back = branch_from(last, increasing=not rises, most=120)
         # The phases of the last orbit are between -π and π; those of the branch may have left it.
-        start = orbit.point(there.problem)
+        start = point_of(orbit, there.problem)
         phases, _ = there.problem.states(there.branch.points[-2])
         turned = np.round((last.phases - phases) / (2 * np.pi))
         start[: 2 * orbit.impacts : 2] += 2 * np.pi * turned
@@ -372,8 +373,7 @@ def test_a_branch_with_an_even_number_of_impacts_passes_a_difference_of_half_a_t
 def test_an_orbit_with_an_odd_number_of_periods_has_no_halves():
     """Its second half never repeats the first, because the table is at another phase."""
     case = bouncing_ball_beyond.orbit(bouncing_ball_beyond.rigid(restitution=0.5), 3, amplitude=4.0)
-    once = case.problem("amplitude")
-    whole, y = twice(once, case.point(once))
+    whole, y = twice(*equations_of(case, "amplitude"))
     assert turns_apart(whole, y) == 0.0
     odd = replace(whole, turns=np.array([1, 2]))
     assert turns_apart(odd, y) == 1.0

@@ -13,6 +13,7 @@ from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import plane
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.short_steps import ShortSteps, newton_short
 from bouncing_ball_beyond.periodic.orbits.special import Special
@@ -46,7 +47,7 @@ def touching(orbit, amplitude, duration, leaving):
 
 def with_a_slow_impact(orbit, amplitude, duration, leaving):
     """The orbit with two impacts beside the 1-T orbit whose flight grazes."""
-    problem = orbit.problem("amplitude")
+    problem, _ = equations_of(orbit, "amplitude")
     aloft, _ = touching(orbit, amplitude, duration, leaving)
     phase = orbit.phase
     second = phase + duration + aloft

@@ -1,7 +1,5 @@
 """Observables of orbits, their distances and derivatives."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from orbits_found import FOUND, found_orbit
@@ -18,6 +16,10 @@ from bouncing_ball_beyond.periodic.one_impact.spring_damper_branch import (
     branch_point,
     orbits_of_points,
 )
+from bouncing_ball_beyond.periodic.orbits import motion
+from bouncing_ball_beyond.periodic.orbits.highest import about_highest
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
+from bouncing_ball_beyond.periodic.orbits.motion import contact_path, in_contacts
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 
@@ -28,17 +30,17 @@ def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
     orbit = orbit_at(SpringDamper(omega, float(damping_ratio(r))), 1, lam)
     assert float(orbit.bounce_velocity) < 0
     time = np.linspace(0, float(orbit.contact_duration), 201)
-    k = np.argmax(orbit.contact_path(time)[0])
-    top = brentq(lambda at: orbit.contact_path(at)[1], time[k - 1], time[k + 1])
+    k = np.argmax(contact_path(orbit, time)[0])
+    top = brentq(lambda at: contact_path(orbit, at)[1], time[k - 1], time[k + 1])
     # A height of order one, with the square of the time's error.
-    assert float(orbit.max_height) == pytest.approx(orbit.contact_path(top)[0], abs=1e-13)
+    assert float(orbit.max_height) == pytest.approx(contact_path(orbit, top)[0], abs=1e-13)
 
 
 @pytest.mark.parametrize("case", [case for case in FOUND if case[1] > 1], ids=str)
 def test_a_ball_leaves_each_contact_where_the_flight_to_the_next_impact_begins(case):
     # Also before a contact that resumes below the table's level.
     orbit = found_orbit(case)
-    gap, _ = orbit._in_contact(orbit.durations)
+    gap, _ = in_contacts(orbit, orbit.durations)
     released = gap + orbit.amplitude * np.sin(orbit.phases + orbit.durations)
     # The starts of the orbits have eight digits.
     assert orbit.bounce_height == pytest.approx(released, abs=1e-6)
@@ -59,20 +61,17 @@ def test_the_distance_of_orbits_is_their_largest_difference():
     assert float(Orbit.of(**base).distance(orbit)) < 1e-14
     for name in ("amplitude", "phase", "contact_duration", "impact_velocity"):
         moved = Orbit.of(**base | {name: base[name] + 1e-3})
-        size = moved.clock if name == "contact_duration" else 1.0
+        size = np.pi / moved.contact_duration if name == "contact_duration" else 1.0
         assert moved.distance(orbit) == pytest.approx(size * 1e-3, rel=1e-9)
 
 
 @pytest.mark.parametrize("top", [0.0, 0.01, 0.5, 0.99, 1.0])
 def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
-    contact = SimpleNamespace(
-        shape=(),
-        durations=np.array([1.0]),
-        phases=np.zeros(1),
-        _lam=np.zeros(1),
-        _in_contact=lambda time: (-((time - top) ** 2), None),
-    )
-    assert abs(Orbit._contact_top(contact)) < 1e-13
+    def height(time):
+        return -((time - top) ** 2)
+
+    heights, *_ = about_highest(height, np.zeros(1), np.ones(1), motion._SAMPLES, motion._ROUNDS)
+    assert abs(heights.max()) < 1e-13
 
 
 def test_a_contact_that_only_touches_its_release_has_no_derivatives():
@@ -100,8 +99,7 @@ def test_errors_of_the_equations_move_an_orbit_by_what_its_digits_tell():
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
     orbit = bouncing_ball_beyond.orbit(ball, amplitude=1.0)
     assert 14 < orbit.digits_left() < 16
-    problem = orbit.problem()
-    y = orbit.point(problem)
+    problem, y = equations_of(orbit)
     left, _, _ = np.linalg.svd(problem.jacobian(y))
     found = solve(lambda x: (problem.residual(x) - 1e-13 * left[:, -1], problem.jacobian(x)), y)
     moved = np.log10(np.abs(y).max() / np.abs(found.point - y).max())

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 
 # A stroke of 0.5 mm below a ball on a contact of 500 Hz, in SI units.
 STROKE = 0.5e-3
@@ -96,10 +97,10 @@ def test_along_its_range_the_parameters_of_a_sweep_are_in_theirs(refusal):
     with refusal(ParameterError, "to = 1000000000.0 is not a number in [1e-06, 10000]"):
         bb.follow(start, along="frequency", to=1e9)
     # Λ = f² has a range, and so has ϖ, which is 5e7 at f = √Λ and falls as 1/f.
-    allowed = start.problem("frequency").balls.range_of("frequency")
+    allowed = equations_of(start, "frequency")[0].balls.range_of("frequency")
     assert (allowed.low, allowed.high) == (pytest.approx(1e-6), pytest.approx(1e4))
     stiff = bb.orbit(bb.spring_damper(restitution=0.85, frequency_ratio=5e7), amplitude=0.9)
-    allowed = stiff.problem("frequency").balls.range_of("frequency")
+    allowed = equations_of(stiff, "frequency")[0].balls.range_of("frequency")
     assert (allowed.low, allowed.high) == (pytest.approx(0.5 * 0.9**0.5), pytest.approx(1e4))
 
 

@@ -12,6 +12,7 @@ from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions.orbit_of_motion import of_motion
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.special import release_condition, release_margin
 
 
@@ -28,8 +29,7 @@ def long_contact(ratio, excess):
 def test_the_gradient_of_the_highest_point_is_that_of_differences(excess, along):
     """With one and with two impacts; the highest point is that of the last contact."""
     orbit = long_contact(20.0, excess)
-    problem = orbit.problem(along)
-    y = orbit.point(problem)
+    problem, y = equations_of(orbit, along)
     value, gradient = release_condition(problem, y)
     assert value == release_margin(problem, y) and 0 < value < 1e-2
     step = 1e-6
@@ -51,13 +51,17 @@ def test_differences_are_accurate_on_a_stiff_contact():
     ratio = 400.0
     power = np.array([1.0, 3.0, 1.0, 2.0])
     orbit = long_contact(20.0, 4.0)
-    problem = orbit.problem("amplitude")
-    held = permanent_contact_threshold(np.array([20.0, ratio]), damping_ratio(0.85))
+    problem, here = equations_of(orbit, "amplitude")
+    ratios = np.array([20.0, ratio])
+    held = permanent_contact_threshold(ratios, damping_ratio(0.85))
     limit, origin = (np.array([np.pi / 2, 0, 2 * np.pi, np.arcsinh(lam)]) for lam in held)
     unit = ratio**-power
-    y = origin + unit * 20.0**power * (orbit.point(problem) - limit)
+    here[2] = np.sinh(here[2]) / 20.0
+    y = origin + unit * 20.0**power * (here - limit)
+    y[2] = np.arcsinh(ratio * y[2])
     stiff = replace(problem, balls=problem.balls.at({"frequency_ratio": ratio}))
-    step = 1e-5 * unit
+    # With D = 2π, arsinh ϖD changes by dD/2π.
+    step = 1e-5 * unit / np.array([1.0, 1.0, 2 * np.pi, 1.0])
     moved = [stiff.residual(y + sign * np.diag(step)) for sign in (1, -1)]
     slopes = (moved[0] - moved[1]).T / (2 * step)
 

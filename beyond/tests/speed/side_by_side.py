@@ -30,6 +30,7 @@ from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball_beyond.periodic.orbits.ends import Window
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
@@ -280,10 +281,10 @@ def _together(branches: int, timer: Callable = timed) -> tuple[float, float]:
     ball = bouncing_ball_beyond.rigid(restitution=R)
     start = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     r = np.linspace(R - 0.01, R + 0.01, branches) if branches > 1 else np.array([R])
-    problem = start.problem(LAMBDA)
+    problem, here = equations_of(start, LAMBDA)
     balls = Balls(ball, np.full(branches, 1.6)).at({"restitution": r})
     orbits = replace(problem, balls=balls)
-    first = np.tile(start.point(problem), (branches, 1))
+    first = np.tile(here, (branches, 1))
 
     def points() -> np.ndarray:
         y = first.copy()

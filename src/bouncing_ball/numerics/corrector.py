@@ -119,7 +119,8 @@ def checked(found: Correction, residual: Callable[[np.ndarray], np.ndarray]) -> 
     """The outcome of :func:`solve`, whose points have converged only if their residual is small.
 
     A short step is no sign of a solution where the Jacobian is wrong and large, as it may be on the
-    other side of a special point.
+    other side of a special point. The equations are evaluated at the points again only if they were
+    not satisfied before the last step.
 
     Examples
     --------
@@ -127,9 +128,11 @@ def checked(found: Correction, residual: Callable[[np.ndarray], np.ndarray]) -> 
     >>> found.converged.tolist(), checked(found, lambda y: y - 4).converged.tolist()
     ([True, True], [False, True])
     """
-    if not found.converged.any():
+    satisfied = found.residual <= _largest_defect(found.point)
+    if not (found.converged & ~satisfied).any():
         return found
-    return found._replace(converged=found.converged & satisfies(residual, found.point))
+    satisfied |= satisfies(residual, found.point)
+    return found._replace(converged=found.converged & satisfied)
 
 
 def satisfies(residual: Callable[[np.ndarray], np.ndarray], y: np.ndarray) -> np.ndarray:
@@ -141,8 +144,11 @@ def satisfies(residual: Callable[[np.ndarray], np.ndarray], y: np.ndarray) -> np
     [True, False]
     """
     with np.errstate(all="ignore"):
-        defect = np.abs(residual(y)).max(axis=-1)
-        return defect <= _DEFECT * (1 + _norm(y)) ** 2
+        return np.abs(residual(y)).max(axis=-1) <= _largest_defect(y)
+
+
+def _largest_defect(y: np.ndarray) -> np.ndarray:
+    return _DEFECT * (1 + _norm(y)) ** 2
 
 
 def solve(

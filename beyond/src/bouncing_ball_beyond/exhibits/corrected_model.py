@@ -28,6 +28,7 @@ from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.orbits.motion import contact_motion, contact_path, flight_path
 
 VARIABLES = {
     "contact_force": Variable("force of the table over the weight", symbol="F"),
@@ -119,10 +120,10 @@ def meeting_flights(parameters: OneContact, release: Release) -> xr.Dataset:
     orbit = n_t.require_orbit(ContactModel(contact), parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
-    start, velocity = orbit.contact_path(np.zeros(()))
+    start, velocity = contact_path(orbit, np.zeros(()))
     before = start + (velocity - time / 2) * time
-    after, _ = orbit.flight_path(time)
-    force = contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
+    after, _ = flight_path(orbit, time)
+    force = contact.force(*-np.array(contact_motion(orbit, np.clip(time, 0, end))))
     # The meeting point of the two parabolas, exactly; the signature's is the delay.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))

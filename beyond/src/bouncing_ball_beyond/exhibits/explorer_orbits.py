@@ -22,6 +22,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions import grids
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.periodic.one_impact import n_t
+from bouncing_ball_beyond.periodic.orbits.motion import contact_motion, contact_path
 
 VARIABLES = {
     "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),
@@ -144,8 +145,8 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         "determinant": determinant,
         "saddle_node_amplitude": n_t.saddle_node(exact, n).amplitude,
         "period_doubling_amplitude": n_t.period_doubling(exact, n).amplitude,
-        "ball": orbit.contact_path(middle)[0],
-        "contact_force": exact.law.force(*-np.array(orbit.contact_motion(middle))),
+        "ball": contact_path(orbit, middle)[0],
+        "contact_force": exact.law.force(*-np.array(contact_motion(orbit, middle))),
         "restitution_phase": simple_orbit.phase,
         "restitution_trace": simple_trace,
         "restitution_period_doubling": n_t.period_doubling(simple, n).amplitude,

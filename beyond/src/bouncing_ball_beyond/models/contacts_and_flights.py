@@ -68,7 +68,7 @@ class Departure(NamedTuple):
     the :class:`~bouncing_ball_beyond.models.sequence.Status`.
 
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
-    flight before which a ball of the corrected model has not landed; it is used if it exceeds
+    flight before which the ball has not landed; it is used if it exceeds
     :meth:`.Flight.earliest_landing`.
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
     ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
@@ -169,7 +169,8 @@ class ContactsAndFlights(Batch, ABC):
             If a flight is too long for floating-point numbers.
         """
         flight = departure.flight
-        return self.arrive(departure, land(flight, flight.earliest_landing()))
+        start = np.maximum(departure.aloft, flight.earliest_landing())
+        return self.arrive(departure, land(flight, start))
 
     def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
         """The next impact after a landing, and the time from the last impact to it."""

@@ -43,32 +43,6 @@ LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash
 """The laws by their names on the command line and in calls."""
 
 
-_MODELS = {Tsuji.name: "hertz"}
-_IN_WORDS = {Tsuji.name: "Hertz contact with Tsuji's damping"}
-
-
-def model_name(law: ContactLaw) -> str:
-    """The name of the exact model of a law among the models of a contact.
-
-    Examples
-    --------
-    >>> model_name(Tsuji(1.0, 0.1)), model_name(HuntCrossley(1.0, 0.1))
-    ('hertz', 'hunt-crossley')
-    """
-    return _MODELS.get(law.name, law.name)
-
-
-def contact_in_words(law: ContactLaw) -> str:
-    """The contact of a law as a sentence names it.
-
-    Examples
-    --------
-    >>> contact_in_words(HuntCrossley(1.0, 0.1))
-    'hunt-crossley contact'
-    """
-    return _IN_WORDS.get(law.name, f"{law.name} contact")
-
-
 def law_named(name: str, laws: Mapping[str, type[ContactLaw]] = LAWS) -> type[ContactLaw]:
     """The class of the contact law with this name in a registry, by default that of this house.
 

@@ -18,6 +18,7 @@ from bouncing_ball.numerics.arrays import blocks
 from bouncing_ball.numerics.corrector import checked
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.short_steps import solve_short
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
@@ -148,9 +149,9 @@ def _turns(time: np.ndarray, phases: np.ndarray) -> np.ndarray:
 
 def _closed(guess: Orbit) -> list[Orbit]:
     """The orbits to which Newton's method leads from a row of guesses, which balls follow."""
-    problem = guess.problem()
+    problem, y = equations_of(guess)
     with np.errstate(all="ignore"):
-        solved = solve_short(problem.equations_at, guess.point(problem), PATIENT)
+        solved = solve_short(problem.equations_at, y, PATIENT)
         which = np.flatnonzero(checked(solved, problem.residual).converged)
         if not which.size:
             return []

@@ -11,7 +11,7 @@ from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesti
 from bouncing_ball_beyond.drawing.result import MADE_BY, Result
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-from bouncing_ball_beyond.periodic.orbits.saved import has_orbits
+from bouncing_ball_beyond.periodic.orbits.saved import fields_in, has_orbits
 
 _RESULTS: dict[str, Any] = {
     "follow": FollowedBranch,
@@ -78,4 +78,4 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
             f"{where} contains no orbits: it is no result of follow, branch or orbit.to_dataset()"
         )
     found = _result_of(data)
-    return found if isinstance(found, FollowedBranch | SpecialCurve) else Orbit.of_dataset(data)
+    return found if isinstance(found, FollowedBranch | SpecialCurve) else Orbit(**fields_in(data))

@@ -26,6 +26,7 @@ from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
+from bouncing_ball_beyond.periodic.orbits.motion import contact_motion
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_contacts.contact.needed import finite
 from bouncing_ball_contacts.contact.rebounds import greatest_loads
@@ -120,7 +121,7 @@ def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
         return math.nan, math.nan
 
     def motion(time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        displacement, velocity = orbit.contact_motion(time)
+        displacement, velocity = contact_motion(orbit, time)
         return -displacement, -velocity, 1 - orbit.amplitude * np.sin(orbit.phase + time)
 
     duration = float(orbit.contact_duration)

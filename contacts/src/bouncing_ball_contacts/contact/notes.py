@@ -3,7 +3,7 @@
 import numpy as np
 
 from bouncing_ball_beyond.models.contact_model import ContactModel
-from bouncing_ball_beyond.models.named_laws import contact_in_words
+from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.motion import FinalMotion
@@ -42,6 +42,8 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
     cost = None
     if not case.is_spring_damper and engine is not None and not engine.needs_speed:
         cost = _cost_of_law(engine, case, family)
-    of = {"law": contact_in_words(case.law), "cost": cost, "most": _MOST}
+    is_tsuji = isinstance(case.law, Tsuji)
+    law = "Hertz contact with Tsuji's damping" if is_tsuji else f"{case.law.name} contact"
+    of = {"law": law, "cost": cost, "most": _MOST}
     found = lines("notes", case=case, family=family, motion=motion, **of)
     return (*found, *force_formula(case))

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
+from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.models.laws.scales import rest
 from bouncing_ball_beyond.models.laws.steady_contact import known_threshold
 from bouncing_ball_beyond.models.model import Model
-from bouncing_ball_beyond.models.named_laws import model_name
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact import effort
 from bouncing_ball_contacts.contact.contact import Contact
@@ -256,7 +256,8 @@ class ResolvedContact:
         from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, models_of_law
 
         models = models_of_law(self.law, self.equivalent.restitution)
-        exact = models[0].name if self.is_linear else model_name(self.law)
+        of_law = "hertz" if isinstance(self.law, Tsuji) else self.law.name
+        exact = models[0].name if self.is_linear else of_law
         return dict(zip((exact, *SIMPLE), models, strict=True))
 
     def instant(self, n: ArrayLike) -> Instant:

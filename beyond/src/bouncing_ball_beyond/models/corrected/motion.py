@@ -22,7 +22,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.flight import Unloaded, land, table
+from bouncing_ball.models.flight import Unloaded, table
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero, first_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
@@ -108,12 +108,6 @@ class CorrectedDynamics(Dynamics):
         lift = lift_off(released.phase, self.amplitude)
         rest = np.where(lift.never, np.inf, lift.wait)
         return duration > released.duration + rest / 2
-
-    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
-        """The start of the next contact, and the time from the last start to it."""
-        flight = departure.flight
-        landing = land(flight, np.maximum(departure.aloft, flight.earliest_landing()))
-        return self.arrive(departure, landing)
 
     def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
         """The start of the contact after a landing, and the time from the last start to it."""

@@ -9,6 +9,7 @@ from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import plane
 from bouncing_ball.numerics.events import SpecialPoint
 from bouncing_ball_beyond.periodic.branches.following import Followed
+from bouncing_ball_beyond.periodic.orbits.impacts import point_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short
 from bouncing_ball_beyond.periodic.orbits.steps import PATIENT
@@ -52,7 +53,7 @@ def without_start(found: Followed, start: Orbit) -> Followed:
     """
     if not start.kind:
         return found
-    here = start.point(found.problem.equations)
+    here = point_of(start, found.problem.equations)
     branch = found.branch
     others = [each for each in branch.special if np.linalg.norm(each.point - here) > _SAME]
     return replace(found, branch=replace(branch, special=tuple(others)))

@@ -50,6 +50,7 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
     places_in_words,
     release_lost,
 )
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.normal_form import coefficient
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
@@ -139,8 +140,7 @@ def curve_through(
     ParameterError
         If the balls have no such parameter, or no curve is defined for the kind.
     """
-    equations = start.problem(along, across)
-    guess = start.point(equations)
+    equations, guess = equations_of(start, along, across)
     given = zip(equations.along, (along_window, across_window), strict=True)
     windows = _ranges(equations, dict(given))
     if kind is Special.STICKING:

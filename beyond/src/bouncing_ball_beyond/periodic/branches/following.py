@@ -34,11 +34,12 @@ from bouncing_ball_beyond.periodic.orbits.ends import (
     with_explained_ends,
 )
 from bouncing_ball_beyond.periodic.orbits.halves import halves, turns_apart, turns_of_half, twice
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.short_steps import newton_short, solution_near
 from bouncing_ball_beyond.periodic.orbits.special import Coordinates, Degenerate, Special
-from bouncing_ball_beyond.periodic.orbits.steps import PATIENT, STEPS
+from bouncing_ball_beyond.periodic.orbits.steps import PATIENT, STEPS, STEPS_OF_DECADES
 
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.
 # If there is no period doubling near, it is followed up to a smaller distance, several times.
@@ -112,8 +113,12 @@ class Followed:
         """The orbits, and after them those at :attr:`special_points`, as one row, because its
         equations cost hardly more than those of a part of it.
         """
-        special = [each.point for each in self.special_points]
-        return orbits_on(self.problem, np.stack([*self.branch.points, *special]))
+        return orbits_on(self.problem, self.points_with_special)
+
+    @property
+    def points_with_special(self) -> np.ndarray:
+        """The points of the branch, and after them those of the special orbits."""
+        return np.stack([*self.branch.points, *(each.point for each in self.special_points)])
 
     @property
     def special_points(self) -> list[SpecialPoint]:
@@ -230,6 +235,12 @@ def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) 
     return Window(low, min(high, _FARTHEST * max(abs(here), 1.0)))
 
 
+def _in_decades(equations: OrbitEquations, start: np.ndarray) -> bool:
+    """Whether the parameter is one of the law, and large."""
+    ((name, value),) = equations.values(start).items()
+    return name in equations.balls.model.numbers() and bool(value > 1)
+
+
 def branch_from(
     start: Orbit,
     along: str | Path = LAMBDA,
@@ -238,7 +249,7 @@ def branch_from(
     increasing: bool | None = None,
     towards: np.ndarray | None = None,
     within: Window | None = None,
-    control: StepControl = STEPS,
+    control: StepControl | None = None,
     most: int = 2000,
 ) -> Followed:
     """Follow an orbit along a parameter, up to a value, the end of the branch or of the range.
@@ -259,7 +270,9 @@ def branch_from(
         stands still, it chooses the side.
     within : Window, optional
         The range of the parameter; by default that of :func:`range_ahead`.
-    control : StepControl
+    control : StepControl, optional
+        By default :data:`.STEPS`, or :data:`.STEPS_OF_DECADES` along a parameter of the law that is
+        above 1 at the start, where arsinh is a logarithm.
     most : int
         Number of points after which the branch is left unfinished.
 
@@ -270,14 +283,16 @@ def branch_from(
     ParameterError
         If the balls have no such parameter.
     """
-    equations = start.problem(along)
-    here = point_near(equations, start.point(equations))
+    equations, guess = equations_of(start, along)
+    here = point_near(equations, guess)
     if increasing is None:
         increasing = to is None or bool(to > equations.values(here)[equations.along[0]])
     if towards is None:
         towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
     if within is None:
         within = range_ahead(equations, here, to)
+    if control is None:
+        control = STEPS_OF_DECADES if _in_decades(equations, here) else STEPS
     near = min(_NEAR, float(turns_apart(equations, here)) / 2)
     with np.errstate(all="ignore"):
         branch = _up_to_equal_turns(

@@ -32,6 +32,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import Path
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.paths import place_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
@@ -176,8 +177,8 @@ def _grazing(orbit: Orbit, along: str | Path) -> Grazing:
         If no flight of the orbit grazes, or if its model has no slow impacts.
     """
     _require_grazing(orbit)
-    problem = orbit.problem(along)
-    here = point_near(problem, orbit.point(problem))
+    problem, guess = equations_of(orbit, along)
+    here = point_near(problem, guess)
     dynamics: Any = problem.dynamics(here)[0]
     phase, velocity = problem.states(here)
     impact = dynamics.start(reduce_angle(phase), velocity)
@@ -289,8 +290,8 @@ def with_one_less(orbit: Orbit) -> Orbit:
             "the only impact of the orbit grazes: there is no orbit without it whose flight grazes"
         )
     slow = int(np.argmin(np.abs(orbit.relative_impact_velocity)))
-    equations = orbit.problem()
-    if not equations.legs(orbit.point(equations)).acceleration[slow - 1] > 0:
+    equations, y = equations_of(orbit)
+    if not equations.legs(y).acceleration[slow - 1] > 0:
         raise NoOrbitError(
             "the flight before this impact only just comes up to the level of the table: without "
             "the impact there is no orbit whose flight grazes"
@@ -306,8 +307,7 @@ def with_one_less(orbit: Orbit) -> Orbit:
         resumes=np.delete(np.broadcast_to(orbit.resumes, turns.shape), slow),
         kind=str(Special.GRAZING_FLIGHT),
     )
-    problem = without.problem()
-    touch = lowest_touch(problem, without.point(problem))
+    touch = lowest_touch(*equations_of(without))
     if touch.height < -_BELOW:
         raise NoOrbitError(
             "no ball follows the orbit at this grazing impact: another flight is below the table "
@@ -339,5 +339,5 @@ def first_with_one_more(
             f"to = {to:g} is beyond the grazing: the orbits with {first.impacts} impacts exist "
             f"next to it only for {name} {where} {at:g}"
         )
-    problem = first.problem(along)
+    problem, _ = equations_of(first, along)
     return first, -np.eye(problem.size + 1)[2 * (grazing.touch.leg + 1) + 1]

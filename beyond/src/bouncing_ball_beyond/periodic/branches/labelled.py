@@ -21,7 +21,7 @@ from bouncing_ball_beyond.periodic.branches import observables
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
-from bouncing_ball_beyond.periodic.orbits.saved import KEPT, MOVED
+from bouncing_ball_beyond.periodic.orbits.saved import KEPT, MOVED, fields_in
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class _Orbits(Result):
         ModelError
             If these are the branches of several balls, or if variables are missing.
         """
-        return _one_by_one(Orbit.of_dataset(self))
+        return _one_by_one(Orbit(**fields_in(self)))
 
     def special_states(self) -> list[tuple[str, Orbit]]:
         """The special orbits with their kinds, in order.
@@ -86,7 +86,7 @@ class _Orbits(Result):
         ModelError
             If these are the branches of several balls, or if variables are missing.
         """
-        orbits = list(_one_by_one(Orbit.of_dataset(self, "special_")))
+        orbits = list(_one_by_one(Orbit(**fields_in(self, "special_"))))
         kinds = [str(kind) for kind in np.ravel(self.special_kind.values)]
         # A branch beside others with more special orbits is filled with places without a kind.
         known = ((kind, orbit) for kind, orbit in zip(kinds, orbits, strict=True) if kind)
@@ -136,7 +136,7 @@ class SpecialCurve(_Orbits):
     def states(self) -> Iterator[Orbit]:
         """The special orbits, one after another."""
         kind = str(self.attrs.get("curve_kind", ""))
-        return _one_by_one(replace(Orbit.of_dataset(self), kind=kind))
+        return _one_by_one(replace(Orbit(**fields_in(self)), kind=kind))
 
 
 def _attributes(problem: OrbitEquations) -> dict[str, Any]:

@@ -16,8 +16,9 @@ from bouncing_ball.periodic import branches
 from bouncing_ball.periodic.branches import OBSERVED
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.branches.following import Followed, unrolled
+from bouncing_ball_beyond.periodic.orbits import stability
 from bouncing_ball_beyond.periodic.orbits.balls import FREQUENCY, LAMBDA
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
+from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, certain_digits, largest_defect
 from bouncing_ball_beyond.periodic.orbits.saved import columns_of
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
@@ -61,14 +62,45 @@ def branch_variables(found: Followed) -> dict[str, Any]:
     orbits come back.
     """
     special = _special_places(found)
+    judged = _judged(found)
     orbits = found.with_special
     if np.any(np.diff(special.order) < 0):
         count = len(found)
-        orbits = orbits[np.concatenate([np.arange(count), count + special.order])]
+        order = np.concatenate([np.arange(count), count + special.order])
+        judged = _Judged(*(values[order] for values in judged))
+        orbits = orbits[order]
     points = np.concatenate([found.branch.points, special.points])
     varied = found.problem.equations.values(found.problem.inner(points))
     ends = [str(found.branch.start), str(found.branch.end)]
-    return _in_columns(orbits, unrolled(found.problem, points, orbits), varied, special, ends)
+    ahead = unrolled(found.problem, points, orbits)
+    return _in_columns(orbits, ahead, judged, varied, special, ends)
+
+
+class _Judged(NamedTuple):
+    """Multipliers, stability, the largest defect and the certain digits of orbits in a row."""
+
+    multipliers: np.ndarray
+    stable: np.ndarray
+    defect: np.ndarray
+    digits_left: np.ndarray
+
+
+def _judged(found: Followed) -> _Judged:
+    """The judgement of the orbits along a branch, and of its special orbits after them, by the
+    equations of the branch.
+    """
+    equations = found.problem.equations
+    y = found.problem.inner(found.points_with_special)
+    # The values of the parameters are known along a branch, so that they count as given.
+    given = slice(equations.size)
+    residual, matrix = equations.equations_at(y)
+    floquet = equations.trace_and_determinant(y)
+    return _Judged(
+        multipliers=stability.multipliers(*floquet),
+        stable=stability.is_stable(*floquet),
+        defect=largest_defect(residual),
+        digits_left=certain_digits(y[..., given], residual, matrix[..., given]),
+    )
 
 
 class _Special(NamedTuple):
@@ -121,6 +153,7 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 def _in_columns(
     orbits: Orbit,
     ahead: Orbit,
+    judged: _Judged,
     varied: dict[str, np.ndarray],
     special: _Special,
     ends: list[str],
@@ -140,19 +173,18 @@ def _in_columns(
     data |= {name: (("point", "impact"), values[:count]) for name, values in observed.items()}
     for name in ("phase", "contact_duration"):
         data[f"special_{name}"] = ("special", "impact"), observed[name][count:]
-    data["stable"] = "point", ahead.is_stable()[:count]
+    data["stable"] = "point", judged.stable[:count]
     data["admissible"] = "point", ahead.is_admissible()[:count]
-    defect = ahead.defect()
-    data["residual"] = "point", defect[:count]
-    data["digits_left"] = "point", ahead.digits_left()[:count]
-    floquet = ahead.multipliers()[:count]
+    data["residual"] = "point", judged.defect[:count]
+    data["digits_left"] = "point", judged.digits_left[:count]
+    floquet = judged.multipliers[:count]
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     kinds = np.array(special.kinds, dtype=str)
     data["special_kind"] = "special", kinds
     # Where a release is lost, which is a double zero, rounding decides which release is found.
     lost = kinds == Special.RELEASE_LOST
-    data["special_residual"] = "special", np.where(lost, np.nan, defect[count:])
+    data["special_residual"] = "special", np.where(lost, np.nan, judged.defect[count:])
     data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
     data["special"] = "special", np.arange(len(kinds))
@@ -184,7 +216,7 @@ def _of_one_impact(columns: dict[str, Any]) -> xr.Dataset:
 def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
+    judged = _Judged(none.multipliers(), none.is_stable(), none.defect(), none.digits_left())
     nowhere = _Special(np.empty(0, int), np.empty((0, 0)), [], np.empty(0, int), np.empty(0))
-    return _of_one_impact(
-        _in_columns(none, none, {LAMBDA: none.amplitude}, nowhere, [str(error)] * 2)
-    )
+    ends = [str(error)] * 2
+    return _of_one_impact(_in_columns(none, none, judged, {LAMBDA: none.amplitude}, nowhere, ends))

@@ -16,6 +16,7 @@ from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
 from bouncing_ball_beyond.periodic.orbits.halves import turns_of_half, twice
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.paths import name_of, place_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
@@ -81,8 +82,7 @@ def switch(doubling: Orbit, along: str | Path = LAMBDA, aside: float = ASIDE) ->
     NoOrbitError
         If the orbit is no period doubling, or if no orbit of twice the period is found beside it.
     """
-    equations = doubling.problem(along)
-    here = doubling.point(equations)
+    equations, here = equations_of(doubling, along)
     with np.errstate(all="ignore"):
         product = equations.monodromy(here)
         off = float(Bifurcation.PERIOD_DOUBLING.test(*equations.trace_and_determinant(here)))
@@ -129,8 +129,7 @@ def first_doubled(
         )
     if to is not None and (to - at) * change >= 0 and abs(to - at) < abs(change):
         return found, None
-    equations = doubling.problem(along)
-    return found, apart(equations, doubling.point(equations))
+    return found, apart(*equations_of(doubling, along))
 
 
 def halved(halving: Orbit) -> Orbit:
@@ -169,8 +168,8 @@ def sides(fold: Orbit, along: str | Path) -> Sides:
     NoOrbitError
         If there is no orbit near the saddle-node.
     """
-    equations = fold.problem(along)
-    here = point_near(equations, fold.point(equations))
+    equations, guess = equations_of(fold, along)
+    here = point_near(equations, guess)
     axis = np.eye(here.size)[-1]
     # The direction of a branch whose parameter increases at the start, and the opposite one.
     leaves = tangent(equations.jacobian(here), axis)

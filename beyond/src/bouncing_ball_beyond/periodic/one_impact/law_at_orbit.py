@@ -14,6 +14,7 @@ from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.steps import OF_A_ROUND
 
@@ -79,8 +80,7 @@ def orbit_of_law(
     before = missed_before = np.full_like(taken, np.nan)
     law = law_of_impact(kind, restitution, taken, speed)
     orbit = n_t.orbit(ContactModel(law), n, amplitude, side)
-    problem = orbit.problem()
-    y = orbit.point(problem)
+    problem, y = equations_of(orbit)
     for _ in range(_ROUNDS):
         lost = np.flatnonzero(np.isnan(y).any(axis=-1))
         if lost.size:

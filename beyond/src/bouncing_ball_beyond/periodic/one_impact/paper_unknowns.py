@@ -4,20 +4,19 @@ Of the paper's six unknowns φ, z′_i, τ_b, z′_b, A and B, three are elimina
 by the start of contact (Eqs. 21-22) and z′_b by the periodicity (Eq. 27). The remaining ones are
 scaled to order one, ``y = (φ, z′_i, ϖ τ_b, Λ)``; an impact that is an instant has no τ_b. The
 equations are those of :mod:`~bouncing_ball_beyond.periodic.orbits.problem` with one impact, whose
-unknowns are ``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this
-choice.
+unknowns are ``(φ, δ′, arsinh ϖD, arsinh Λ)``: only the length of a step along a branch depends on
+this choice.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 
-from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import Condition
 from bouncing_ball.numerics.events import Event
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of, point_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
@@ -33,8 +32,6 @@ class PaperUnknowns:
     ----------
     equations : OrbitEquations
         The equations with one impact, along Λ.
-    clock : float or array
-        ϖ of contacts whose durations are unknowns, which are of the order of 1/ϖ, otherwise 1.
 
     Examples
     --------
@@ -48,27 +45,25 @@ class PaperUnknowns:
     """
 
     equations: OrbitEquations
-    clock: Any = 1.0
 
     @classmethod
     def of(cls, orbit: Orbit) -> "PaperUnknowns":
         """The equations of given n-T orbits."""
-        equations = orbit.problem(LAMBDA)
-        dynamics = orbit.model.dynamics(1.0)
-        oscillates = equations.selects and dynamics.contact is not None
-        return cls(equations, dynamics.law.frequency_ratio if oscillates else 1.0)
+        equations, _ = equations_of(orbit, LAMBDA)
+        return cls(equations)
 
     def take(self, which: Any) -> Self:
         """The equations of some orbits of a row."""
-        return replace(self, equations=self.equations.take(which), clock=pick(self.clock, which))
+        return replace(self, equations=self.equations.take(which))
 
     def inner(self, y: np.ndarray) -> np.ndarray:
-        """The unknowns (φ, δ′, D, arsinh Λ) of y."""
+        """The unknowns (φ, δ′, arsinh ϖD, arsinh Λ) of y."""
         inner = np.array(y, dtype=float)
         lam = y[..., -1]
         inner[..., 1] -= lam * np.cos(y[..., 0])
-        inner[..., 2:-1] /= self._clock
         inner[..., -1] = np.arcsinh(lam)
+        if self.equations.oscillates:
+            inner[..., 2] = np.arcsinh(y[..., 2])
         return inner
 
     def _slopes(self, y: np.ndarray) -> np.ndarray:
@@ -80,46 +75,36 @@ class PaperUnknowns:
         slopes[..., 1, 0] = lam * np.sin(y[..., 0])
         slopes[..., 1, 1] = 1
         slopes[..., 1, -1] = -np.cos(y[..., 0])
-        for k in range(2, size - 1):
-            slopes[..., k, k] = 1 / np.asarray(self.clock)
+        if self.equations.selects:
+            slopes[..., 2, 2] = 1
+        if self.equations.oscillates:
+            slopes[..., 2, 2] /= np.hypot(1, y[..., 2])
         slopes[..., -1, -1] = 1 / np.hypot(1, lam)
         return slopes
 
     def point(self, orbit: Orbit) -> np.ndarray:
         """y of n-T orbits, shape (..., N + 1)."""
-        return self.outer(orbit.point(self.equations))
+        return self.outer(point_of(orbit, self.equations))
 
     def outer(self, inner: np.ndarray) -> np.ndarray:
-        """y at the unknowns (φ, δ′, D, arsinh Λ)."""
+        """y at the unknowns (φ, δ′, arsinh ϖD, arsinh Λ)."""
         lam = np.sinh(inner[..., -1])
         y = inner.copy()
         y[..., 1] += lam * np.cos(inner[..., 0])
-        y[..., 2:-1] *= self._clock
         y[..., -1] = lam
+        if self.equations.oscillates:
+            y[..., 2] = np.sinh(inner[..., 2])
         return y
-
-    @cached_property
-    def _clock(self) -> np.ndarray:
-        """ϖ with an axis for the unknowns."""
-        return np.asarray(self.clock)[..., np.newaxis]
-
-    @cached_property
-    def _weights(self) -> np.ndarray:
-        """The factors of the equations; that of the duration is of the order of a velocity."""
-        weights = np.ones((*np.shape(self.clock), self.equations.size))
-        weights[..., 2:] = self._clock
-        return weights
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """The defects of the equations, shape (..., N)."""
-        return self._weights * self.equations.residual(self.inner(y))
+        return self.equations.residual(self.inner(y))
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """The Jacobian of the residual, shape (..., N, N + 1)."""
         # The duration of a contact that touches its release has infinite derivatives.
         with np.errstate(invalid="ignore"):
-            matrix = self.equations.jacobian(self.inner(y)) @ self._slopes(y)
-        return self._weights[..., np.newaxis] * matrix
+            return self.equations.jacobian(self.inner(y)) @ self._slopes(y)
 
     def event(self, event: Event) -> Event:
         """An event of the equations as a function of these unknowns."""

@@ -25,6 +25,7 @@ from bouncing_ball_beyond.periodic.one_impact import corrected_branch as line
 from bouncing_ball_beyond.periodic.one_impact.orbits_of_model import OrbitsOfModel, in_order
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball_beyond.periodic.orbits.ends import ENDS, AtMargin, Window, ends_of_one_impact
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.short_steps import solve_short
@@ -121,8 +122,7 @@ class _Search(NamedTuple):
             self.instant.duration,
             t_c - self.n * np.pi,
         )
-        problem = orbit.problem(LAMBDA)
-        return problem, orbit.point(problem)
+        return equations_of(orbit, LAMBDA)
 
 
 def _solved(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
@@ -170,8 +170,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     """
     if not amplitude >= fold.amplitude:
         return np.nan
-    problem = fold.problem(LAMBDA)
-    start = fold.point(problem)
+    problem, start = equations_of(fold, LAMBDA)
     ahead = tangent(problem.jacobian(start), np.ones_like(start))
     ways = branches_through_points(
         problem,

@@ -338,7 +338,7 @@ def orbits_on_branch(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> 
 
     Examples
     --------
-    >>> float(orbits_on_branch(0.0, SpringDamper(5.0, 0.0), 1).determinant())
+    >>> float(orbits_on_branch(0.0, SpringDamper(5.0, 0.0), 1).trace_and_determinant()[1])
     1.0
     """
     return orbits_of_points(branch_point(excess, contact, n), contact, n)

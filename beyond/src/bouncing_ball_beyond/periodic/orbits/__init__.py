@@ -14,8 +14,9 @@ In reading order:
 ``special``       all special orbits, and the functions that vanish there
 ``ends``          the ends of a branch, each with the reason in words
 ``simulation``    from a simulated ball to an orbit, and whether a ball follows an orbit
-``impacts``       the impacts of orbits, and what follows from them
-``orbit``         an orbit of any model, or an array of orbits: its motion and its stability
+``impacts``       the impacts of orbits as a row, and the equations that they solve
+``motion``        the motion on an orbit: contacts, flights, the highest point
+``orbit``         an orbit of any model, or an array of orbits, for a user
 ``saved``         orbits in datasets, from which they come back with the same bits
 ``return_map``    the return map next to an orbit, with its derivative
 ``normal_form``   whether a bifurcation is supercritical, by its normal form

@@ -55,7 +55,7 @@ class LegsBeside:
                 slope = np.where(jumps, np.nan, slope)
             matrix[..., : 2 * k, column] = slope.reshape(*leading, 2 * k)
             if self.selects:
-                matrix[..., 2 * k :, column] = -self.slope(j, legs.duration)
+                matrix[..., 2 * k :, column] = -self.slope(j, legs.ends)
         if self.selects:
             self._fill_durations(matrix)
         return matrix
@@ -85,7 +85,7 @@ class LegsBeside:
 
     def _fill_durations(self, matrix: np.ndarray) -> None:
         """The derivatives of the equations of the durations by the states and the durations."""
-        by_phase, by_velocity = (slopes[0] for slopes in self.legs.duration_slopes)
+        by_phase, by_velocity = (slopes[0] for slopes in self.legs.end_slopes)
         k = by_phase.shape[-1]
         for contact in range(k):
             row = matrix[..., 2 * k + contact, :]

@@ -9,9 +9,9 @@ table: δ = z - w.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,7 +24,6 @@ from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, Path
 from bouncing_ball_beyond.periodic.orbits.legs import (
-    Legs,
     lag_of,
     selects_ends,
     time_to_section,
@@ -32,9 +31,6 @@ from bouncing_ball_beyond.periodic.orbits.legs import (
 )
 from bouncing_ball_beyond.periodic.orbits.paths import balls_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # The fields with an entry for each impact.
 _OF_IMPACTS = ("turns", "phases", "velocities", "durations")
@@ -50,22 +46,7 @@ def _comparable(value: Any) -> Any:
 
 
 # What the house itself needs of orbits, which is not among the names that an editor completes.
-_INTERNAL = {
-    "check_shape",
-    "clock",
-    "contact_motion",
-    "contact_path",
-    "flat",
-    "flight_path",
-    "of",
-    "of_dataset",
-    "point",
-    "problem",
-    "resumes",
-    "take",
-    "touches",
-    "turns",
-}
+_INTERNAL = {"check_shape", "flat", "of", "own_equations", "resumes", "starts", "take", "turns"}
 
 
 @dataclass(frozen=True, repr=False)
@@ -151,39 +132,6 @@ class OrbitImpacts(Suggesting, Batch):
         # Computed quantities are left out: the equations of an orbit hold functions.
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
-    def to_dataset(self) -> xr.Dataset:
-        """The orbit, or a row of orbits, as a labelled dataset with the model and its parameters.
-
-        :func:`bouncing_ball_beyond.read_orbits` makes equal orbits from it, also from a netCDF file
-        of it.
-
-        Examples
-        --------
-        >>> from bouncing_ball_beyond import read_orbits
-        >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
-        >>> from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
-        >>> orbit = Orbit.of(RestitutionModel(0.5), 1, 1.5, 0.7)
-        >>> read_orbits(orbit.to_dataset()) == orbit
-        True
-        """
-        # Imported here, because a single orbit needs no labels.
-        from bouncing_ball_beyond.periodic.orbits.saved import dataset_of
-
-        return dataset_of(self)
-
-    @classmethod
-    def of_dataset(cls, data: xr.Dataset, prefix: str = "") -> Self:
-        """The orbits in the variables of a dataset whose names begin with a prefix.
-
-        Raises
-        ------
-        ModelError
-            If there are none, or if their law is not known.
-        """
-        from bouncing_ball_beyond.periodic.orbits.saved import fields_in
-
-        return cls(**fields_in(data, prefix))
-
     # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 
     @cached_property
@@ -208,17 +156,6 @@ class OrbitImpacts(Suggesting, Batch):
             values["amplitude"] = lam if lam.ndim else float(lam)
         return type(self)(**values)
 
-    def _shaped(self, values: np.ndarray) -> Any:
-        """Quantities of the impacts, shape (..., k), without this axis if k = 1."""
-        if self.impacts > 1:
-            return values
-        first = values[..., 0]
-        return first if first.ndim else first.item()
-
-    def _single(self, values: Any) -> Any:
-        """Quantities of the orbits; a Python number for a single orbit."""
-        return values if np.ndim(values) else np.asarray(values).item()
-
     @property
     def impacts(self) -> int:
         """k."""
@@ -227,7 +164,7 @@ class OrbitImpacts(Suggesting, Batch):
     @property
     def periods(self) -> Any:
         """m."""
-        return self._single(np.sum(self.turns, axis=-1))
+        return number_or_row(np.sum(self.turns, axis=-1))
 
     @property
     def n(self) -> Any:
@@ -249,43 +186,22 @@ class OrbitImpacts(Suggesting, Batch):
     @property
     def exists(self) -> Any:
         """Whether there is an orbit: its contacts have durations."""
-        return self._single(np.all(np.isfinite(self.durations), axis=-1))
+        return number_or_row(np.all(np.isfinite(self.durations), axis=-1))
 
     @property
     def phase(self) -> Any:
         """φ, the table's phase at the impacts."""
-        return self._shaped(self.phases)
+        return of_impacts(self.phases)
 
     @property
     def contact_duration(self) -> Any:
         """D = τ_b."""
-        return self._shaped(self.durations)
+        return of_impacts(self.durations)
 
     @property
     def impact_velocity(self) -> Any:
         """Absolute velocity z′_i of the ball at the start of contact."""
-        return self._shaped(self.velocities)
-
-    @property
-    def _lam(self) -> np.ndarray:
-        """Λ with an axis for the impacts."""
-        return np.asarray(self.amplitude)[..., np.newaxis]
-
-    @cached_property
-    def _intervals(self) -> np.ndarray:
-        """The times from impact to impact, shape (..., k)."""
-        return (np.roll(self.phases, -1, axis=-1) - self.phases) + 2 * np.pi * np.asarray(
-            self.turns
-        )
-
-    @property
-    def _flights(self) -> np.ndarray:
-        return self._intervals - self.durations
-
-    @property
-    def _bounces(self) -> np.ndarray:
-        # In flight the velocity falls by the flight time.
-        return np.roll(self.velocities, -1, axis=-1) + self._flights
+        return of_impacts(self.velocities)
 
     @property
     def flight_time(self) -> Any:
@@ -294,120 +210,162 @@ class OrbitImpacts(Suggesting, Batch):
         For an n-T orbit it is τ_2 - τ_b = 2πn - D, because τ_i = 0 (Eq. 18), τ_2 = τ_i + 2πn
         (Eq. 19) and D = τ_b; that z′_2 = z′_i (Eq. 20) is a condition on the orbit.
         """
-        return self._shaped(self._flights)
+        return of_impacts(flights(self))
 
     @property
     def release_phase(self) -> Any:
         """The table's phase φ + τ_b at release."""
-        return self._shaped(self.phases + self.durations)
+        return of_impacts(self.phases + self.durations)
 
     @property
     def bounce_velocity(self) -> Any:
         """Absolute velocity z′_b at release, z′_i + 2πn - τ_b for an n-T orbit (Eq. 27)."""
-        return self._shaped(self._bounces)
-
-    @property
-    def _closing(self) -> np.ndarray:
-        return self.velocities - self._lam * np.cos(self.phases)
-
-    @property
-    def _leaving(self) -> np.ndarray:
-        return self._bounces - self._lam * np.cos(self.phases + self.durations)
+        return of_impacts(bounces(self))
 
     @property
     def relative_impact_velocity(self) -> Any:
         """δ′ = z′_i - w′_i at the start of contact: negative unless a contact resumes."""
-        return self._shaped(self._closing)
+        return of_impacts(closing(self))
 
     @property
     def relative_bounce_velocity(self) -> Any:
         """δ′ = z′_b - w′_b at release, positive."""
-        return self._shaped(self._leaving)
+        return of_impacts(leaving(self))
 
     @property
     def apparent_restitution(self) -> Any:
         """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17); NaN where the impact grazes."""
-        closing = np.where(self._closing == 0, np.nan, self._closing)
-        return self._shaped(-self._leaving / closing)
-
-    # What needs the motion in contact.
+        speed = closing(self)
+        return of_impacts(-leaving(self) / np.where(speed == 0, np.nan, speed))
 
     @property
-    def _balls(self) -> Balls:
+    def _known_balls(self) -> Balls:
         """The balls; where Λ is not known they stand on a table with Λ = 1."""
         lam = np.asarray(self.amplitude, dtype=float)
         return Balls(self.model, np.where(np.isfinite(lam), lam, 1.0))
 
     @cached_property
-    def _start(self) -> tuple[Dynamics, Impact]:
+    def starts(self) -> tuple[Dynamics, Impact]:
         """The dynamics and the impacts in a row, which is k times as long as that of the orbits."""
-        dynamics = self._balls.row(self.shape, self.impacts).dynamics()
+        dynamics = self._known_balls.row(self.shape, self.impacts).dynamics()
         whole = (*self.shape, self.impacts)
         phase = np.broadcast_to(self.phases, whole).ravel()
-        velocity = np.broadcast_to(self._closing, whole).ravel()
+        velocity = np.broadcast_to(closing(self), whole).ravel()
         with np.errstate(invalid="ignore"):
             impact = dynamics.start(phase, velocity)
         resumes = np.broadcast_to(self.resumes, whole).ravel()
         return dynamics, without_force(impact, lag_of(dynamics, resumes))
 
-    def problem(self, *along: str | Path) -> OrbitEquations:
-        """The equations of these orbits, with parameters that vary, or a path of parameters.
-
-        Raises
-        ------
-        ParameterError
-            If the balls have no such parameter, or if one of them follows from another.
-        """
-        balls, names = balls_along(self.model, self.amplitude, *along)
-        dynamics, impact = self._start
-        whole = (*self.shape, self.impacts)
-        durations = np.broadcast_to(self.durations, whole).ravel()
-        return OrbitEquations(
-            balls=balls,
-            impacts=self.impacts,
-            turns=self.turns,
-            along=names,
-            selects=selects_ends(dynamics, impact, durations),
-            resumes=np.broadcast_to(self.resumes, (self.impacts,)),
-        )
-
-    def point(self, problem: OrbitEquations) -> np.ndarray:
-        """y of these orbits among the unknowns of a problem, shape (..., N + parameters)."""
-        dynamics, impact = self._start
-        whole = (*self.shape, self.impacts)
-        with np.errstate(invalid="ignore"):
-            phase = self.phases + time_to_section(dynamics, impact).reshape(whole)
-            _, velocity = dynamics.section(impact)
-        duration = np.broadcast_to(self.durations, whole)
-        given = {}
-        if problem.along:
-            values = Balls(self.model, self.amplitude, problem.balls.path).values
-            given = {name: values[name] for name in problem.along}
-        return problem.point(phase, velocity.reshape(whole), duration, **given)
-
     @cached_property
-    def _own(self) -> tuple[OrbitEquations, np.ndarray]:
-        """The equations with no parameter that varies, and the unknowns."""
-        problem = replace(self.problem(), balls=self._balls)
-        return problem, self.point(problem)
+    def own_equations(self) -> tuple[OrbitEquations, np.ndarray]:
+        """The equations with no parameter that varies, and y of the orbits."""
+        return _equations(self, self._known_balls)
 
-    @cached_property
-    def _legs(self) -> Legs:
-        problem, y = self._own
-        return problem.legs(y)
 
-    def _of_existing(self, quantity: Callable[[Self], np.ndarray], tail: int = 0) -> np.ndarray:
-        """A quantity of the orbits that exist, NaN for others, computed in blocks.
+def number_or_row(values: Any) -> Any:
+    """Quantities of the orbits; a Python number for a single orbit."""
+    return values if np.ndim(values) else np.asarray(values).item()
 
-        ``tail`` is the length of its last axis, 0 if it has the shape of the orbits.
-        """
-        exists = np.broadcast_to(self.exists & np.isfinite(self.amplitude), self.shape)
-        if np.all(exists) and 0 < self.size <= _LEGS:
-            return quantity(self)
-        ends = (tail,) if tail else ()
-        found = np.full((self.size, *ends), np.nan)
-        which = np.flatnonzero(exists)
-        row = self.flat(self.shape)
-        for part in blocks(which.size, _LEGS):
-            found[which[part]] = quantity(row.take(which[part]))
-        return found.reshape((*self.shape, *ends))
+
+def of_impacts(values: np.ndarray) -> Any:
+    """Quantities of the impacts, shape (..., k), without this axis if k = 1."""
+    return values if values.shape[-1] > 1 else number_or_row(values[..., 0])
+
+
+# What follows from the impacts, arrays of shape (..., k).
+
+
+def table_amplitude(orbit: OrbitImpacts) -> np.ndarray:
+    """Λ with an axis for the impacts."""
+    return np.asarray(orbit.amplitude)[..., np.newaxis]
+
+
+def intervals(orbit: OrbitImpacts) -> np.ndarray:
+    """The times from impact to impact."""
+    turned = 2 * np.pi * np.asarray(orbit.turns)
+    return (np.roll(orbit.phases, -1, axis=-1) - orbit.phases) + turned
+
+
+def flights(orbit: OrbitImpacts) -> np.ndarray:
+    """The times from the releases to the next impacts."""
+    return intervals(orbit) - orbit.durations
+
+
+def bounces(orbit: OrbitImpacts) -> np.ndarray:
+    """Absolute velocities at release: in flight the velocity falls by the flight time."""
+    return np.roll(orbit.velocities, -1, axis=-1) + flights(orbit)
+
+
+def closing(orbit: OrbitImpacts) -> np.ndarray:
+    """δ′ at the starts of contact."""
+    return orbit.velocities - table_amplitude(orbit) * np.cos(orbit.phases)
+
+
+def leaving(orbit: OrbitImpacts) -> np.ndarray:
+    """δ′ at the releases."""
+    table = table_amplitude(orbit) * np.cos(orbit.phases + orbit.durations)
+    return bounces(orbit) - table
+
+
+# The equations that the orbits solve.
+
+
+def equations_of(orbit: OrbitImpacts, *along: str | Path) -> tuple[OrbitEquations, np.ndarray]:
+    """The equations of orbits, with parameters that vary, or a path of parameters, and y of the
+    orbits, shape (..., N + parameters).
+
+    Raises
+    ------
+    ParameterError
+        If the balls have no such parameter, or if one of them follows from another.
+    """
+    return _equations(orbit, *balls_along(orbit.model, orbit.amplitude, *along))
+
+
+def _equations(
+    orbit: OrbitImpacts, balls: Balls, along: tuple[str, ...] = ()
+) -> tuple[OrbitEquations, np.ndarray]:
+    durations = np.broadcast_to(orbit.durations, (*orbit.shape, orbit.impacts)).ravel()
+    problem = OrbitEquations(
+        balls=balls,
+        impacts=orbit.impacts,
+        turns=orbit.turns,
+        along=along,
+        selects=selects_ends(*orbit.starts, durations),
+        resumes=np.broadcast_to(orbit.resumes, (orbit.impacts,)),
+    )
+    return problem, point_of(orbit, problem)
+
+
+def point_of(orbit: OrbitImpacts, problem: OrbitEquations) -> np.ndarray:
+    """y of orbits among the unknowns of a problem, shape (..., N + parameters)."""
+    dynamics, impact = orbit.starts
+    whole = (*orbit.shape, orbit.impacts)
+    with np.errstate(invalid="ignore"):
+        phase = orbit.phases + time_to_section(dynamics, impact).reshape(whole)
+        _, velocity = dynamics.section(impact)
+    given = {}
+    if problem.along:
+        values = Balls(orbit.model, orbit.amplitude, problem.balls.path).values
+        given = {name: values[name] for name in problem.along}
+    duration = np.broadcast_to(orbit.durations, whole)
+    return problem.point(phase, velocity.reshape(whole), duration, **given)
+
+
+def of_existing(
+    orbit: OrbitImpacts, quantity: Callable[[OrbitImpacts], np.ndarray], tail: int = 0
+) -> np.ndarray:
+    """A quantity of the orbits that exist, NaN for others, computed in blocks.
+
+    ``tail`` is the length of its last axis, 0 if it has the shape of the orbits.
+    """
+    exists = np.broadcast_to(orbit.exists & np.isfinite(orbit.amplitude), orbit.shape)
+    if np.all(exists) and 0 < orbit.size <= _LEGS:
+        return quantity(orbit)
+    ends = (tail,) if tail else ()
+    found = np.full((orbit.size, *ends), np.nan)
+    which = np.flatnonzero(exists)
+    row = orbit.flat(orbit.shape)
+    for part in blocks(which.size, _LEGS):
+        found[which[part]] = quantity(row.take(which[part]))
+    return found.reshape((*orbit.shape, *ends))

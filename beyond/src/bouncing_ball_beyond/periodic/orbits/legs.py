@@ -24,13 +24,15 @@ class Legs:
 
     ``residual`` are the two equations of each leg, its height and its velocity in the words of
     :mod:`bouncing_ball_beyond.periodic.orbits.problem`, shape (..., k, 2), and ``duration`` the
-    durations of the contacts. ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1},
-    with y of :class:`Landing`. ``dynamics``, which is None where no ball is inside the ranges of
+    durations of the contacts; ``clock`` is ϖ of linear contacts whose durations are unknowns.
+    ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1}, with y of
+    :class:`Landing`. ``dynamics``, which is None where no ball is inside the ranges of
     the parameters, ``impact``, ``departure`` and ``landing`` are flat.
     """
 
     residual: np.ndarray
     duration: np.ndarray
+    clock: np.ndarray | None
     velocity: np.ndarray
     acceleration: np.ndarray
     dynamics: Any
@@ -45,6 +47,7 @@ class Legs:
         return cls(
             residual=np.full((*shape, 2), np.nan),
             duration=none,
+            clock=None,
             velocity=none,
             acceleration=none,
             dynamics=None,
@@ -66,6 +69,7 @@ class Legs:
         return Legs(
             residual=self.residual[0],
             duration=self.duration[0],
+            clock=None if self.clock is None else self.clock[0],
             velocity=self.velocity[0],
             acceleration=self.acceleration[0],
             dynamics=dynamics,
@@ -73,6 +77,11 @@ class Legs:
             departure=departure,
             landing=landing,
         )
+
+    @property
+    def ends(self) -> np.ndarray:
+        """arsinh ϖD of linear contacts, D of others: the durations as their equations have them."""
+        return self.duration if self.clock is None else np.arcsinh(self.clock * self.duration)
 
     @cached_property
     def after(self) -> tuple[Impact, np.ndarray]:
@@ -147,12 +156,15 @@ class Legs:
         return height.reshape(self.duration.shape)
 
     @property
-    def duration_slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the durations by θ and by v, for a model that continues its contacts."""
+    def end_slopes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of :attr:`ends` by θ and by v, for a model that continues its contacts."""
         if self.dynamics is None:
             return self.duration, self.duration
-        by_phase, by_velocity = self.departure.slopes
-        return by_phase.reshape(self.duration.shape), by_velocity.reshape(self.duration.shape)
+        by_phase, by_velocity = (x.reshape(self.duration.shape) for x in self.departure.slopes)
+        if self.clock is None:
+            return by_phase, by_velocity
+        factor = self.clock / np.hypot(1, self.clock * self.duration)
+        return factor * by_phase, factor * by_velocity
 
     def _jacobian(self, near: bool) -> Jacobian:
         """The derivative of the map up to the landing, or up to the phase θ_{i+1}."""

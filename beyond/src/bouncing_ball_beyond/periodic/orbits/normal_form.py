@@ -32,6 +32,7 @@ import numpy as np
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.numerics.corrector import solve_linear
 from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.return_map import returned
@@ -118,8 +119,7 @@ def normal_form(orbit: Orbit) -> NormalForm:
             "normal_form needs a saddle-node or a period doubling of a branch, such as "
             'found.first("period doubling")'
         )
-    problem = orbit.problem(orbit.along[0])
-    y = orbit.point(problem)
+    problem, y = equations_of(orbit, orbit.along[0])
     kind = Bifurcation(orbit.kind)
     off = float(kind.test(*problem.trace_and_determinant(y)))
     size = 1 + float(np.max(np.abs(problem.monodromy(y))))

@@ -9,36 +9,35 @@ they are called relative, which means relative to the table: δ = z - w.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.arrays import blocks, in_words
+from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball_beyond.periodic.orbits import stability
-from bouncing_ball_beyond.periodic.orbits.highest import about_highest
-from bouncing_ball_beyond.periodic.orbits.impacts import OrbitImpacts
-from bouncing_ball_beyond.periodic.orbits.legs import gap_at_start, time_to_section
+from bouncing_ball_beyond.periodic.orbits import motion, stability
+from bouncing_ball_beyond.periodic.orbits.impacts import (
+    OrbitImpacts,
+    equations_of,
+    flights,
+    number_or_row,
+    of_existing,
+    of_impacts,
+)
+from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from bouncing_ball_beyond.drawing.result import Result
 
-# The highest point of a contact is searched in so many rounds of so many samples. The last steps
-# are 16⁻⁵ of the first, and the error of the height is of the order of the square of the last step.
-_SAMPLES = 33
-_ROUNDS = 6
 _EPS = np.finfo(float).eps
-# Number of orbits whose samples or legs are in memory at the same time.
-_BLOCK = 1024
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -89,24 +88,10 @@ class Orbit(OrbitImpacts):
             [type(self).__name__, *(f"  {name:<22}{in_words(x)}" for name, x in named.items())]
         )
 
-    def _landing_gap(self) -> np.ndarray:
-        """δ of the flights at the impacts with which they end, shape (..., k)."""
-        dynamics, impact = self._start
-        gap = gap_at_start(dynamics, impact).reshape(*self.shape, self.impacts)
-        return np.roll(gap, -1, axis=-1)
-
-    @property
-    def _heights(self) -> np.ndarray:
-        """Absolute heights at release, which follow from the flights to the next impacts."""
-        landing = self._lam * np.sin(np.roll(self.phases, -1, axis=-1))
-        landing = landing + self._of_existing(Orbit._landing_gap, self.impacts)
-        mean_velocity = (self._bounces + np.roll(self.velocities, -1, axis=-1)) / 2
-        return landing - mean_velocity * self._flights
-
     @property
     def bounce_height(self) -> Any:
         """Absolute height z_b of the ball at release."""
-        return self._shaped(self._heights)
+        return of_impacts(motion.release_heights(self))
 
     @property
     def max_height(self) -> Any:
@@ -115,108 +100,9 @@ class Orbit(OrbitImpacts):
         As that of the root's orbit it is the apex of a flight, here of the highest, unless the
         table lifts the ball higher during a long contact.
         """
-        rising = np.maximum(self._bounces, 0.0)
-        apex = np.max(self._heights + rising * rising / 2, axis=-1)
-        top = np.array(np.broadcast_to(apex, self.shape))
-        lasting = np.any(self.durations > 0, axis=-1)
-        low = np.flatnonzero((top < self.amplitude) & lasting)
-        # The samples of all orbits at once would take gigabytes.
-        for part in blocks(low.size, _BLOCK):
-            lifted = self.flat(self.shape).take(low[part])._contact_top()
-            top.flat[low[part]] = np.maximum(top.flat[low[part]], lifted)
-        return self._single(top)
+        return motion.max_height(self)
 
-    def _contact_top(self) -> np.ndarray:
-        """Greatest height in contact."""
-
-        def height(since: np.ndarray) -> np.ndarray:
-            gap, _ = self._in_contact(since)
-            return gap + self._lam * np.sin(self.phases + since)
-
-        heights, *_ = about_highest(height, 0.0 * self.durations, self.durations, _SAMPLES, _ROUNDS)
-        return np.max(heights, axis=(0, -1))
-
-    def _in_contact(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times since the starts of all contacts, shape (..., orbits, k)."""
-        legs = self._legs
-        flat = time.reshape(-1, self.size * self.impacts)
-        found = legs.dynamics.within(legs.impact, legs.departure, flat)
-        displacement, velocity = (x.reshape(time.shape) for x in found)
-        return displacement, velocity
-
-    def contact_motion(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
-        """δ and δ′ at times 0 ≤ s ≤ τ_b in the contact of one impact, NaN at other times.
-
-        The results have the shape to which the times and the orbits broadcast; they are floats for
-        one orbit at one time.
-        """
-        s = np.asarray(time, dtype=float)
-        shape = np.broadcast_shapes(s.shape, self.shape)
-        each = np.broadcast_to(s, shape).reshape(-1, self.size)
-        found = np.full((2, *each.shape), np.nan)
-        which = np.flatnonzero(np.broadcast_to(self.exists, self.shape))
-        if which.size:
-            row = self if which.size == self.size else self.flat(self.shape).take(which)
-            legs = row._legs
-            number = np.arange(row.size) * self.impacts + impact
-            dynamics, start, departure = legs.dynamics.kept(number, legs.impact, legs.departure)
-            found[..., which] = dynamics.within(start, departure, each[:, which])
-        # A time may be the duration up to rounding.
-        last = self.durations[..., impact] * (1 + 8 * _EPS)
-        inside = (s >= 0) & (s <= last)
-        displacement, velocity = np.where(inside, found.reshape(2, *shape), np.nan)
-        return self._single(displacement), self._single(velocity)
-
-    def contact_path(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
-        """Height z and velocity z′ at times 0 ≤ s ≤ τ_b in the contact of one impact."""
-        displacement, velocity = self.contact_motion(time, impact)
-        phase = self.phases[..., impact] + np.asarray(time)
-        height = displacement + self.amplitude * np.sin(phase)
-        speed = velocity + self.amplitude * np.cos(phase)
-        return self._single(height), self._single(speed)
-
-    def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
-        """Height and velocity in the flight after one impact, from which the time τ is counted.
-
-        In the paper, with the release at τ_b and the bouncing-off velocity z′_b ::
-
-            z  = -(τ - τ_b)²/2 + (τ - τ_b) z′_b + Λ sin(τ_b + φ)    (14)
-            z′ = -(τ - τ_b) + z′_b                                  (15)
-        """
-        s = np.asarray(time) - self.durations[..., impact]
-        bounce = self._bounces[..., impact]
-        velocity = bounce - s
-        height = self._heights[..., impact] + (bounce + velocity) / 2 * s
-        return self._single(height), self._single(velocity)
-
-    def path(self, time: ArrayLike) -> tuple[Any, Any]:
-        """Absolute height and velocity at any time since the first impact, with period 2πm.
-
-        The shape is that to which the times and the orbits broadcast; both are floats for one
-        orbit at one time. At the time of an impact without duration, the velocity is that after
-        the impact.
-        """
-        t = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.periods))
-        passed = np.cumsum(self._intervals, axis=-1)
-        height = np.zeros(np.broadcast_shapes(t.shape, self.shape))
-        velocity = np.zeros_like(height)
-        for k in range(self.impacts):
-            begun = passed[..., k] - self._intervals[..., k]
-            s = t - begun
-            duration = self.durations[..., k]
-            here = (t >= begun) & (t < passed[..., k]) if self.impacts > 1 else True
-            touching = s < duration
-            inside = self.contact_path(np.where(touching & here, s, 0.0), k)
-            outside = self.flight_path(np.where(touching, duration, s), k)
-            height = np.where(here, np.where(touching, inside[0], outside[0]), height)
-            velocity = np.where(here, np.where(touching, inside[1], outside[1]), velocity)
-        return self._single(height), self._single(velocity)
-
-    def touches(self, time: ArrayLike) -> Any:
-        """Whether the ball is in contact at times since the first impact, as :meth:`path`."""
-        t = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.periods))
-        since = t[..., np.newaxis] - (np.cumsum(self._intervals, axis=-1) - self._intervals)
-        return self._single(np.any((since >= 0) & (since <= self.durations), axis=-1))
+    path = motion.path
 
     def history(self, samples: int = 200) -> Result:
         """A single orbit over one repetition, from its first impact on.
@@ -263,6 +149,25 @@ class Orbit(OrbitImpacts):
         """
         return self.history().plot(path, ax=ax, size=size, font_size=font_size)
 
+    def to_dataset(self) -> xr.Dataset:
+        """The orbit, or a row of orbits, as a labelled dataset with the model and its parameters.
+
+        :func:`bouncing_ball_beyond.read_orbits` makes equal orbits from it, also from a netCDF file
+        of it.
+
+        Examples
+        --------
+        >>> from bouncing_ball_beyond import read_orbits
+        >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
+        >>> orbit = Orbit.of(RestitutionModel(0.5), 1, 1.5, 0.7)
+        >>> read_orbits(orbit.to_dataset()) == orbit
+        True
+        """
+        # Imported here, because a single orbit needs no labels.
+        from bouncing_ball_beyond.periodic.orbits.saved import dataset_of
+
+        return dataset_of(self)
+
     # Stability and admissibility.
 
     def monodromy(self) -> np.ndarray:
@@ -273,29 +178,24 @@ class Orbit(OrbitImpacts):
         multipliers.
         """
 
-        def matrix(part: Orbit) -> np.ndarray:
-            problem, y = part._own
+        def matrix(part: OrbitImpacts) -> np.ndarray:
+            problem, y = part.own_equations
             rows = np.stack(problem.monodromy(y), axis=-1)
             return rows if part.shape else rows.reshape(4)
 
-        return self._of_existing(matrix, 4).reshape(*self.shape, 2, 2)
+        return of_existing(self, matrix, 4).reshape(*self.shape, 2, 2)
 
     def trace_and_determinant(self) -> tuple[Any, Any]:
-        """Trace and determinant of the monodromy, each with the shape of the orbits."""
-        trace, determinant = np.moveaxis(self._trace_and_determinant, -1, 0)
-        return self._single(trace), self._single(determinant)
+        """Trace and determinant of the monodromy, each with the shape of the orbits; the latter is
+        from the contraction of areas in the contacts.
+        """
 
-    @cached_property
-    def _trace_and_determinant(self) -> np.ndarray:
-        def both(part: Orbit) -> np.ndarray:
-            problem, y = part._own
+        def both(part: OrbitImpacts) -> np.ndarray:
+            problem, y = part.own_equations
             return np.stack(problem.trace_and_determinant(y), axis=-1)
 
-        return self._of_existing(both, 2)
-
-    def determinant(self) -> Any:
-        """Determinant of the monodromy, from the contraction of areas in the contacts."""
-        return self.trace_and_determinant()[1]
+        trace, determinant = np.moveaxis(of_existing(self, both, 2), -1, 0)
+        return number_or_row(trace), number_or_row(determinant)
 
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first."""
@@ -303,13 +203,13 @@ class Orbit(OrbitImpacts):
 
     def is_stable(self) -> Any:
         """Whether both multipliers lie inside the unit circle: asymptotic stability."""
-        return self._single(stability.is_stable(*self.trace_and_determinant()))
+        return number_or_row(stability.is_stable(*self.trace_and_determinant()))
 
     def is_neutral(self) -> Any:
         """Whether both multipliers lie on the unit circle, and are no ±1, up to rounding: an orbit
         of a ball without dissipation, r = 1 or ζ = 0, that is not unstable. It is not stable.
         """
-        return self._single(stability.is_neutral(*self.trace_and_determinant()))
+        return number_or_row(stability.is_neutral(*self.trace_and_determinant()))
 
     def is_admissible(self) -> Any:
         """Whether the simulated ball follows the orbit, without an earlier release or landing.
@@ -319,20 +219,20 @@ class Orbit(OrbitImpacts):
         there it may change from one point of a branch to the next.
         """
 
-        def judged(part: Orbit) -> np.ndarray:
-            possible = np.all((part.durations >= 0) & (part._flights > 0), axis=-1)
-            return is_admissible(*part._own) & possible
+        def judged(part: OrbitImpacts) -> np.ndarray:
+            possible = np.all((part.durations >= 0) & (flights(part) > 0), axis=-1)
+            return is_admissible(*part.own_equations) & possible
 
-        return self._single(np.nan_to_num(self._of_existing(judged)) > 0)
+        return number_or_row(np.nan_to_num(of_existing(self, judged)) > 0)
 
     def defect(self) -> Any:
         """Largest absolute value of the defects of the equations."""
 
-        def largest(part: Orbit) -> np.ndarray:
-            problem, y = part._own
-            return np.max(np.abs(problem.residual(y)), axis=-1)
+        def largest(part: OrbitImpacts) -> np.ndarray:
+            problem, y = part.own_equations
+            return largest_defect(problem.residual(y))
 
-        return self._single(self._of_existing(largest))
+        return number_or_row(of_existing(self, largest))
 
     def digits_left(self) -> Any:
         """The number of decimal digits of the states that are certain; NaN where there is no orbit.
@@ -344,38 +244,43 @@ class Orbit(OrbitImpacts):
         unknowns.
         """
 
-        def digits(part: Orbit) -> np.ndarray:
-            problem, y = part._own
+        def digits(part: OrbitImpacts) -> np.ndarray:
+            problem, y = part.own_equations
             if part.kind:
-                problem = part.problem(part.along[0])
-                y = part.point(problem)
-            # Next to a release without speed the slopes are infinite.
-            with np.errstate(invalid="ignore", over="ignore"):
-                matrix = np.nan_to_num(problem.jacobian(y))
-                size = np.max(np.abs(matrix) @ np.abs(y)[..., np.newaxis], axis=(-2, -1))
-            largest = np.max(np.abs(y), axis=-1)
-            error = np.max(np.abs(problem.residual(y)), axis=-1) + _EPS * size
-            smallest = np.linalg.svd(matrix, compute_uv=False)[..., -1]
-            with np.errstate(divide="ignore"):
-                return np.maximum(np.log10(largest * smallest / error), 0.0)
+                problem, y = equations_of(part, part.along[0])
+            return certain_digits(y, *problem.equations_at(y))
 
-        return self._single(self._of_existing(digits))
-
-    @property
-    def clock(self) -> Any:
-        """π/D, about the frequency of the contact over that of the table; 1 for an instant."""
-        lasts = np.where(self.durations > 0, self.durations, np.pi)
-        return self._shaped(np.pi / lasts)
+        return number_or_row(of_existing(self, digits))
 
     def distance(self, other: Orbit) -> Any:
-        """Largest difference to other orbits in Λ, φ, z′_i, and in D times :attr:`clock`."""
+        """Largest difference to other orbits in Λ, φ, z′_i, and in D times π/D, which is about the
+        frequency of the contact over that of the table.
+        """
         turned = reduce_angle(self.phases - other.phases)
         lasts = np.where(self.durations > 0, self.durations, np.pi)
         longer = (self.durations - other.durations) * np.pi / lasts
         faster = self.velocities - other.velocities
         of_impacts = np.max(np.abs(np.broadcast_arrays(turned, longer, faster)), axis=(0, -1))
         larger = np.abs(np.asarray(self.amplitude) - other.amplitude)
-        return self._single(np.maximum(of_impacts, larger))
+        return number_or_row(np.maximum(of_impacts, larger))
+
+
+def largest_defect(residual: np.ndarray) -> np.ndarray:
+    """Largest absolute value of the defects of the equations, shape (...,) for (..., N)."""
+    return np.max(np.abs(residual), axis=-1)
+
+
+def certain_digits(y: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """:meth:`Orbit.digits_left` of points y, with the defects and the Jacobian there."""
+    # Next to a release without speed the slopes are infinite.
+    with np.errstate(invalid="ignore", over="ignore"):
+        matrix = np.nan_to_num(matrix)
+        size = np.max(np.abs(matrix) @ np.abs(y)[..., np.newaxis], axis=(-2, -1))
+    largest = np.max(np.abs(y), axis=-1)
+    error = largest_defect(residual) + _EPS * size
+    smallest = np.linalg.svd(matrix, compute_uv=False)[..., -1]
+    with np.errstate(divide="ignore"):
+        return np.maximum(np.log10(largest * smallest / error), 0.0)
 
 
 def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Orbit:

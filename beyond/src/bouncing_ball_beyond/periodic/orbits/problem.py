@@ -27,7 +27,10 @@ arrives there some time after its landing, also where it lands slowly.
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, which
 Newton's method finds, and nothing else depends on it: its equation is that D_i is the duration of
-the contact. The equations of such a model are smooth also where a contact grazes the release.
+the contact. The unknown of a linear contact is arsinh ϖD_i: ϖD_i is about π however stiff the
+contact is, so that a point far ahead on a branch along ϖ is predicted well, and 2πϖ m if the ball
+hardly leaves the table. The equations of such a model are smooth also where a contact grazes the
+release.
 
 The derivatives of these equations and of the durations with respect to the states follow from the
 tangent maps of the models, exactly at a solution. Those with respect to a parameter are central
@@ -80,6 +83,7 @@ class OrbitEquations:
     :class:`~bouncing_ball.numerics.corrector.Problem`.
 
     The last axis of y holds θ_1, v_1, θ_2, …, v_k, the durations D_1, …, D_k if they are unknowns,
+    as arsinh ϖD_1, …, arsinh ϖD_k of linear contacts,
     and the coordinates arsinh p of the parameters in ``along``. With two of them the
     solutions are a surface.
 
@@ -169,7 +173,26 @@ class OrbitEquations:
         """The durations of the contacts, shape (..., k); 0 if they are no unknowns."""
         if not self.selects:
             return np.zeros((*y.shape[:-1], self.impacts))
+        ends = self._ends(y)
+        return np.sinh(ends) / self._clock(self.values(y)) if self.oscillates else ends
+
+    def _ends(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns that select the ends of the contacts, shape (..., k)."""
         return y[..., 2 * self.impacts : 3 * self.impacts]
+
+    def _clock(self, varied: dict[str, Any]) -> np.ndarray:
+        """ϖ of linear contacts at values of the parameters that vary, with an axis for the
+        impacts.
+        """
+        path = self.balls.path
+        balls = self.balls.at(varied) if path is not None and path.name in varied else self.balls
+        values = {**balls.model.numbers(), **varied}
+        return np.asarray(values["frequency_ratio"])[..., np.newaxis]
+
+    @cached_property
+    def oscillates(self) -> bool:
+        """Whether the unknown durations are those of linear contacts."""
+        return self.selects and self.balls.model.dynamics(1.0).contact is not None
 
     def point(
         self, phase: np.ndarray, velocity: np.ndarray, duration: np.ndarray, **values: Any
@@ -180,7 +203,8 @@ class OrbitEquations:
         coordinates = [np.arcsinh(np.asarray(values[name])) for name in self.along]
         parts = [state]
         if self.selects:
-            parts.append(duration)
+            clocked = self.oscillates
+            parts.append(np.arcsinh(duration * self._clock(values)) if clocked else duration)
         parts.extend(x[..., np.newaxis] for x in coordinates)
         leading = np.broadcast_shapes(*(x.shape[:-1] for x in parts))
         return np.concatenate([np.broadcast_to(x, (*leading, x.shape[-1])) for x in parts], axis=-1)
@@ -301,7 +325,12 @@ class OrbitEquations:
             return Legs.unknown(shape)
         interval = self.intervals(y).ravel()
         impact = self.impact(dynamics, y)
-        departure = dynamics.depart(impact, near=self.durations(y).ravel())
+        clock = None
+        near = self._ends(y) if self.selects else np.zeros(shape)
+        if self.oscillates:
+            clock = np.broadcast_to(dynamics.law.frequency_ratio, interval.shape).reshape(shape)
+            near = np.sinh(near) / clock
+        departure = dynamics.depart(impact, near=near.ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
         lag = self._lag(dynamics, _of_next(self.resuming), shape)
@@ -313,6 +342,7 @@ class OrbitEquations:
         return Legs(
             residual=residual,
             duration=duration.reshape(shape),
+            clock=clock,
             velocity=landing.rate.reshape(shape),
             acceleration=landing.acceleration.reshape(shape),
             dynamics=dynamics,
@@ -339,7 +369,7 @@ class OrbitEquations:
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:
             return here
-        return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
+        return np.concatenate([here, self._ends(y) - legs.ends[0]], axis=-1)
 
     def _points_around(self, y: np.ndarray, directions: int) -> tuple[np.ndarray, list[np.ndarray]]:
         """The points of :meth:`compared` in the first of its directions, and the distances of each

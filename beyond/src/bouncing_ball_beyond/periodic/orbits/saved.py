@@ -20,6 +20,8 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.drawing.result import Result
 from bouncing_ball_beyond.models.as_text import model_of, text_of
+from bouncing_ball_beyond.periodic.orbits.impacts import OrbitImpacts
+from bouncing_ball_beyond.periodic.orbits.motion import path, touches
 
 ORBIT = "orbit"
 """The dimension of several orbits that are no branch."""
@@ -44,7 +46,7 @@ _FIELDS = {
 }
 
 
-def columns_of(orbit: Any, over: str, prefix: str = "") -> dict[str, Any]:
+def columns_of(orbit: OrbitImpacts, over: str, prefix: str = "") -> dict[str, Any]:
     """The fields of orbits, a row of them over a dimension, as variables with this prefix.
 
     A single orbit has no such dimension.
@@ -65,7 +67,7 @@ def columns_of(orbit: Any, over: str, prefix: str = "") -> dict[str, Any]:
     return found | {"ball_model": ((), text), "resumes": ("impact", resumes)}
 
 
-def dataset_of(orbit: Any) -> xr.Dataset:
+def dataset_of(orbit: OrbitImpacts) -> xr.Dataset:
     """One orbit, or a row of orbits, as a labelled dataset; see :meth:`.Orbit.to_dataset`."""
     if len(orbit.shape) > 1:
         raise ModelError(f"orbits of the shape {orbit.shape} are not in a row: give a part of them")
@@ -77,17 +79,17 @@ def dataset_of(orbit: Any) -> xr.Dataset:
     return describe(data, named | KEPT).assign_attrs(along=", ".join(orbit.along))
 
 
-def history_of(orbit: Any, samples: int) -> Result:
+def history_of(orbit: OrbitImpacts, samples: int) -> Result:
     """A single orbit over one repetition; see :meth:`.Orbit.history`."""
     if orbit.shape or not orbit.exists:
         raise ModelError("a history is that of one orbit that exists: give one of the orbits")
     count = checked_number("samples", samples, SAMPLES)
     time = np.linspace(0.0, 2 * np.pi * int(orbit.periods), int(orbit.periods) * count + 1)
     require_memory(time.size, "states", "samples")
-    height, velocity = orbit.path(time)
+    height, velocity = path(orbit, time)
     table = orbit.amplitude * np.sin(orbit.phases[0] + time)
     columns = {"ball": height, "ball_velocity": velocity, "table": table}
-    columns["contact"] = orbit.touches(time)
+    columns["contact"] = touches(orbit, time)
     data = xr.Dataset({name: ("time", values) for name, values in columns.items()}, {"time": time})
     labels = dict(orbit.model.parameters) | {"amplitude": orbit.amplitude}
     return Result.of(describe(data).assign_attrs(labels), "history")

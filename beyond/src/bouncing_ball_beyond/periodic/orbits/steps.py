@@ -11,12 +11,14 @@ from bouncing_ball.numerics.corrector import NewtonSettings
 from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball_beyond.periodic.orbits.short_steps import ShortSteps
 
-# A round predicts eight points together. From ϖ = 20 to 200 steps of at most 0.25 take 14 points
-# instead of 26, but 43 evaluations instead of 23: the last points of a round are so far away that
-# Newton's method fails there.
 STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps of a branch, over the phases, the velocities and arsinh of the parameter. A branch ends
 where its points accumulate, for example where its orbits merge with permanent contact."""
+
+STEPS_OF_DECADES = replace(STEPS, largest=0.25)
+"""Steps of a branch along a parameter that counts in decades, such as ϖ or a stiffness. A decade
+takes 14 points, and not 26, because the orbits hardly change: the unknown ϖD of a linear contact
+stays near π, so that points far ahead are predicted well."""
 
 STEPS_OF_CURVES = replace(STEPS, creep=1e-3)
 """Steps of a curve in two parameters, which ends where its points accumulate, for example at a

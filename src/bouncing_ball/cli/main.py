@@ -13,7 +13,11 @@ def main(arguments: list[str] | None = None) -> None:
     For ``diff`` see :mod:`bouncing_ball.cli.diff`.
     """
     with importing():
+        import gc
         import sys
+
+        # What a command imports stays: looking for garbage among it would take a tenth of its time.
+        gc.set_threshold(100_000)
 
         from bouncing_ball.cli.answers import answer
         from bouncing_ball.cli.output import fail

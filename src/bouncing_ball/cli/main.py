@@ -14,8 +14,11 @@ def main(arguments: list[str] | None = None) -> None:
     """
     with importing():
         import gc
+        import os
         import sys
 
+        # The matrices are small, so that threads for them would only cost their start.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         # What a command imports stays: looking for garbage among it would take a tenth of its time.
         gc.set_threshold(100_000)
 

@@ -69,6 +69,8 @@ def serve() -> None:
     # and closing the file would then wait forever. Because files are written completely or not at
     # all, no file is damaged.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # Jobs run side by side and their matrices are small, so that threads for them would only cost.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # What scripts import stays: looking for garbage among it would take a tenth of the time.
     gc.set_threshold(100_000)
     atexit.register(gc.freeze)

@@ -123,7 +123,8 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     True
     """
     eps = np.asarray(excess, dtype=float)
-    omega, zeta = contact.frequency_ratio, contact.damping_ratio
+    omega = contact.frequency_ratio
+    zeta = contact.damping_ratio
     duration = (contact.free_angle + eps) / contact.damped_frequency
     flight = 2 * np.pi * np.asarray(n) - duration
     # ϖ_d τ_b = θ₀ + ε, where sine and cosine of θ₀ = π - 2α are exact.
@@ -152,7 +153,8 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     ]
     shape = np.broadcast_shapes(eps.shape, contact.shape, np.shape(n))
     system = np.stack([np.stack([np.broadcast_to(x, shape) for x in row], -1) for row in rows], -2)
-    matrix, right = system[..., :3], system[..., 3]
+    matrix = system[..., :3]
+    right = system[..., 3]
     solvable = np.isfinite(system).all(axis=(-2, -1))
     matrix = np.where(solvable[..., np.newaxis, np.newaxis], matrix, np.eye(3))
     u, x, y = np.moveaxis(solve_linear(matrix, right), -1, 0)

@@ -1,9 +1,9 @@
 """A job of the workflow: its log, an error of one line, its datasets and their provenance.
 
-Every script of the workflow runs in :func:`logged`. The script of a
-dataset calls :func:`make_dataset` with its study, that of a table :func:`write_table` with its
-columns, and that of a picture :func:`.pictures.draw` with its drawing. ``snakemake`` is the object
-that Snakemake provides for its scripts.
+Every script of the workflow runs in :func:`logged`. The script of a dataset calls
+:func:`make_dataset` with its study, that of a table :func:`write_table` with its columns, and that
+of a picture :func:`.pictures.draw` with its drawing. ``snakemake`` is the object that Snakemake
+provides for its scripts.
 
 The signature of a study declares what it takes, for example ``study(parameters, release,
 continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds

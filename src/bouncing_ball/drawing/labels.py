@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-import scipy
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.path import Path
@@ -122,6 +121,22 @@ def note(axes: Axes, text: str, point: Any, offset: Any, **look: Any) -> None:
     axes.annotate(text, point, xytext=offset, textcoords="offset points", **look)
 
 
+def _ascending(values: np.ndarray) -> np.ndarray:
+    """The ascending numbers that are nearest to some values by least squares.
+
+    These are the values of isotonic regression by their min-max formula, for a few values: the
+    import of scipy.optimize takes longer than the drawing.
+
+    Examples
+    --------
+    >>> _ascending(np.array([3.0, 1.0, 4.0])).tolist()
+    [2.0, 2.0, 4.0]
+    """
+    count = range(len(values))
+    means = [[values[j : k + 1].mean() for k in count[j:]] for j in count]
+    return np.array([max(min(means[j][i - j :]) for j in count[: i + 1]) for i in count])
+
+
 def names_at_the_right(axes: Axes, ends: Sequence[tuple[str, float, str]]) -> None:
     """Names of lines that end at the right edge: name, height and colour of each.
 
@@ -134,8 +149,7 @@ def names_at_the_right(axes: Axes, ends: Sequence[tuple[str, float, str]]) -> No
     order = np.argsort(places)
     steps = _LINE_HEIGHT * np.arange(len(ends))
     low, high = axes.get_window_extent().intervaly * _POINTS_PER_INCH / axes.figure.dpi
-    ascending = scipy.optimize.isotonic_regression(places[order] - steps).x
-    spread = steps + ascending.clip(low, max(low, high - steps[-1]))
+    spread = steps + _ascending(places[order] - steps).clip(low, max(low, high - steps[-1]))
     moved = np.empty_like(places)
     moved[order] = spread - places[order]
     for (name, height, colour), offset in zip(ends, moved, strict=True):

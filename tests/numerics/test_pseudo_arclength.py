@@ -7,7 +7,7 @@ from one_branch import continue_both_ways, continue_branch
 
 from bouncing_ball.numerics.branch import STARTED, Branch, ContinuationError, resample
 from bouncing_ball.numerics.branch import _between as hermite
-from bouncing_ball.numerics.events import Event
+from bouncing_ball.numerics.events import Event, limit
 from bouncing_ball.numerics.pseudo_arclength import solve_at
 from bouncing_ball.numerics.steps import StepControl
 
@@ -129,6 +129,39 @@ def test_a_branch_ends_exactly_at_the_bound_of_its_parameter():
     # Straight and linear: the step grows to the largest and stays.
     steps = np.diff(branch.arclength)
     assert steps.max() == pytest.approx(StepControl().largest, rel=EXACT)
+
+
+def in_a_plane(bound):
+    """The end of a branch at p = ``bound``, as a limit."""
+    return limit("parameter bound", np.array([0.0, -1.0]), -bound, "window")
+
+
+def test_a_step_ends_in_the_plane_of_a_linear_event():
+    """The point there is that which is located after a step beyond it, with other events
+    located before it and none beyond it.
+    """
+    before, beyond = (Event(str(p), lambda y, p=p: p - y[..., 1]) for p in (0.59, 0.61))
+    control = StepControl(largest=0.1)
+    found, located = (
+        along(CIRCLE, 1.0, 0.0, events=[before, beyond, end], control=control)
+        for end in (in_a_plane(0.6), parameter_bound(0.6, True, "window"))
+    )
+    assert [special.name for special in located.special] == ["0.59", "parameter bound"]
+    assert [special.name for special in found.special] == ["0.59"]
+    for branch in (found, located):
+        assert str(branch.end) == "window"
+        assert branch.points[-1] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
+        assert branch.tangents[-1] == pytest.approx(np.array([-0.6, 0.8]), abs=EXACT)
+    assert len(found.points) == len(located.points)
+
+
+def test_a_branch_that_runs_along_a_plane_is_not_corrected_in_it():
+    """At p = 1 - 1e-4 the circle makes an angle of 0.014 with the line p = constant."""
+    bound = 1 - 1e-4
+    start = np.array([np.sqrt(1 - (1 - 2e-4) ** 2), 1 - 2e-4])
+    branch = along(CIRCLE, *start, events=[in_a_plane(bound)])
+    assert str(branch.end) == "window"
+    assert branch.points[-1] == pytest.approx(np.array([np.sqrt(1 - bound**2), bound]), abs=1e-10)
 
 
 def test_events_of_one_step_come_in_order_and_none_after_the_end():

@@ -48,6 +48,8 @@ class Event:
         The reason why the branch ends at a terminal event, as a sentence.
     condition : callable, optional
         g(y) with its gradient; by default the gradient is a central difference.
+    normal : ndarray, shape (N + 1,), optional
+        The gradient of a g that is linear, a unit vector; see :func:`limit`.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Event:
     terminal: bool = False
     reason: str = ""
     condition: Condition | None = None
+    normal: np.ndarray | None = None
 
     def locate(
         self,
@@ -91,6 +94,22 @@ class Event:
         if not (found.converged and vanishes and -_SLACK <= progress <= 1 + _SLACK):
             return None
         return SpecialPoint(self.name, found.point)
+
+
+def limit(name: str, normal: np.ndarray, at: float, reason: str) -> Event:
+    """The end of a branch in the plane ``normal · y = at``, from the side where the product is
+    larger, such as the end of the range of a parameter.
+
+    The last step ends in this plane, so that there is nothing to locate, and the point is none of
+    the special points of the branch.
+
+    Examples
+    --------
+    >>> top = limit("top", np.array([0.0, -1.0]), -3.0, "amplitude = 3 is reached")
+    >>> float(top.function(np.array([1.0, 2.0])))
+    1.0
+    """
+    return Event(name, lambda y: y @ normal - at, terminal=True, reason=reason, normal=normal)
 
 
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:

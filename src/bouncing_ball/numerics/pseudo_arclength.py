@@ -9,7 +9,8 @@ in order, up to the first step between neighbours at which the corrector fails, 
 turns too much, or on which an event cannot be located. If this is the first of them, the next round
 tries several shorter steps in its place, of which the longest one that succeeds is taken.
 :class:`StepControl` chooses the steps. The branch ends at a terminal event, where no step is short
-enough, or after a given number of points.
+enough, or after a given number of points. A prediction beyond a terminal event that is linear in y,
+such as an end of the parameter's range, is moved into the plane of this event and corrected there.
 
 Several branches are followed side by side for the same reason. Each branch has steps of its own and
 ends on its own, so that it is the same as if it were followed alone.
@@ -31,8 +32,11 @@ from bouncing_ball.numerics.corrector import (
     satisfies,
     tangent,
 )
+from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import Attempt, State, StepControl, Way, WithEvents, end_at
 
+# A branch is steep to a plane if the sine of the angle between them is above this.
+_STEEP = 0.1
 # The planes of a round are normal to one tangent, so that its steps become longer as the branch
 # turns. A round ends before a step that is longer than intended by this factor.
 _STRETCHED = 1.25
@@ -110,14 +114,14 @@ def _attempts(
     along = np.repeat([state.tangent for state in states], counts, axis=0)
     curvature = np.repeat([state.curvature for state in states], counts, axis=0)
     steps = np.concatenate([steps for steps, _ in plans])
-    distance = np.concatenate([distances for _, distances in plans])[:, np.newaxis]
-    predicted = point + distance * (along + distance / 2 * curvature)
-    found = newton(problem, predicted, plane(along, predicted))
+    distance = np.concatenate([distances for _, distances in plans])
+    predicted, normal, met = _predicted(events, point, along, curvature, distance)
+    found = newton(problem, predicted, plane(normal, predicted))
     # A branch whose corrector failed stays where it is.
     reached = np.where(found.converged[:, np.newaxis], found.point, point)
     ahead = tangent(problem.jacobian(reached), along)
     # The point before each one is the row before, except for a first row and for shorter steps.
-    first = (steps == distance[:, 0])[:, np.newaxis]
+    first = (steps == distance)[:, np.newaxis]
     before = np.arange(len(reached)) - 1
     chord = reached - np.where(first, point, reached[before])
     behind = np.where(first, along, ahead[before])
@@ -129,8 +133,43 @@ def _attempts(
         for k, event in enumerate(events):
             values[:, k] = event.function(reached)
     columns = steps, found.converged, found.residual, found.iterations, angle
-    rows = zip(reached, ahead, values, *(column.tolist() for column in columns), strict=True)
+    known = (column.tolist() for column in columns)
+    rows = zip(reached, ahead, values, *known, met, strict=True)
     return [[Attempt(*row) for row in islice(rows, count)] for count in counts]
+
+
+def _predicted(
+    events: Sequence[Event],
+    point: np.ndarray,
+    along: np.ndarray,
+    curvature: np.ndarray,
+    distance: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The predictions at some distances, none of which is beyond a limit, the normals of the planes
+    of their correctors, and the limit in whose plane each prediction lies, or None.
+    """
+
+    def ahead(which: Any, distance: np.ndarray) -> np.ndarray:
+        along_which = along[which] + distance[:, np.newaxis] / 2 * curvature[which]
+        return point[which] + distance[:, np.newaxis] * along_which
+
+    predicted = ahead(slice(None), distance)
+    normal = along.copy()
+    met = np.full(len(point), None)
+    for event in events:
+        if event.normal is None:
+            continue
+        here = event.function(point)
+        slope = along @ event.normal
+        # The square of the slope at the limit. A branch that runs along it is not corrected in it.
+        square = slope**2 - 2 * here * (curvature @ event.normal)
+        onto = (here > 0) & (event.function(predicted) < 0) & (square > _STEEP**2)
+        reached = ahead(onto, 2 * here[onto] / (np.sqrt(square[onto]) - slope[onto]))
+        # Rounding would leave the point beyond the limit.
+        predicted[onto] = reached - event.function(reached)[:, np.newaxis] * event.normal
+        normal[onto] = event.normal
+        met[onto] = event
+    return predicted, normal, met
 
 
 def _angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:

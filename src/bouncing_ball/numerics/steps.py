@@ -104,7 +104,8 @@ class Attempt(NamedTuple):
     """A corrected next point of a branch, with the tangent and the values of the test functions.
 
     ``step`` is the one from the point before. ``angle`` is the larger one of those that the tangent
-    and the chord make with the tangent there, NaN if the Jacobian is not defined.
+    and the chord make with the tangent there, NaN if the Jacobian is not defined. ``limit`` is the
+    event in whose plane the point lies, which ends the branch there, or None.
     """
 
     point: np.ndarray
@@ -115,6 +116,7 @@ class Attempt(NamedTuple):
     residual: float
     iterations: int
     angle: float
+    limit: Event | None
 
 
 class _Rejected(Exception):
@@ -223,9 +225,8 @@ class Way:
         curvature = (attempt.tangent - state.tangent) / moved
         reached = State(attempt.point, attempt.tangent, curvature, attempt.values)
         problem, events = tested
-        changed = changes_of_sign(events, state.values, attempt.values)
-        if not changed:
-            return reached, None
+        changes = changes_of_sign(events, state.values, attempt.values)
+        changed = [change for change in changes if change.event is not attempt.limit]
         tangents = state.tangent, attempt.tangent
         passage = locate_all(problem, changed, state.point, attempt.point, tangents)
         if passage.missed is not None:
@@ -235,7 +236,7 @@ class Way:
             raise _Rejected(event.reason or why, event.terminal)
         self.special.extend(passage.special)
         if passage.terminal is None:
-            return reached, None
+            return reached, end_at(attempt.limit) if attempt.limit else None
         point = passage.special[-1].point
         matrix = problem.jacobian(point)
         # At the end of its domain the derivative may be undefined; the branch keeps its direction.

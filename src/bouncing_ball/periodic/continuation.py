@@ -32,7 +32,7 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind, resample
-from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.events import Event, SpecialPoint, limit
 from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
 from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.explicit import explicit_branch
@@ -48,7 +48,8 @@ from bouncing_ball.periodic.spring_damper_branch import SpringDamperBranch
 LARGEST_STEP = 0.1
 """Default of the largest step in arclength: half of that of the paper's figures, for contacts of
 which nothing is known beforehand."""
-# The places of φ, z′_i, ϖτ_b and Λ in y.
+# The number of unknowns, and the places of φ, z′_i, ϖτ_b and Λ among them.
+_COUNT = 7
 _MEASURED = [0, 1, 2, 6]
 # A branch ends at this speed of the impact or this flight time, and not at 0. Where the orbit
 # merges with permanent contact both vanish together, and the equations are singular: rounding
@@ -270,6 +271,7 @@ def _events(equations: PaperEquations, top: float, ends: Sequence[str]) -> list[
 
         return function
 
+    up = np.eye(_COUNT)[-1]
     return [
         *(
             Event(kind, partial(equations.test, kind), terminal=kind in ends)
@@ -285,18 +287,8 @@ def _events(equations: PaperEquations, top: float, ends: Sequence[str]) -> list[
             terminal=True,
             reason=_MERGES,
         ),
-        Event(
-            "top",
-            lambda y: top - y[..., -1],
-            terminal=True,
-            reason=f"amplitude = {top:g} is reached",
-        ),
-        Event(
-            "bottom",
-            lambda y: y[..., -1] - _LOWEST,
-            terminal=True,
-            reason=f"amplitude = {_LOWEST:g} is reached",
-        ),
+        limit("top", -up, -top, f"amplitude = {top:g} is reached"),
+        limit("bottom", up, _LOWEST, f"amplitude = {_LOWEST:g} is reached"),
     ]
 
 

@@ -22,9 +22,6 @@ from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
 from bouncing_ball_beyond.periodic.orbits.ends import (
-    AT_BOUND,
-    BOUND,
-    AtMargin,
     Window,
     events_along,
     flights_vanish,
@@ -50,12 +47,6 @@ _HALVES = "the two turns of the orbit become nearly equal"
 # The duration of a contact is that of the release near the unknown one, of which Newton's method
 # finds twelve digits; a release at another time is another one.
 _SAME_DURATION = 1e-6
-# Where a step of this length fails, the solution at an end of the range of the parameter is tried,
-# if it is nearer than the second length along the tangent. The branch may bend on the way by this
-# part of the step.
-_SHORT = 1e-3
-_ONTO = 0.1
-_BENT = 0.3
 # Without a value at which a branch ends, it ends at this multiple of the first value of the
 # parameter, or of 1, if the range of the parameter has no end.
 _FARTHEST = 10.0
@@ -316,25 +307,7 @@ def branch_from(
                 most=most - len(branch.points) + 1,
             )
             branch = _joined(branch, further)
-        return Followed(equations, _up_to_limit(equations, branch, within))
-
-
-def _up_to_limit(equations: OrbitEquations, branch: Branch, within: Window) -> Branch:
-    """A branch that ended next to an end of the range of its parameter, with the orbit at this end.
-
-    Steps beyond the end fail, because there are no balls, so that the steps become too short.
-    """
-    last = branch.points[-1]
-    bounds = [within.low, within.high]
-    bound = bounds[int(np.argmin(np.abs(np.arcsinh(bounds) - last[-1])))]
-    # An end at an event has the name of the event, and one that only lies next to a limit has none,
-    # or was taken for one where the flight vanishes.
-    located = branch.end.event not in ("", AtMargin.FLIGHT) or not branch.end.finished
-    if located or not abs(np.arcsinh(bound) - last[-1]) < AT_BOUND:
-        return branch
-    at = _coordinate(within, bound, last)
-    point, why = solution_near(equations, np.array([*last[:-1], at]), PATIENT)
-    return branch if why else _ended_at(branch, point, limits_of(equations, within))
+        return Followed(equations, branch)
 
 
 def through_start(back: Branch, ahead: Branch) -> Branch:
@@ -382,93 +355,10 @@ def _up_to_equal_turns(
     limits = limits_of(equations, within)
     tested = WithEvents(equations, [*events, *limits, *starts_fold(equations)])
     steps = replace(control, initial=initial)
-    branch = _one_way(tested, start, towards, within, steps, most)
+    (branch,) = continue_branches(lambda _: tested, [start], [towards], steps, most)
+    if isinstance(branch, ContinuationError):
+        raise NoOrbitError(str(branch))
     return _cut_off(equations, with_explained_ends(equations, branch, limits))
-
-
-def _one_way(
-    tested: WithEvents,
-    start: np.ndarray,
-    towards: np.ndarray,
-    within: Window,
-    control: StepControl,
-    most: int,
-) -> Branch:
-    """The branch from a solution on, which ends at a limit of its parameter in one step.
-
-    Steps beyond a limit that is the end of the parameter's range fail, because there are no balls,
-    so that they would become ever shorter. Where a short step fails, the solution at a limit is
-    tried, and only then shorter steps.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no solution near the start.
-    """
-    long = replace(control, smallest=max(control.smallest, _SHORT))
-    branch = _continued(tested, start, towards, long, most)
-    steps = np.diff(branch.arclength)
-    accumulate = steps.size > 0 and steps[-1] < control.creep
-    if not branch.end.stuck or accumulate:
-        return branch
-    reached = _onto_limit(tested, branch, within)
-    if reached is not None:
-        return reached
-    left = most - len(branch.points) + 1
-    further = _continued(tested, branch.points[-1], branch.tangents[-1], control, left)
-    return _joined(branch, further)
-
-
-def _continued(
-    tested: WithEvents, start: np.ndarray, towards: np.ndarray, control: StepControl, most: int
-) -> Branch:
-    (found,) = continue_branches(lambda _: tested, [start], [towards], control, most)
-    if isinstance(found, ContinuationError):
-        raise NoOrbitError(str(found))
-    return found
-
-
-def _onto_limit(tested: WithEvents, branch: Branch, within: Window) -> Branch | None:
-    """A branch whose steps became short, with the solution at the limit of its parameter that is
-    one step ahead; None if there is none, or if an event is on the way to it.
-    """
-    problem, events = tested
-    last = branch.points[-1]
-    ahead = branch.tangents[-1]
-    at = _coordinate(within, within.high if ahead[-1] > 0 else within.low, last)
-    step = (at - last[-1]) / ahead[-1]
-    if not 0 < step < _ONTO:
-        return None
-    guess = last + step * ahead
-    guess[-1] = at
-    point, why = solution_near(problem, guess, PATIENT)
-    if why or np.linalg.norm(point - guess) > _BENT * step:
-        return None
-    tests = [each for each in events if each.name != BOUND]
-    values = np.array([[float(each.function(y)) for each in tests] for y in (last, point)])
-    if np.any((values[0] >= 0) != (values[1] >= 0)):
-        return None
-    limits = [each for each in events if each.name == BOUND]
-    return _ended_at(branch, point, limits)
-
-
-def _coordinate(within: Window, bound: float, inside: np.ndarray) -> float:
-    """The coordinate of an end of a range, of which rounding does not lead out of the range."""
-    at = float(np.arcsinh(bound))
-    while not within.low <= np.sinh(at) <= within.high:
-        at = float(np.nextafter(at, inside[-1]))
-    return at
-
-
-def _ended_at(branch: Branch, point: np.ndarray, limits: Sequence[Event]) -> Branch:
-    """A branch with an orbit at an end of the range of its parameter."""
-    reached = next(each for each in limits if abs(float(each.function(point))) < AT_BOUND)
-    return replace(
-        branch,
-        points=np.concatenate([branch.points, [point]]),
-        tangents=np.concatenate([branch.tangents, branch.tangents[-1:]]),
-        end=End(reached.reason, event=reached.name),
-    )
 
 
 def _cut_off(equations: OrbitEquations, branch: Branch) -> Branch:

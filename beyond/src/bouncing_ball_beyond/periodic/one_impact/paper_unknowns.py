@@ -113,6 +113,7 @@ class PaperUnknowns:
             event,
             function=lambda y: event.function(self.inner(y)),
             condition=None if known is None else self.condition(known),
+            normal=None,
         )
 
     def condition(self, known: Condition) -> Condition:

@@ -21,7 +21,7 @@ import numpy as np
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.numerics.branch import Branch, End, EndKind
-from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.events import Event, SpecialPoint, limit
 from bouncing_ball_beyond.periodic.orbits.domain_limits import DomainLimit
 from bouncing_ball_beyond.periodic.orbits.lost_release import lost_release
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
@@ -240,30 +240,23 @@ def limits_of(equations: OrbitEquations, *ranges: Window) -> list[Event]:
     """The ends of a branch or a curve at the finite ends of the ranges of its parameters."""
     found = []
     for j, (name, within) in enumerate(zip(equations.along, ranges, strict=True)):
+        axis = np.eye(equations.size + len(ranges))[equations.size + j]
         for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
             if np.isfinite(bound):
                 reason = f"{bound_in_words(name, bound)} is reached"
                 if bound == within.behind:
                     reason += ", as far behind the start as the given value is ahead of it"
-                found.append(_limit(bound, sign, equations.size + j, reason))
+                at = _coordinate(within, bound, sign)
+                found.append(limit(BOUND, sign * axis, sign * at, reason))
     return found
 
 
-def _limit(bound: float, sign: float, column: int, reason: str) -> Event:
-    """The end of a branch where a parameter, an entry of y, reaches a bound: from above if the sign
-    is positive, otherwise from below.
-    """
-    at = np.arcsinh(bound)
-
-    def inside(y: np.ndarray) -> np.ndarray:
-        return sign * (y[..., column] - at)
-
-    def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        gradient = np.zeros_like(y)
-        gradient[..., column] = sign
-        return inside(y), gradient
-
-    return Event(BOUND, inside, True, reason, condition)
+def _coordinate(within: Window, bound: float, sign: float) -> float:
+    """The coordinate of an end of a range, of which rounding does not lead out of the range."""
+    at = float(np.arcsinh(bound))
+    while not within.low <= np.sinh(at) <= within.high:
+        at = float(np.nextafter(at, sign * np.inf))
+    return at
 
 
 def with_explained_ends(

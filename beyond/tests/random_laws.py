@@ -10,10 +10,10 @@ from random_arguments import Calls, Draw
 import bouncing_ball_beyond
 from bouncing_ball.errors import Range
 from bouncing_ball_beyond.models.named_laws import LAWS
-from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
+from bouncing_ball_beyond.periodic.branches.labelled import BranchDataset, FollowedBranch
 from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS
 
-arguments = arguments_of(bouncing_ball_beyond, FollowedBranch, SpecialCurve)
+arguments = arguments_of(bouncing_ball_beyond, FollowedBranch, BranchDataset)
 """The declared arguments of a public function of beyond by its name."""
 
 

@@ -174,7 +174,7 @@ def test_the_models_of_the_library_are_the_balls_of_all_calls(model, ball):
         lambda one: simulate(one, amplitude=[0.9, 1.0], impacts=3),
         lambda one: bb.history(one, amplitude=0.9, periods=1.0),
         lambda one: bb.motion_of(one, amplitude=0.9, phase=1.0),
-        lambda one: bb.follow(orbit(one, amplitude=0.9), to=0.95),
+        lambda one: bb.follow(orbit(one, amplitude=0.9), to=0.95).to_dataset(),
     ):
         assert call(model).equals(call(ball))
 

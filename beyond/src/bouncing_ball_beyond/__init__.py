@@ -47,8 +47,8 @@ if TYPE_CHECKING:
     from bouncing_ball_beyond.periodic.branches.follow import follow as follow
     from bouncing_ball_beyond.periodic.branches.grazing import GrazingForm as GrazingForm
     from bouncing_ball_beyond.periodic.branches.grazing import grazing_form as grazing_form
+    from bouncing_ball_beyond.periodic.branches.labelled import BranchDataset as BranchDataset
     from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch as FollowedBranch
-    from bouncing_ball_beyond.periodic.branches.labelled import SpecialCurve as SpecialCurve
     from bouncing_ball_beyond.periodic.branches_of_ball import branch as branch
     from bouncing_ball_beyond.periodic.law_balls import contact_law as contact_law
     from bouncing_ball_beyond.periodic.orbits.normal_form import NormalForm as NormalForm
@@ -69,6 +69,7 @@ __version__ = "0.1.0"
 # The public names and the modules in which they are defined.
 _MODULES = {
     "Ball": "models.ball",
+    "BranchDataset": "periodic.branches.labelled",
     "ContactLaw": "models.laws.contact_law",
     "ContactModel": "models.contact_model",
     "Flores": "models.laws.start_speed",
@@ -80,7 +81,6 @@ _MODULES = {
     "ParameterPath": "periodic.orbits.paths",
     "RestitutionModel": "models.rigid",
     "Result": "drawing.result",
-    "SpecialCurve": "periodic.branches.labelled",
     "SpringDamper": "models.spring_damper",
     "TwoLimits": "periodic.orbits_of_ball",
     "basins": "motions.motion_of",

@@ -71,7 +71,7 @@ def test_a_curve_starts_between_its_limits(refused, window, words):
 
 def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
     one = bouncing_ball_beyond.orbit(RIGID, amplitude=1.4)
-    found = bouncing_ball_beyond.follow(one, to=1.8)
+    found = bouncing_ball_beyond.follow(one, to=1.8).to_dataset()
     described(found)
     assert found.phase.dims == ("point", "impact") and found.attrs["restitution"] == 0.5
     states = list(found.states())
@@ -81,7 +81,7 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
     doubling = found.first("period doubling")
     ranges = {"restitution": (0.4, 0.6)}
     curve = bouncing_ball_beyond.follow(doubling, along=("amplitude", "restitution"), ranges=ranges)
-    described(curve)
+    described(curve.to_dataset())
     curve.plot(tmp_path / "curve.png")
     assert {path.name for path in tmp_path.iterdir()} == {"branch.png", "curve.png"}
 
@@ -125,7 +125,9 @@ def test_arguments_of_a_wrong_type_are_named(refusal, options, words):
 
 
 def test_a_part_of_a_branch_has_its_orbits(refusal):
-    found = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(RIGID, amplitude=1.4), to=1.5)
+    found = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit(RIGID, amplitude=1.4), to=1.5
+    ).to_dataset()
     part = found.isel(point=0)
     assert [*part.states()] == [*found.states()][:1]
     with refusal(NoOrbitError, "the branch has no period doubling; it ends because amplitude"):
@@ -149,14 +151,16 @@ def test_a_contact_in_place_of_a_ball_is_told_its_model(refusal):
 def test_a_special_orbit_is_followed_as_its_kind_says():
     one = bouncing_ball_beyond.orbit(RIGID, amplitude=1.4)
     doubling = bouncing_ball_beyond.follow(one, to=1.8).first("period doubling")
-    doubled = bouncing_ball_beyond.follow(doubling, to=1.8)
+    doubled = bouncing_ball_beyond.follow(doubling, to=1.8).to_dataset()
     assert (doubled.attrs["impacts"], doubled.attrs["periods"]) == (2, 2)
     ranges = {"restitution": (0.4, 0.6)}
-    curve = bouncing_ball_beyond.follow(doubling, along=("amplitude", "restitution"), ranges=ranges)
+    curve = bouncing_ball_beyond.follow(
+        doubling, along=("amplitude", "restitution"), ranges=ranges
+    ).to_dataset()
     assert curve.attrs["curve_kind"] == "period doubling"
     # From a saddle-node the branch on which it lies is followed, along the parameter it came from.
     fold = bouncing_ball_beyond.follow(one, to=0.5).first("saddle-node")
-    again = bouncing_ball_beyond.follow(fold)
+    again = bouncing_ball_beyond.follow(fold).to_dataset()
     assert again.attrs["impacts"] == 1 and float(again.amplitude[-1]) > fold.amplitude
 
 
@@ -172,16 +176,18 @@ STIFF = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.
 def test_from_a_saddle_node_the_stable_side_is_followed(ball, start, along, there, beyond, at):
     one = bouncing_ball_beyond.orbit(ball, amplitude=start)
     fold = bouncing_ball_beyond.follow(one, to=0.1).first("saddle-node")
-    found = bouncing_ball_beyond.follow(fold, along=along, to=there)
+    found = bouncing_ball_beyond.follow(fold, along=along, to=there).to_dataset()
     assert found[along].values[-1] == pytest.approx(there) and found.stable[1:10].all()
     # There are no orbits on the other side: the same branch is followed, and its end says so.
-    same = bouncing_ball_beyond.follow(fold, along=along, to=beyond)
+    same = bouncing_ball_beyond.follow(fold, along=along, to=beyond).to_dataset()
     assert np.sign(same[along].values[3] - at) == np.sign(there - at) and same.stable[1:4].all()
     name = along.replace("_", " ")
     end = str(same.end_reason.values[1])
     assert end.endswith(f"; {name} = {beyond:g} is beyond the saddle-node at {at:g}")
     # The other side comes behind the saddle-node.
-    behind = bouncing_ball_beyond.follow(list(found.states())[3], along=along, to=beyond)
+    behind = bouncing_ball_beyond.follow(
+        list(found.states())[3], along=along, to=beyond
+    ).to_dataset()
     assert behind.special_kind[0] == "saddle-node"
     assert not behind.stable[int(behind.special_point[0]) + 2]
 
@@ -193,7 +199,7 @@ def test_from_a_period_halving_the_branch_of_half_the_period_is_followed():
         doubling = branch.first("period doubling")
         doubled = bouncing_ball_beyond.follow(doubling, to=1.8)
         back = bouncing_ball_beyond.follow(list(doubled.states())[3], to=1.3)
-        half = bouncing_ball_beyond.follow(back.first("period halving"), to=1.55)
+        half = bouncing_ball_beyond.follow(back.first("period halving"), to=1.55).to_dataset()
         assert (half.attrs["impacts"], half.attrs["periods"]) == expected
         assert float(half.amplitude[0]) == pytest.approx(doubling.amplitude, abs=1e-12)
         assert half.sizes["point"] > 1 and float(half.amplitude[-1]) == pytest.approx(1.55)
@@ -210,7 +216,7 @@ def test_a_branch_that_ends_at_a_special_orbit_is_not_followed_from_there(refusa
 
 def test_lines_change_from_solid_to_dashed_at_the_period_doubling():
     one = bouncing_ball_beyond.orbit(RIGID, amplitude=1.4)
-    found = bouncing_ball_beyond.follow(one, to=1.8)
+    found = bouncing_ball_beyond.follow(one, to=1.8).to_dataset()
     place = float(found.special_amplitude[0])
     after = int(found.special_point[0])
     assert found.amplitude[after] < place < found.amplitude[after + 1]
@@ -234,7 +240,9 @@ def test_a_branch_is_drawn_along_each_parameter(name):
     """On the axis is the parameter that varies, and each point of the branch is a point there."""
     one = bouncing_ball_beyond.orbit(DRAWN[name], amplitude=1.4)
     for along, value in {"amplitude": 1.4, **one.model.numbers()}.items():
-        found = bouncing_ball_beyond.follow(one, along=along, to=1.002 * value, points=10)
+        found = bouncing_ball_beyond.follow(
+            one, along=along, to=1.002 * value, points=10
+        ).to_dataset()
         (axes,) = found.plot().axes
         drawn = np.concatenate([line.get_xdata() for line in axes.lines])
         values = found[along].values
@@ -246,7 +254,7 @@ def test_no_coefficient_that_varies_along_a_branch_is_called_constant(along):
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
     one = bouncing_ball_beyond.orbit(ball, amplitude=1.0)
     start = float(one.law.damping_ratio) if along == "damping_ratio" else 0.85
-    found = bouncing_ball_beyond.follow(one, along=along, to=1.01 * start)
+    found = bouncing_ball_beyond.follow(one, along=along, to=1.01 * start).to_dataset()
     assert "frequency_ratio" in found.attrs
     assert not {"restitution", "damping_ratio"} & set(found.attrs)
 
@@ -258,7 +266,7 @@ LAW = bouncing_ball_beyond.contact_law("tsuji", restitution=0.85, duration=0.3)
 @pytest.mark.parametrize("ball", [RIGID, SPRING, bouncing_ball_beyond.corrected(SPRING), LAW])
 def test_a_branch_has_the_observables_of_its_orbits_under_their_names(ball):
     orbit = bouncing_ball_beyond.orbit(ball, amplitude=1.2)
-    found = bouncing_ball_beyond.follow(orbit, to=1.25).isel(point=0, impact=0)
+    found = bouncing_ball_beyond.follow(orbit, to=1.25).to_dataset().isel(point=0, impact=0)
     for name in observables.OBSERVED:
         # Newton's method moves the first point by rounding errors only.
         assert float(found[name]) == pytest.approx(getattr(orbit, name), abs=1e-14), name
@@ -269,6 +277,6 @@ def test_a_branch_starts_at_a_saddle_node_itself(ratio):
     """There Newton's method with a fixed amplitude is singular."""
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=ratio)
     fold = bouncing_ball_beyond.limits(ball).saddle_node
-    found = bouncing_ball_beyond.follow(fold, to=0.5)
+    found = bouncing_ball_beyond.follow(fold, to=0.5).to_dataset()
     assert float(found.amplitude[0]) == pytest.approx(fold.amplitude, abs=1e-12)
     assert str(found.end_reason[1].values) == "amplitude = 0.5 is reached"

@@ -134,7 +134,7 @@ def require_critical(special):
 
 def judged(orbit, along, to):
     """The branch of an orbit up to a value, and the verdict on its end."""
-    found = bouncing_ball_beyond.follow(orbit, along=along, to=to, points=200)
+    found = bouncing_ball_beyond.follow(orbit, along=along, to=to, points=200).to_dataset()
     reason = str(found.end_reason.values[-1])
     special = found.special_states()
     require_critical(special)

@@ -120,7 +120,7 @@ def test_a_curve_without_ranges_ends_with_a_reason_and_its_points_are_spread(nam
         "spring-damper": bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0),
     }[name]
     fold = bouncing_ball_beyond.limits(ball).saddle_node
-    found = bouncing_ball_beyond.follow(fold, along=("amplitude", "restitution"))
+    found = bouncing_ball_beyond.follow(fold, along=("amplitude", "restitution")).to_dataset()
     first, last = found.end_reason.values
     assert str(last) == "amplitude = 0.0001 is reached"
     expected = {

@@ -28,7 +28,7 @@ def elastic(name):
 def test_a_curve_of_doublings_starts_without_dissipation(name):
     """Newton's method for the coefficient of the doublings left the range of r."""
     doubling = bouncing_ball_beyond.limits(elastic(name)).period_doubling
-    found = bouncing_ball_beyond.follow(doubling, along=("amplitude", "restitution"))
+    found = bouncing_ball_beyond.follow(doubling, along=("amplitude", "restitution")).to_dataset()
     first, last = found.end_reason.values
     assert str(last) == "restitution = 1 is reached"
     assert f"restitution = {0 if name == 'rigid' else 1e-09:g}" in str(first)
@@ -50,7 +50,9 @@ def test_a_curve_without_dissipation_has_no_special_resonance_and_ends_in_perman
     """
     ball = bouncing_ball_beyond.spring_damper(restitution=1.0, frequency_ratio=2.0)
     doubling = bouncing_ball_beyond.limits(ball).period_doubling
-    found = bouncing_ball_beyond.follow(doubling, along=("amplitude", "frequency_ratio"))
+    found = bouncing_ball_beyond.follow(
+        doubling, along=("amplitude", "frequency_ratio")
+    ).to_dataset()
     assert found.sizes["special"] == 0
     ends = [str(reason) for reason in found.end_reason.values]
     merged = ends.index("the flight vanishes: the orbit merges with permanent contact")
@@ -168,7 +170,8 @@ def curve_of_a_doubling(number):
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=2.0)
     states = bouncing_ball_beyond.branch(ball).special_states()
     doubling = [orbit for kind, orbit in states if kind == "period doubling"][number]
-    return bouncing_ball_beyond.follow(doubling, along=("amplitude", "frequency_ratio"))
+    along = ("amplitude", "frequency_ratio")
+    return bouncing_ball_beyond.follow(doubling, along=along).to_dataset()
 
 
 # The other doubling lies on the same curve: of its ends below, and of these weekly.
@@ -218,7 +221,7 @@ def test_doubled_orbits_are_followed_to_the_side_of_the_normal_form(name, refusa
         upwards = bouncing_ball_beyond.normal_form(doubling).opens_upwards
         at = doubling.amplitude
         aside = 0.01 if upwards else -0.01
-        found = bouncing_ball_beyond.follow(doubling, to=at + aside, points=40)
+        found = bouncing_ball_beyond.follow(doubling, to=at + aside, points=40).to_dataset()
         assert np.sign(float(found.amplitude[1]) - at) == np.sign(aside)
         assert "period halving" not in found.special_kind.values[:1].tolist()
         where = "above" if upwards else "below"
@@ -238,7 +241,7 @@ def test_a_doubled_branch_goes_away_from_its_start_if_no_value_is_given():
     down = [each for each in doublings if not bouncing_ball_beyond.normal_form(each).opens_upwards]
     assert down
     for doubling in down:
-        found = bouncing_ball_beyond.follow(doubling, points=20)
+        found = bouncing_ball_beyond.follow(doubling, points=20).to_dataset()
         assert float(found.amplitude[1]) < doubling.amplitude
         assert found.sizes["point"] > 3
 
@@ -256,7 +259,7 @@ def test_a_branch_does_not_list_the_saddle_node_at_which_it_starts(name):
     for n in (1,) if name == "law" else (1, 3):
         ends = bouncing_ball_beyond.limits(BALLS[name], n=n)
         top = 1.1 * ends.period_doubling.amplitude
-        found = bouncing_ball_beyond.follow(ends.saddle_node, to=top)
+        found = bouncing_ball_beyond.follow(ends.saddle_node, to=top).to_dataset()
         # What the branch has, from the closed form or from the equations of the bifurcations.
         assert found.special_kind.values.tolist() == ["period doubling"]
         place = float(found.special_amplitude[0])
@@ -276,7 +279,7 @@ def test_branch_and_follow_name_permanent_contact_in_the_same_words(restitution,
     assert float(whole.amplitude[0]) == pytest.approx(threshold, abs=1e-6)
     inner = list(whole.states())[20]
     towards = threshold - 0.3 * np.sign(inner.amplitude - threshold)
-    followed = bouncing_ball_beyond.follow(inner, to=float(towards))
+    followed = bouncing_ball_beyond.follow(inner, to=float(towards)).to_dataset()
     assert str(followed.end_reason[1].values) == merged
 
 
@@ -291,7 +294,7 @@ def test_branch_and_follow_name_a_landing_without_speed_in_the_same_words():
     assert abs(first.relative_impact_velocity) == pytest.approx(1e-4, rel=1e-6)
     inner = rest[40]
     to = first.amplitude - 0.3 * np.sign(inner.amplitude - first.amplitude)
-    followed = bouncing_ball_beyond.follow(inner, to=float(to))
+    followed = bouncing_ball_beyond.follow(inner, to=float(to)).to_dataset()
     assert str(followed.end_reason[1].values) == str(whole.end_reason[0].values)
     assert str(whole.end_reason[0].values).startswith("grazing of an impact: ")
     assert float(followed.amplitude[-1]) == pytest.approx(first.amplitude, abs=1e-6)
@@ -319,7 +322,7 @@ def test_a_branch_of_a_law_ends_where_the_release_is_lost():
 @pytest.mark.long
 def test_branch_and_follow_name_a_lost_release_of_a_law_in_the_same_words():
     first, inner, *_ = branch_to_a_lost_release_of_a_law().states()
-    followed = bouncing_ball_beyond.follow(inner, to=1.1 * first.amplitude, points=30)
+    followed = bouncing_ball_beyond.follow(inner, to=1.1 * first.amplitude, points=30).to_dataset()
     assert str(followed.end_reason[1].values) == LOST
     assert "release lost" not in followed.special_kind.values
     assert float(followed.amplitude[-1]) == pytest.approx(first.amplitude, abs=1e-6)
@@ -336,7 +339,9 @@ def test_a_curve_of_grazings_ends_with_its_reason():
         for kind, orbit in bouncing_ball_beyond.follow(one, to=2.6).special_states()
         if kind == "grazing of a flight"
     )
-    found = bouncing_ball_beyond.follow(grazing, along=("amplitude", "frequency_ratio"))
+    found = bouncing_ball_beyond.follow(
+        grazing, along=("amplitude", "frequency_ratio")
+    ).to_dataset()
     first, last = map(str, found.end_reason.values)
     assert first == (
         "where the flight touches the table, its minimum merges with a maximum, at about "
@@ -353,7 +358,7 @@ def test_a_curve_of_grazings_ends_with_its_reason():
     at = np.argmin(np.abs(rate))
     assert abs(height[at]) < 1e-5 and abs(rate[at]) < 1e-5 and abs(second[at]) < 1e-2
     # The differences of the condition end before the range does.
-    found = bouncing_ball_beyond.follow(grazing, along=("amplitude", "restitution"))
+    found = bouncing_ball_beyond.follow(grazing, along=("amplitude", "restitution")).to_dataset()
     for reason, end in zip(found.end_reason.values, ("1e-09", "1"), strict=True):
         assert str(reason) == (
             f"the points accumulate next to restitution = {end}, the end of its range"
@@ -369,7 +374,9 @@ def test_a_curve_ends_where_an_impact_vanishes():
     for fold in (one for each in branches for one in each.special_states()):
         if fold[0] != "saddle-node":
             continue
-        curve = bouncing_ball_beyond.follow(fold[1], along=("amplitude", "restitution"))
+        curve = bouncing_ball_beyond.follow(
+            fold[1], along=("amplitude", "restitution")
+        ).to_dataset()
         assert all(np.all(each.relative_impact_velocity < 0) for each in curve.states())
         ends += map(str, curve.end_reason.values)
     assert any("grazing of an impact" in end for end in ends)

@@ -170,7 +170,7 @@ def test_a_branch_ends_where_the_map_of_the_corrected_model_jumps():
     start = {"amplitude": 1.21979, "phase": -2.9230134388176703, "velocity": -6.3303630330352965}
     found = bouncing_ball_beyond.follow(
         bouncing_ball_beyond.orbit_of_motion(ball, **start), points=100
-    )
+    ).to_dataset()
     assert found.sizes["point"] < 100 and "just stays on" in str(found.end_reason[1].values)
     assert found.residual.max() < 1e-12
 
@@ -182,7 +182,7 @@ def test_a_branch_is_followed_although_newtons_method_meets_speeds_without_an_im
     parent = bouncing_ball_beyond.follow(
         bouncing_ball_beyond.orbit(ball, n=1, amplitude=0.9), to=2.0
     )
-    doubled = bouncing_ball_beyond.follow(parent.first("period doubling"))
+    doubled = bouncing_ball_beyond.follow(parent.first("period doubling")).to_dataset()
     assert str(doubled.end_reason[1].values).startswith("the start of a contact begins to have two")
     assert doubled.residual[:-1].max() < 1e-12
     # At this end rounding errors are divided by a hundredth.
@@ -219,12 +219,12 @@ def test_restitution_and_damping_ratio_are_one_parameter(refusal):
     """Along one of them the other one follows, and is not kept at its first value."""
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
     one = bouncing_ball_beyond.orbit(ball, amplitude=1.0)
-    found = bouncing_ball_beyond.follow(one, along="restitution", to=0.7)
+    found = bouncing_ball_beyond.follow(one, along="restitution", to=0.7).to_dataset()
     *_, last = found.states()
-    less = bouncing_ball_beyond.follow(last, along="damping_ratio", to=0.01)
+    less = bouncing_ball_beyond.follow(last, along="damping_ratio", to=0.01).to_dataset()
     assert less.damping_ratio[0] == pytest.approx(float(damping_ratio(0.7)), abs=1e-15)
     *_, damped = less.states()
-    back = bouncing_ball_beyond.follow(damped, along="restitution", to=0.7)
+    back = bouncing_ball_beyond.follow(damped, along="restitution", to=0.7).to_dataset()
     assert abs(back.phase[-1, 0] - found.phase[-1, 0]) < 1e-13
     assert {"restitution", "damping_ratio"}.isdisjoint(found.attrs)
     with refusal(ParameterError, "damping_ratio follows from restitution: both cannot vary"):
@@ -308,7 +308,7 @@ def test_an_orbit_that_no_ball_follows_starts_its_branch(name):
     for n in (1, 3):
         orbit = bouncing_ball_beyond.orbit(ball, n, amplitude=6.0 * n, side="unstable")
         assert not orbit.is_admissible()
-        found = bouncing_ball_beyond.follow(orbit, to=5.9 * n)
+        found = bouncing_ball_beyond.follow(orbit, to=5.9 * n).to_dataset()
         first = next(iter(found.states()))
         assert (first.impacts, first.periods) == (1, n)
         # The last Newton step of both is below 1e-12 of y, which is of order 10.
@@ -381,14 +381,16 @@ def test_an_orbit_with_an_odd_number_of_periods_has_no_halves():
 
 def test_without_a_value_a_branch_ends_at_ten_times_its_first_value(refusal):
     orbit = bouncing_ball_beyond.orbit(bouncing_ball_beyond.rigid(restitution=0.3), amplitude=2.0)
-    found = bouncing_ball_beyond.follow(orbit)
+    found = bouncing_ball_beyond.follow(orbit).to_dataset()
     assert str(found.end_reason[1].values) == "amplitude = 20 is reached"
 
 
 def test_an_end_behind_the_start_says_what_it_is():
     """Behind its saddle-node the branch comes back; nobody has given 1.9."""
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
-    found = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(ball, amplitude=1.0), to=0.1)
+    found = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit(ball, amplitude=1.0), to=0.1
+    ).to_dataset()
     assert found.first("saddle-node").amplitude > 0.1
     assert str(found.end_reason[1].values) == (
         "amplitude = 1.9 is reached, as far behind the start as the given value is ahead of it; "
@@ -401,7 +403,9 @@ def test_a_branch_of_one_family_is_described_as_one_that_is_followed():
     """Both come from one function; the branch of a family has no axis of its impacts."""
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
     whole = bouncing_ball_beyond.branch(ball, n=2, points=40)
-    part = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(ball, 2, amplitude=2.0), to=2.5)
+    part = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit(ball, 2, amplitude=2.0), to=2.5
+    ).to_dataset()
     assert {name: whole[name].dims for name in whole.data_vars} == {
         name: tuple(dim for dim in part[name].dims if dim != "impact") for name in part.data_vars
     }
@@ -420,14 +424,14 @@ def test_the_limits_of_a_family_know_what_they_are():
     """From a saddle-node the stable side is followed, and from a doubling the doubled branch."""
     fold, doubling = bouncing_ball_beyond.limits(bouncing_ball_beyond.rigid(restitution=0.5))
     assert (fold.kind, doubling.kind) == ("saddle-node", "period doubling")
-    side = bouncing_ball_beyond.follow(fold, to=1.5)
+    side = bouncing_ball_beyond.follow(fold, to=1.5).to_dataset()
     assert side.stable[1:-1].all() and side.special_kind.values.tolist() == []
     # Below the saddle-node there is no orbit: the same branch is followed, and says so.
-    below = bouncing_ball_beyond.follow(fold, to=0.6)
+    below = bouncing_ball_beyond.follow(fold, to=0.6).to_dataset()
     assert below.stable[1:-1].all() and float(below.amplitude[-1]) > fold.amplitude
     (_, end) = below.end_reason.values
     assert end.endswith(f"; amplitude = 0.6 is beyond the saddle-node at {fold.amplitude:.6g}")
-    assert bouncing_ball_beyond.follow(doubling, to=1.6).attrs["impacts"] == 2
+    assert bouncing_ball_beyond.follow(doubling, to=1.6).to_dataset().attrs["impacts"] == 2
     elastic = bouncing_ball_beyond.limits(
         bouncing_ball_beyond.contact_law("tsuji", stiffness=900.0, damping=0.0)
     )
@@ -450,7 +454,9 @@ def test_a_point_that_is_no_period_doubling_is_not_switched(refusal):
 def test_a_branch_that_merges_with_permanent_contact_says_so(ratio):
     """Its points accumulate there: 500 of them were followed to no end at ϖ = 1.5."""
     ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=ratio)
-    found = bouncing_ball_beyond.follow(bouncing_ball_beyond.orbit(ball, amplitude=0.9), to=0.01)
+    found = bouncing_ball_beyond.follow(
+        bouncing_ball_beyond.orbit(ball, amplitude=0.9), to=0.01
+    ).to_dataset()
     assert "merges with permanent contact" in str(found.end_reason[1].values)
     assert float(found.amplitude[-1]) == pytest.approx(float(ball.permanent_contact_threshold()))
     assert found.sizes["point"] < 200
@@ -464,7 +470,7 @@ def test_a_branch_ends_at_its_limit_also_where_the_flight_nearly_vanishes():
     whole = bouncing_ball_beyond.branch(ball, amplitude_max=3.0, points=400)
     flights = 2 * np.pi - whole.contact_duration.values
     start = list(whole.states())[int(np.argmin(np.abs(np.log(flights / 0.0023))))]
-    found = bouncing_ball_beyond.follow(start, along="damping_ratio", to=0.0)
+    found = bouncing_ball_beyond.follow(start, along="damping_ratio", to=0.0).to_dataset()
     assert str(found.end_reason[1].values) == "damping ratio = 0 is reached"
     assert found.damping_ratio[-1] == 0
     *_, last = found.states()
@@ -482,7 +488,7 @@ def test_a_closed_branch_ends_at_its_start():
     """A loop in r; followed on, the branch would pass its special orbits again and again."""
     ball = bouncing_ball_beyond.rigid(restitution=0.49711198038140114)
     orbit = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=3.2407106247114794)
-    found = bouncing_ball_beyond.follow(orbit, along="restitution", to=0.62)
+    found = bouncing_ball_beyond.follow(orbit, along="restitution", to=0.62).to_dataset()
     assert str(found.end_reason[-1].values) == "the branch is closed: it comes back to its start"
     first, *_, last = found.states()
     # The start is an orbit where a ball ends; the first point is that orbit, corrected.
@@ -499,7 +505,7 @@ def test_next_to_the_end_of_a_range_a_steep_height_is_no_jump():
     orbit = bouncing_ball_beyond.orbit(
         bouncing_ball_beyond.rigid(restitution=0.8), n=3, amplitude=1.24
     )
-    found = bouncing_ball_beyond.follow(orbit, along="restitution", to=1.0)
+    found = bouncing_ball_beyond.follow(orbit, along="restitution", to=1.0).to_dataset()
     assert str(found.end_reason[1].values) == "restitution = 1 is reached"
     # A parameter enters as arsinh, and comes back as sinh.
     assert float(found.restitution[-1]) == pytest.approx(1.0, abs=4 * np.finfo(float).eps)
@@ -517,7 +523,7 @@ def test_a_branch_is_followed_both_ways_in_one_call(ball, n):
     """The two branches from the orbit, one after another."""
     orbit = bouncing_ball_beyond.orbit(ball, n, amplitude=1.0)
     low, high = 0.1, 1.4
-    whole = bouncing_ball_beyond.follow(orbit, to=(low, high))
+    whole = bouncing_ball_beyond.follow(orbit, to=(low, high)).to_dataset()
     fold, doubling = bouncing_ball_beyond.limits(ball, n)
     places = {kind: each.amplitude for kind, each in whole.special_states()}
     assert places["saddle-node"] == pytest.approx(fold.amplitude, rel=1e-11)
@@ -526,10 +532,10 @@ def test_a_branch_is_followed_both_ways_in_one_call(ball, n):
     assert whole.end_reason.values.tolist() == 2 * ["amplitude = 1.4 is reached"]
     # It begins on the unstable side, behind the saddle-node.
     assert not whole.stable[0] and float(whole.amplitude[0]) == pytest.approx(1.4, rel=1e-12)
-    up = bouncing_ball_beyond.follow(orbit, to=high)
+    up = bouncing_ball_beyond.follow(orbit, to=high).to_dataset()
     np.testing.assert_array_equal(whole.phase.values[-len(up.point) :], up.phase.values)
     # From the saddle-node to both sides it is the same branch.
-    of_fold = bouncing_ball_beyond.follow(fold, to=(low, high))
+    of_fold = bouncing_ball_beyond.follow(fold, to=(low, high)).to_dataset()
     for end in (0, -1):
         assert of_fold.phase[end].values == pytest.approx(whole.phase[end].values, abs=1e-11)
     assert "saddle-node" in of_fold.special_kind.values
@@ -558,7 +564,7 @@ def test_a_branch_ends_at_the_end_of_a_range_in_a_few_steps(ball, along, to):
     """There are no balls beyond it: the steps became ever shorter, in 28 rounds in place of 9."""
     found = bouncing_ball_beyond.follow(
         bouncing_ball_beyond.orbit(ball, amplitude=1.0), along=along, to=to
-    )
+    ).to_dataset()
     # A parameter comes back from arsinh with a rounding error.
     assert float(found[along][-1]) == pytest.approx(to, abs=4 * np.finfo(float).eps)
     assert str(found.end_reason[1].values) == f"{along.replace('_', ' ')} = {to:g} is reached"

@@ -86,7 +86,7 @@ def test_the_branch_with_one_impact_more_begins_at_the_grazing():
     ball = bouncing_ball_beyond.rigid(restitution=R)
     orbit = _grazing(ball)
     form = bouncing_ball_beyond.grazing_form(orbit)
-    more = bouncing_ball_beyond.follow(orbit, points=10)
+    more = bouncing_ball_beyond.follow(orbit, points=10).to_dataset()
     assert more.attrs["impacts"] == 2 and more.attrs["periods"] == 1
     first = next(more.states())
     # Simulated balls follow it, whose certified events are those of the simulation.
@@ -162,7 +162,7 @@ def test_a_branch_begins_at_its_grazing_and_not_behind_a_fold_beside_it(
     ball = bouncing_ball_beyond.spring_damper(restitution=restitution, frequency_ratio=ratio)
     count = 0
     for one in bouncing_ball_beyond.orbits(ball, n=n, amplitude=start):
-        branch = bouncing_ball_beyond.follow(one, to=12.0, points=100)
+        branch = bouncing_ball_beyond.follow(one, to=12.0, points=100).to_dataset()
         for kind, orbit in branch.special_states():
             if kind != "grazing of a flight":
                 continue
@@ -189,10 +189,10 @@ def test_a_saddle_node_beside_a_grazing_is_found():
         restitution=0.3741033749511521, frequency_ratio=26.900080270186287
     )
     for one in bouncing_ball_beyond.orbits(ball, n=2, amplitude=3.4):
-        found = bouncing_ball_beyond.follow(one, to=6.2)
+        found = bouncing_ball_beyond.follow(one, to=6.2).to_dataset()
         if "grazing of a flight" in found.special_kind:
             grazing = found.first("grazing of a flight")
-    more = bouncing_ball_beyond.follow(grazing, to=6.2, points=40)
+    more = bouncing_ball_beyond.follow(grazing, to=6.2, points=40).to_dataset()
     kinds = more.special_kind.values.tolist()
     assert kinds[0] == "saddle-node"
     beyond = float(more.special_amplitude[0]) - grazing.amplitude

@@ -91,7 +91,9 @@ def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
 
 def _is_on_its_curve(impact, amplitude):
     """In two parameters the grazing impact is followed as the grazing flight without it."""
-    curve = bouncing_ball_beyond.follow(impact, along=("amplitude", "restitution"), points=10)
+    curve = bouncing_ball_beyond.follow(
+        impact, along=("amplitude", "restitution"), points=10
+    ).to_dataset()
     assert (curve.attrs["curve_kind"], curve.attrs["impacts"]) == ("grazing of a flight", 1)
     start = int(
         np.argmin(np.abs(curve.restitution.values - float(impact.model.numbers()["restitution"])))

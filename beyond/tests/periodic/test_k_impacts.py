@@ -120,7 +120,8 @@ def test_attributes_are_suggested_as_keywords_are():
         (one, "impact_velocty", "impact_velocity"),
         (one, "is_stabel", "is_stable"),
         (RIGID, "restituton", "restitution"),
-        (found, "special_amplitud", "special_amplitude"),
+        (found, "special_stats", "special_states"),
+        (found.to_dataset(), "special_amplitud", "special_amplitude"),
         (bb, "folow", "follow"),
     ):
         with pytest.raises(AttributeError, match=rf"no attribute '{wrong}'; did you mean {meant}"):

@@ -227,7 +227,9 @@ def test_simulated_balls_on_both_sides_of_a_doubling_do_what_the_normal_form_say
 def test_the_doublings_on_both_sides_of_a_generalized_one_differ():
     doubling = _doubling(_three_impacts(), 1.5)
     both = "amplitude", "restitution"
-    curve = bouncing_ball_beyond.follow(doubling, along=both, ranges={"restitution": (0.72, 0.79)})
+    curve = bouncing_ball_beyond.follow(
+        doubling, along=both, ranges={"restitution": (0.72, 0.79)}
+    ).to_dataset()
     assert curve.special_kind.values.tolist() == ["generalized period doubling"]
     border = float(curve.special_restitution[0])
     forms = [

@@ -62,7 +62,7 @@ def in_hertz(frequency):
 )
 def test_a_sweep_doubles_where_the_limits_of_the_balls_say(ball_at, published):
     start = bb.orbit(ball_at(20.0), amplitude=amplitude_at(20.0))
-    found = bb.follow(start, along="frequency", to=1.2)
+    found = bb.follow(start, along="frequency", to=1.2).to_dataset()
     doubling = found.first("period doubling")
     hertz = in_hertz(doubling.parameters["frequency"])
     assert hertz == pytest.approx(doubling_by_roots(ball_at), rel=1e-10)
@@ -78,7 +78,7 @@ def test_a_sweep_doubles_where_the_limits_of_the_balls_say(ball_at, published):
 def test_the_doubled_branch_of_a_sweep_is_a_sweep():
     start = bb.orbit(spring_at(20.0), amplitude=amplitude_at(20.0))
     doubling = bb.follow(start, along="frequency", to=1.2).first("period doubling")
-    twice = bb.follow(doubling, to=1.05)
+    twice = bb.follow(doubling, to=1.05).to_dataset()
     assert twice.attrs["along"] == "frequency" and twice.attrs["impacts"] == 2
     *_, last = twice.states()
     hertz = in_hertz(1.05)
@@ -112,7 +112,7 @@ def hertz_path(**changed):
 def test_functions_of_one_variable_are_a_path():
     """The same sweep in hertz, and its doubled orbits on the same path."""
     start = bb.orbit(spring_at(20.0), amplitude=amplitude_at(20.0))
-    found = bb.follow(start, along=hertz_path(), to=25.0)
+    found = bb.follow(start, along=hertz_path(), to=25.0).to_dataset()
     doubling = found.first("period doubling")
     assert found.special_hertz.values == pytest.approx(doubling_by_roots(spring_at), rel=1e-10)
     assert float(found.hertz[0]) == pytest.approx(20.0, rel=1e-12)
@@ -120,7 +120,7 @@ def test_functions_of_one_variable_are_a_path():
         "amplitude": doubling.amplitude,
         "frequency_ratio": doubling.law.frequency_ratio,
     }
-    twice = bb.follow(doubling, along=hertz_path(), to=25.0)
+    twice = bb.follow(doubling, along=hertz_path(), to=25.0).to_dataset()
     assert twice.attrs["impacts"] == 2 and float(twice.hertz[-1]) == pytest.approx(25.0)
     assert "hertz" in found.plot().axes[0].get_xlabel()
 
@@ -128,7 +128,7 @@ def test_functions_of_one_variable_are_a_path():
 def test_the_orbits_of_a_path_come_back_from_a_file_and_a_pickle(tmp_path):
     start = bb.orbit(spring_at(20.0), amplitude=amplitude_at(20.0))
     for along, to in (("frequency", 1.2), (hertz_path(), 25.0)):
-        found = bb.follow(start, along=along, to=to)
+        found = bb.follow(start, along=along, to=to).to_dataset()
         found.to_netcdf(tmp_path / "branch.nc")
         for again in (bb.read_orbits(tmp_path / "branch.nc"), pickle.loads(pickle.dumps(found))):
             assert list(again.states()) == list(found.states())
@@ -143,7 +143,7 @@ def test_a_curve_of_doublings_over_a_sweep_and_the_restitution():
     doubling = bb.follow(start, along="frequency", to=1.2).first("period doubling")
     curve = bb.follow(
         doubling, along=("frequency", "restitution"), ranges={"restitution": (0.7, 0.9)}
-    )
+    ).to_dataset()
     r, hertz = float(curve.restitution[0]), in_hertz(float(curve.frequency[0]))
 
     def other(here):

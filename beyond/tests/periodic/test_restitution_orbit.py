@@ -58,7 +58,7 @@ def test_at_the_bifurcations_a_multiplier_is_plus_or_minus_one(n, r):
 def test_without_restitution_orbits_are_followed_to_the_first_that_rests():
     """r = 0: the 1-T orbit that never rests is that of Λ from √(1 + π²) to √(4 + π²)."""
     ball = bb.rigid(restitution=0.0)
-    whole = bb.follow(bb.orbit(ball, amplitude=3.5), to=(3.0, 3.9))
+    whole = bb.follow(bb.orbit(ball, amplitude=3.5), to=(3.0, 3.9)).to_dataset()
     places = {kind: each.amplitude for kind, each in whole.special_states()}
     assert places["saddle-node"] == pytest.approx(np.pi, abs=1e-12)
     assert places["period doubling"] == pytest.approx(np.hypot(2, np.pi), abs=1e-12)
@@ -67,14 +67,14 @@ def test_without_restitution_orbits_are_followed_to_the_first_that_rests():
     assert not whole.admissible.values[rests].any()
     for side in (-1, 1):
         assert bb.orbit(ball, amplitude=lift + side * 1e-6).is_admissible() == (side > 0)
-    twice = bb.follow(whole.first("period doubling"), to=3.8)
+    twice = bb.follow(whole.first("period doubling"), to=3.8).to_dataset()
     assert twice.attrs["impacts"] == 2 and twice.stable.all() and twice.admissible.all()
     # Below, every ball ends on the locked orbit, in the simulation.
     assert bb.motion_of(ball, amplitude=1.5).in_words.item().startswith("locked")
     # Along r the branch ends at 0 itself.
     along = bb.follow(
         bb.orbit(bb.rigid(restitution=0.1), amplitude=3.5), to=0.0, along="restitution"
-    )
+    ).to_dataset()
     assert along.restitution[-1] == 0.0
     assert along.phase[-1, 0] == pytest.approx(bb.orbit(ball, amplitude=3.5).phase, abs=1e-12)
 

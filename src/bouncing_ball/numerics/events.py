@@ -100,8 +100,7 @@ def limit(name: str, normal: np.ndarray, at: float, reason: str) -> Event:
     """The end of a branch in the plane ``normal · y = at``, from the side where the product is
     larger, such as the end of the range of a parameter.
 
-    The last step ends in this plane, so that there is nothing to locate, and the point is none of
-    the special points of the branch.
+    The last step ends in this plane, so that there is nothing to locate.
 
     Examples
     --------

@@ -236,7 +236,10 @@ class Way:
             raise _Rejected(event.reason or why, event.terminal)
         self.special.extend(passage.special)
         if passage.terminal is None:
-            return reached, end_at(attempt.limit) if attempt.limit else None
+            if attempt.limit is None:
+                return reached, None
+            self.special.append(SpecialPoint(attempt.limit.name, attempt.point))
+            return reached, end_at(attempt.limit)
         point = passage.special[-1].point
         matrix = problem.jacobian(point)
         # At the end of its domain the derivative may be undefined; the branch keeps its direction.

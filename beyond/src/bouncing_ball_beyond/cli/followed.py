@@ -20,9 +20,7 @@ from bouncing_ball_beyond.cli.periodic import Answer
 from bouncing_ball_beyond.motions.orbit_of_motion import orbit_of_motion
 from bouncing_ball_beyond.periodic import orbits_of_ball as periodic
 from bouncing_ball_beyond.periodic.branches import follow as library
-from bouncing_ball_beyond.periodic.branches.curves import Degenerate
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
-from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import MEANINGS, Special
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)
@@ -84,7 +82,17 @@ def follow(
     found = _branch(start, along, to, doublings)
     if plot is not None:
         found.plot(plot)
-    return _answer(found.special_states(), found) | {"end": str(found.end_reason[1].values)}
+    orbits = [
+        {
+            "kind": kind,
+            **state.parameters,
+            "phase": float(state.phases[0]),
+            "meaning": MEANINGS.get(Special(kind), "") if kind in list(Special) else "",
+        }
+        for kind, state in found.special_states()
+    ]
+    size = {"impacts": found.impacts, "periods": found.periods, "points": len(found)}
+    return {"orbits": orbits, **size, "end": found.end_reason}
 
 
 def _range(
@@ -131,20 +139,6 @@ def _branch(start: Any, along: str, to: float, doublings: int) -> FollowedBranch
     for _ in range(doublings):
         found = library.follow(found.first("period doubling"), along=name, to=to)
     return found
-
-
-def _answer(special: list[tuple[str, Orbit]], found: Any) -> Answer:
-    orbits = [
-        {
-            "kind": kind,
-            **state.parameters,
-            "phase": float(state.phases[0]),
-            "meaning": MEANINGS.get(Special(kind), "") if kind in list(Special) else "",
-        }
-        for kind, state in special
-    ]
-    size = {name: found.attrs[name] for name in ("impacts", "periods")}
-    return {"orbits": orbits, **size, "points": found.sizes["point"]}
 
 
 def curve_options(parser: Parser) -> None:
@@ -202,11 +196,10 @@ def curve(
     traced = library.follow(special, along=(first, name), points=points, ranges=ranges)
     if plot is not None:
         traced.plot(plot)
-    ends = [str(reason) for reason in traced.end_reason.values]
-    rows = [traced.isel(special=k) for k in range(traced.sizes["special"])]
+    data = traced.to_dataset()
     places = [
-        {"kind": str(Degenerate(str(row.special_kind.values)))}
-        | {each: float(row[f"special_{each}"]) for each in (first, name)}
-        for row in rows
+        {"kind": str(kind)} | {each: float(data[f"special_{each}"][k]) for each in (first, name)}
+        for k, (kind, _) in enumerate(traced.special_states())
     ]
-    return {"orbits": places, "points": traced.sizes["point"], "start": ends[0], "end": ends[1]}
+    ends = {"start": traced.start_reason, "end": traced.end_reason}
+    return {"orbits": places, "points": len(traced), **ends}

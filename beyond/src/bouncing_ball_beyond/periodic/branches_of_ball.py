@@ -18,7 +18,7 @@ from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import Followed
-from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
+from bouncing_ball_beyond.periodic.branches.labelled import BranchDataset
 from bouncing_ball_beyond.periodic.branches.observables import (
     OF_BRANCHES,
     n_t_columns,
@@ -37,7 +37,7 @@ _STRIDE = 2e-3
 @as_in(branches.branch)
 def branch(
     ball: Ball, n: FamilyAxis = 1, *, amplitude_max: Positive | None = None, points: Points = 300
-) -> FollowedBranch:
+) -> BranchDataset:
     """The branch of n-T orbits of a ball of any model over the amplitude Λ.
 
     Parameters
@@ -46,9 +46,9 @@ def branch(
 
     Returns
     -------
-    FollowedBranch
+    BranchDataset
         The variables of :func:`bouncing_ball.branch`. A single branch has the orbits themselves as
-        well, as that of :func:`bouncing_ball_beyond.follow`.
+        well, as what :func:`bouncing_ball_beyond.follow` finds.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def branch(
         data = data.assign_attrs(periods=data.attrs["n"])
     if top is not None:
         data = data.assign_attrs(amplitude_max=top)
-    return FollowedBranch.of(data, "branch")
+    return BranchDataset.of(data, "branch")
 
 
 def _branch_of(model: Model, n: int, amplitude_max: float | None, points: int) -> Followed:

@@ -1,7 +1,6 @@
 """Results that were saved, with their figures and with their orbits, for a user."""
 
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -9,15 +8,11 @@ from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing import result
 from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesting
 from bouncing_ball_beyond.drawing.result import MADE_BY, Result
-from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve
+from bouncing_ball_beyond.periodic.branches.labelled import BranchDataset
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.saved import fields_in, has_orbits
 
-_RESULTS: dict[str, Any] = {
-    "follow": FollowedBranch,
-    "branch": FollowedBranch,
-    "curve": SpecialCurve,
-}
+_OF_ORBITS = ("follow", "branch", "curve")
 
 
 @suggesting
@@ -31,17 +26,17 @@ def open(path: str | Path) -> Result:
 
 def _result_of(data: xr.Dataset) -> Result:
     """The dataset as the result of the call that made it."""
-    kind = _RESULTS.get(str(data.attrs.get(MADE_BY, "")), Result)
-    return (kind if has_orbits(data) else Result)(data.data_vars, data.coords, data.attrs)
+    of_orbits = data.attrs.get(MADE_BY) in _OF_ORBITS and has_orbits(data)
+    kind = BranchDataset if of_orbits else Result
+    return kind(data.data_vars, data.coords, data.attrs)
 
 
 @suggesting
-def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | SpecialCurve:
+def read_orbits(source: str | Path | xr.Dataset) -> Orbit | BranchDataset:
     """Orbits, a branch or a curve from a netCDF file or a dataset, with the same bits.
 
-    Every result of :func:`bouncing_ball_beyond.follow` and :func:`bouncing_ball_beyond.branch` is
-    such a dataset, and so is that of ``orbit.to_dataset()``; ``to_netcdf(path)`` writes it to a
-    file.
+    Such datasets are the result of :func:`bouncing_ball_beyond.branch` and what ``to_dataset()`` of
+    an orbit, or of a branch that was followed, returns; ``to_netcdf(path)`` writes one to a file.
 
     Parameters
     ----------
@@ -50,7 +45,7 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
 
     Returns
     -------
-    Orbit, FollowedBranch or SpecialCurve
+    Orbit or BranchDataset
         What was saved.
 
     Raises
@@ -63,7 +58,8 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
     >>> import bouncing_ball_beyond as bb
     >>> one = bb.orbit(bb.rigid(restitution=0.85), amplitude=0.9)
     >>> branch = bb.follow(one, to=1.2)
-    >>> part = bb.read_orbits(branch.isel(point=slice(2, 5)))
+    >>> data = branch.to_dataset()
+    >>> part = bb.read_orbits(data.isel(point=slice(2, 5)))
     >>> part.first("period doubling") == branch.first("period doubling")
     True
     >>> list(part.states()) == list(branch.states())[2:5]
@@ -75,7 +71,8 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
     data = source if isinstance(source, xr.Dataset) else read_dataset(source)
     if not has_orbits(data):
         raise ModelError(
-            f"{where} contains no orbits: it is no result of follow, branch or orbit.to_dataset()"
+            f"{where} contains no orbits: it is no result of branch, and no to_dataset() of an "
+            "orbit or a branch"
         )
     found = _result_of(data)
-    return found if isinstance(found, FollowedBranch | SpecialCurve) else Orbit(**fields_in(data))
+    return found if isinstance(found, BranchDataset) else Orbit(**fields_in(data))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, ParameterError, Range, shortened, suggesting
 from bouncing_ball_beyond.periodic.branches import curves, following, grazing, switching
 from bouncing_ball_beyond.periodic.branches.closed import CLOSED, one_turn, without_start
-from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
+from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, Path
 from bouncing_ball_beyond.periodic.orbits.ends import ENDS, Window, bound_in_words, reason_at
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
@@ -31,26 +31,6 @@ MOST_POINTS = 500
 _REACHED = 1e-12
 
 
-@overload
-def follow(
-    orbit: Orbit,
-    *,
-    along: str | Path | None = None,
-    to: float | tuple[float, float] | None = None,
-    points: Points = MOST_POINTS,
-) -> FollowedBranch: ...
-
-
-@overload
-def follow(
-    orbit: Orbit,
-    *,
-    along: tuple[str | Path, str | Path],
-    points: Points = MOST_POINTS,
-    ranges: Mapping[str, Sequence[float]] | None = None,
-) -> SpecialCurve: ...
-
-
 @suggesting
 def follow(
     orbit: Orbit,
@@ -59,7 +39,7 @@ def follow(
     to: float | tuple[float, float] | None = None,
     points: Points = MOST_POINTS,
     ranges: Mapping[str, Sequence[float]] | None = None,
-) -> FollowedBranch | SpecialCurve:
+) -> FollowedBranch:
     """The branch of a periodic orbit along a parameter, or the curve of a special orbit in two.
 
     An ordinary orbit is followed up to a value of the parameter or to the end of its branch, or
@@ -98,11 +78,9 @@ def follow(
 
     Returns
     -------
-    FollowedBranch or SpecialCurve
-        The parameter at each ``point``, ``phase``, ``contact_duration`` and the other observables
-        of :func:`bouncing_ball_beyond.branch` for each ``impact``, and whether the orbit is
-        ``stable`` and ``admissible``; ``special_kind`` and the place of the special orbits;
-        ``end_reason`` says why the branch ends.
+    FollowedBranch
+        The orbits in order, the special ones with their kinds, and why the branch ends. Its
+        ``to_dataset()`` has their observables, stability and admissibility.
 
     Raises
     ------
@@ -117,25 +95,25 @@ def follow(
     >>> import bouncing_ball_beyond
     >>> ball = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
     >>> found = follow(bouncing_ball_beyond.orbit(ball, amplitude=1.0), to=1.2)
-    >>> found.special_kind.values.tolist(), found.special_amplitude.values.round(6).tolist()
-    (['period doubling'], [1.037456])
-    >>> str(found.end_reason[1].values)
+    >>> [(kind, round(each.amplitude, 6)) for kind, each in found.special_states()]
+    [('period doubling', 1.037456)]
+    >>> found.end_reason
     'amplitude = 1.2 is reached'
 
     Both ways, through the saddle-node:
 
     >>> whole = follow(bouncing_ball_beyond.orbit(ball, amplitude=1.0), to=(0.1, 1.2))
-    >>> whole.special_kind.values.tolist()
+    >>> [kind for kind, _ in whole.special_states()]
     ['saddle-node', 'period doubling']
 
     The branch of twice the period, and the curve of period doublings in two parameters:
 
     >>> doubling = found.first("period doubling")
     >>> twice = follow(doubling, to=1.1)
-    >>> twice.attrs["impacts"], bool(twice.stable[-1])
+    >>> twice.impacts, twice.orbits[-1].is_stable()
     (2, True)
     >>> curve = follow(doubling, along=("amplitude", "restitution"), points=10)
-    >>> curve.attrs["curve_kind"], curve.sizes["point"] < 20
+    >>> curve.kind, len(curve) < 20
     ('period doubling', True)
     """
     _check_orbit(orbit)
@@ -160,7 +138,7 @@ def follow(
         found = _both_ways(orbit, parameter, to, most)
     else:
         found = _one_way(orbit, parameter, to, most)
-    return FollowedBranch(**labelled(found, "follow"))
+    return FollowedBranch(found)
 
 
 def _one_way(orbit: Orbit, along: str | Path, to: float | None, most: int) -> following.Followed:
@@ -277,7 +255,7 @@ def _parameters(orbit: Orbit, along: Any) -> tuple[str | Path, ...]:
 
 def _curve(
     orbit: Orbit, parameters: tuple[str | Path, ...], ranges: Any, most: int
-) -> SpecialCurve:
+) -> FollowedBranch:
     """The curve of special orbits of the orbit's kind in two parameters."""
     if not orbit.kind:
         raise NoOrbitError(
@@ -306,7 +284,7 @@ def _curve(
         across_window=windows[1],
         most=most,
     )
-    return SpecialCurve(**labelled(found, "curve", curve_kind=str(orbit.kind)))
+    return FollowedBranch(found, str(orbit.kind))
 
 
 def _window(name: str, given: Any, start: float) -> Window:

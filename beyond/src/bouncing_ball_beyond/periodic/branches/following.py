@@ -111,10 +111,14 @@ class Followed:
         """The points of the branch, and after them those of the special orbits."""
         return np.stack([*self.branch.points, *(each.point for each in self.special_points)])
 
-    @property
+    @cached_property
     def special_points(self) -> list[SpecialPoint]:
-        """The special points in order, without the ends that have a point but no kind."""
-        return [each for each in self.branch.special if each.name in _KINDS]
+        """The special points in order along the branch, without the ends that have a point but no
+        kind.
+        """
+        found = [each for each in self.branch.special if each.name in _KINDS]
+        _, arclength = places([each.point for each in found], self.branch.points)
+        return [found[k] for k in np.argsort(arclength, kind="stable")]
 
     @property
     def special(self) -> list[Orbit]:
@@ -132,6 +136,31 @@ class Followed:
         y = resample(self.problem, self.branch, count)
         tangents = tangent(self.problem.jacobian(y), np.gradient(y, axis=0))
         return replace(self, branch=replace(self.branch, points=y, tangents=tangents))
+
+
+def places(special: Sequence[np.ndarray], y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The number of the last point of a branch before each special point, and the arclength up to
+    the special point over that of the whole branch.
+
+    A special point lies between the two neighbours to which it makes the smallest detour.
+
+    Examples
+    --------
+    >>> y = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    >>> before, share = places([np.array([0.5, 0.0]), np.array([1.0, 1.0])], y)
+    >>> before.tolist(), share.tolist()
+    ([0, 1], [0.25, 1.0])
+    """
+    if len(y) < 2 or not special:
+        return np.zeros(len(special), dtype=int), np.zeros(len(special))
+    distance = np.linalg.norm(np.stack(special)[:, np.newaxis] - y, axis=-1)
+    step = np.linalg.norm(np.diff(y, axis=0), axis=-1)
+    before = np.argmin(distance[:, :-1] + distance[:, 1:] - step, axis=-1)
+    row = np.arange(len(special))
+    behind = distance[row, before]
+    ahead = distance[row, before + 1]
+    passed = np.concatenate([[0.0], np.cumsum(step)])
+    return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
 
 
 def branches_through_points(

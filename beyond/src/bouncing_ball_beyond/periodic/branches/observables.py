@@ -15,7 +15,7 @@ from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.periodic import branches
 from bouncing_ball.periodic.branches import OBSERVED
 from bouncing_ball_beyond.models.rigid import RestitutionModel
-from bouncing_ball_beyond.periodic.branches.following import Followed, unrolled
+from bouncing_ball_beyond.periodic.branches.following import Followed, places, unrolled
 from bouncing_ball_beyond.periodic.orbits import stability
 from bouncing_ball_beyond.periodic.orbits.balls import FREQUENCY, LAMBDA
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, certain_digits, largest_defect
@@ -62,18 +62,12 @@ def branch_variables(found: Followed) -> dict[str, Any]:
     orbits come back.
     """
     special = _special_places(found)
-    judged = _judged(found)
-    orbits = found.with_special
-    if np.any(np.diff(special.order) < 0):
-        count = len(found)
-        order = np.concatenate([np.arange(count), count + special.order])
-        judged = _Judged(*(values[order] for values in judged))
-        orbits = orbits[order]
-    points = np.concatenate([found.branch.points, special.points])
+    points = found.points_with_special
     varied = found.problem.equations.values(found.problem.inner(points))
     ends = [str(found.branch.start), str(found.branch.end)]
+    orbits = found.with_special
     ahead = unrolled(found.problem, points, orbits)
-    return _in_columns(orbits, ahead, judged, varied, special, ends)
+    return _in_columns(orbits, ahead, _judged(found), varied, special, ends)
 
 
 class _Judged(NamedTuple):
@@ -104,50 +98,19 @@ def _judged(found: Followed) -> _Judged:
 
 
 class _Special(NamedTuple):
-    """The special points of a branch in the order along it: the grazing orbits are located one kind
-    after another. ``order`` are their numbers among :attr:`.Followed.special_points`. ``before``
-    and ``arclength`` are those of :func:`_places`.
-    """
+    """The kinds of the special points of a branch, and what :func:`.places` says of them."""
 
-    order: np.ndarray
-    points: np.ndarray
     kinds: list[str]
     before: np.ndarray
     arclength: np.ndarray
 
 
 def _special_places(found: Followed) -> _Special:
-    y = found.branch.points
-    special = np.array([each.point for each in found.special_points]).reshape(-1, y.shape[-1])
-    before, arclength = _places(special, y)
-    order = np.argsort(arclength, kind="stable")
-    kinds = [str(found.special_points[k].name) for k in order]
-    return _Special(order, special[order], kinds, before[order], arclength[order])
-
-
-def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The number of the last point of a branch before each special point, and the arclength up to
-    the special point over that of the whole branch.
-
-    A special point lies between the two neighbours to which it makes the smallest detour.
-
-    Examples
-    --------
-    >>> y = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
-    >>> before, share = _places(np.array([[0.5, 0.0], [1.0, 1.0]]), y)
-    >>> before.tolist(), share.tolist()
-    ([0, 1], [0.25, 1.0])
-    """
-    if len(y) < 2:
-        return np.zeros(len(special), dtype=int), np.zeros(len(special))
-    distance = np.linalg.norm(special[:, np.newaxis] - y, axis=-1)
-    step = np.linalg.norm(np.diff(y, axis=0), axis=-1)
-    before = np.argmin(distance[:, :-1] + distance[:, 1:] - step, axis=-1)
-    row = np.arange(len(special))
-    behind = distance[row, before]
-    ahead = distance[row, before + 1]
-    passed = np.concatenate([[0.0], np.cumsum(step)])
-    return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
+    special = found.special_points
+    return _Special(
+        [str(each.name) for each in special],
+        *places([each.point for each in special], found.branch.points),
+    )
 
 
 def _in_columns(
@@ -217,6 +180,6 @@ def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
     judged = _Judged(none.multipliers(), none.is_stable(), none.defect(), none.digits_left())
-    nowhere = _Special(np.empty(0, int), np.empty((0, 0)), [], np.empty(0, int), np.empty(0))
+    nowhere = _Special([], np.empty(0, int), np.empty(0))
     ends = [str(error)] * 2
     return _of_one_impact(_in_columns(none, none, judged, {LAMBDA: none.amplitude}, nowhere, ends))

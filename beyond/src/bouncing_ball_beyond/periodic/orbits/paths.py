@@ -112,7 +112,7 @@ class ParameterPath(Path):
     >>> lam = 0.5e-3 * (2 * np.pi * 20.0) ** 2 / 9.80665
     >>> start = bouncing_ball_beyond.orbit(ball, amplitude=lam)
     >>> found = bouncing_ball_beyond.follow(start, along=hertz, to=25.0)
-    >>> found.special_hertz.values.round(4).tolist()
+    >>> found.to_dataset().special_hertz.values.round(4).tolist()
     [22.701]
     """
 

@@ -2,19 +2,17 @@
 
 import numpy as np
 
-from bouncing_ball.numerics.first_zero import Derivatives, Motion
 from bouncing_ball_beyond.models.linear_contact import nearest_zero
 
 
-class Line(Motion):
+class Line:
     """y = s - s₀."""
 
     def __init__(self, zero):
         self.zero = zero
 
-    def __call__(self, time):
-        one = np.ones_like(time)
-        return Derivatives(time - self.zero, one, 0 * one, 0 * one, 0.0, 0.0, 0.0)
+    def up_to_second(self, time):
+        return time - self.zero, np.ones_like(time), np.zeros_like(time)
 
 
 def test_a_zero_at_the_time_zero_is_its_own_nearest_zero():

@@ -147,6 +147,27 @@ def satisfies(residual: Callable[[np.ndarray], np.ndarray], y: np.ndarray) -> np
         return np.abs(residual(y)).max(axis=-1) <= _largest_defect(y)
 
 
+def is_exact(problem: Problem, y: np.ndarray) -> bool:
+    """Whether the defects of a single point are rounding errors, and its derivatives are defined.
+
+    A step of Newton's method from it would be a rounding error as well, or, at a fold, wrong.
+
+    Examples
+    --------
+    >>> class Line:
+    ...     def residual(self, y):
+    ...         return y[..., :1] - 4
+    ...
+    ...     def jacobian(self, y):
+    ...         return np.array([[1.0, 0.0]])
+    >>> is_exact(Line(), np.array([4.0, 0.0])), is_exact(Line(), np.array([4.1, 0.0]))
+    (True, False)
+    """
+    with np.errstate(all="ignore"):
+        exact = np.all(np.abs(problem.residual(y)) <= _SATISFIED)
+        return bool(exact and np.isfinite(problem.jacobian(y)).all())
+
+
 def _largest_defect(y: np.ndarray) -> np.ndarray:
     return _DEFECT * (1 + _norm(y)) ** 2
 

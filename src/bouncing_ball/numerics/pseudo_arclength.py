@@ -27,9 +27,9 @@ from bouncing_ball.numerics.branch import Branch, ContinuationError
 from bouncing_ball.numerics.corrector import (
     Problem,
     failure,
+    is_exact,
     newton,
     plane,
-    satisfies,
     tangent,
 )
 from bouncing_ball.numerics.events import Event
@@ -63,16 +63,15 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     >>> solve_at(Circle(), np.array([1.0, 0.6])).round(12).tolist()
     [0.8, 0.6]
     """
+    # At a fold the parameter does not select the solution, which is the guess.
+    if is_exact(problem, guess):
+        return guess
     found = newton(problem, guess, plane(np.eye(guess.size)[-1], guess))
     why = failure(problem, found)
-    if not why:
-        return found.point
-    # At a fold the parameter does not select the solution, which is the guess.
-    if satisfies(problem.residual, guess) and np.isfinite(problem.jacobian(guess)).all():
-        return guess
-    raise ContinuationError(
-        f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"
-    )
+    if why:
+        start = np.array2string(guess, precision=4)
+        raise ContinuationError(f"no solution near the starting guess {start}: {why}")
+    return found.point
 
 
 RowsOf = Callable[[Any], WithEvents]

@@ -21,7 +21,7 @@ bounds of the higher derivatives follow from the equation of motion.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -58,7 +58,7 @@ _NEWTON_STEPS = 5
 _SETTLED = 1e-5
 
 
-def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
+def nearest_zero(motion: "ContactMotion", about: np.ndarray) -> Zero:
     """The zero of each motion near a time, by Newton's method, whether it is the first or not.
 
     The last step is small against the time, and the error is of the order of its square: equations
@@ -67,10 +67,9 @@ def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
 
     Examples
     --------
-    >>> class Parabola(Motion):
-    ...     def __call__(self, time):
-    ...         one = np.ones_like(time)
-    ...         return Derivatives(time**2 - 4, 2 * time, 2 * one, 0 * one, 2 * one, 0.0, 0.0)
+    >>> class Parabola:
+    ...     def up_to_second(self, time):
+    ...         return time**2 - 4, 2 * time, np.full_like(time, 2.0)
     >>> found = nearest_zero(Parabola(), np.array([2.0, 2.2]))
     >>> found.time.round(9).tolist(), found.undecided.tolist()
     ([2.0, 2.0], [False, False])
@@ -79,9 +78,9 @@ def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
     rate = np.full(time.shape, np.nan)
     settled = np.zeros(time.shape, dtype=bool)
     for _ in range(_NEWTON_STEPS):
-        at = motion(time)
-        later = -at.value / at.rate
-        rate = np.where(settled, rate, at.rate + later * at.second)
+        value, slope, second = motion.up_to_second(time)
+        later = -value / slope
+        rate = np.where(settled, rate, slope + later * second)
         time = np.where(settled, time, time + later)
         settled |= np.abs(later) <= _SETTLED * np.abs(time)
         if np.all(settled | np.isnan(later)):
@@ -118,6 +117,15 @@ class ContactMotion(Motion):
         self.start = displacement + self.lag * velocity
         self.start_rate = velocity + self.lag * acceleration
 
+    def height(self, time: np.ndarray) -> np.ndarray:
+        """y at times since the start."""
+        return self(time).value
+
+    def up_to_second(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """y, y′ and y″ at times since the start."""
+        at = self(time)
+        return at.value, at.rate, at.second
+
     def release(self, end: Zero, height: np.ndarray) -> np.ndarray:
         """δ′ at a release, where the table's height is Λ sin τ."""
         return end.rate - self.lag * (height - _ONE)
@@ -149,6 +157,18 @@ class ContactMotion(Motion):
         return angle / self.damped
 
 
+class _Oscillations(NamedTuple):
+    """The decay of the transient at some times, the transient A cos θ + B sin θ with this decay,
+    the same a quarter of a turn ahead, and the steady part and its rate.
+    """
+
+    decay: np.ndarray
+    free: np.ndarray
+    across: np.ndarray
+    forced: np.ndarray
+    forced_rate: np.ndarray
+
+
 class ClosedFormMotion(ContactMotion):
     """The motion y away from the resonance, as the sum of the transient and the steady part: δ of
     Eq. 12 with its constants A and B, and for the force release δ + κ δ′.
@@ -175,28 +195,48 @@ class ClosedFormMotion(ContactMotion):
         self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
         self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
 
-    def __call__(self, time: np.ndarray) -> Derivatives:
+    def _oscillations(self, time: np.ndarray) -> "_Oscillations":
         angles = np.array([self.damped * time, time])
         (sine, slow_sine), versines = sine_and_versine(angles)
         cosine, slow_cosine = _ONE - versines
         decay = exponential(-self.decay * time)
         a = self.a * decay
         b = self.b * decay
-        free = a * cosine + b * sine
-        free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
+        return _Oscillations(
+            decay=decay,
+            free=a * cosine + b * sine,
+            across=b * cosine - a * sine,
+            forced=self.sine * slow_sine + self.cosine * slow_cosine,
+            forced_rate=self.sine * slow_cosine - self.cosine * slow_sine,
+        )
+
+    def height(self, time: np.ndarray) -> np.ndarray:
+        """y at times since the start."""
+        at = self._oscillations(time)
+        return (at.free - _ONE / self.stiffness) + at.forced
+
+    def up_to_second(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """y, y′ and y″ at times since the start."""
+        at = self._oscillations(time)
+        free_rate = self.damped * at.across - self.decay * at.free
+        free_second = -_TWO * self.decay * free_rate - self.stiffness * at.free
+        value = (at.free - _ONE / self.stiffness) + at.forced
+        return value, free_rate + at.forced_rate, free_second - at.forced
+
+    def __call__(self, time: np.ndarray) -> Derivatives:
+        at = self._oscillations(time)
         loss = _TWO * self.decay
-        free_second = -loss * free_rate - self.stiffness * free
+        free_rate = self.damped * at.across - self.decay * at.free
+        free_second = -loss * free_rate - self.stiffness * at.free
         free_third = -loss * free_second - self.stiffness * free_rate
-        forced = self.sine * slow_sine + self.cosine * slow_cosine
-        forced_rate = self.sine * slow_cosine - self.cosine * slow_sine
         level = _ONE / self.stiffness
-        envelope = self.envelope * decay
+        envelope = self.envelope * at.decay
         bound = self.stiffness * envelope
         return Derivatives(
-            value=(free - level) + forced,
-            rate=free_rate + forced_rate,
-            second=free_second - forced,
-            third=free_third - forced_rate,
+            value=(at.free - level) + at.forced,
+            rate=free_rate + at.forced_rate,
+            second=free_second - at.forced,
+            third=free_third - at.forced_rate,
             second_bound=bound + self.steady,
             third_bound=self.omega * bound + self.steady,
             fourth_bound=self.stiffness * bound + self.steady,
@@ -311,8 +351,7 @@ class LinearContactDynamics(ResumingDynamics):
         self, impact: Impact, departure: Departure
     ) -> Callable[[np.ndarray], np.ndarray]:
         """δ + κ δ′ within contacts, in closed form."""
-        motion = self._motion(impact)
-        return lambda time: motion(time).value
+        return self._motion(impact).height
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """exp(-2ζϖD), because areas contract in contact at the rate 2ζϖ."""

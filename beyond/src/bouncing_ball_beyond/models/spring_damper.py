@@ -95,7 +95,7 @@ class SpringDamper(OscillatorLaw):
         """
         return self.release.is_linear and super().has_closed_form
 
-    @property
+    @cached_property
     def is_linear_and_underdamped(self) -> bool:
         """Whether all contacts have a linear release and ζ < 1: their motion has a closed form."""
         return self.release.is_linear and bool(np.all(np.asarray(self.damping_ratio) < 1))

@@ -14,7 +14,7 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
-from bouncing_ball.numerics.corrector import tangent
+from bouncing_ball.numerics.corrector import is_exact, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
@@ -230,6 +230,8 @@ def point_near(problem: OrbitEquations, guess: np.ndarray) -> np.ndarray:
     NoOrbitError
         If Newton's method does not converge.
     """
+    if is_exact(problem, guess):
+        return guess
     with np.errstate(all="ignore"):
         point, why = solution_near(problem, guess, PATIENT)
     if why:

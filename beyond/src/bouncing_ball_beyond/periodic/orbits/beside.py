@@ -67,21 +67,17 @@ class LegsBeside:
         speed = self.legs.velocity[0]
         pull = self.legs.acceleration[0]
         a, b, c, d = (entry[0] for entry in self.legs.tangent_near)
-        start = np.empty((*speed.shape, 2, 2))
-        start[..., 0, 0] = speed * a
-        start[..., 0, 1] = speed * b
-        start[..., 1, 0] = c - pull * a
-        start[..., 1, 1] = d - pull * b
-        end = np.zeros(start.shape)
-        end[..., 0, 0] = speed
-        end[..., 1, 0] = -pull
-        end[..., 1, 1] = 1
         k = speed.shape[-1]
         for leg in range(k):
-            after = (leg + 1) % k
-            rows = matrix[..., 2 * leg : 2 * leg + 2, :]
-            rows[..., 2 * leg : 2 * leg + 2] = start[..., leg, :, :]
-            rows[..., 2 * after : 2 * after + 2] -= end[..., leg, :, :]
+            height, rate = (matrix[..., 2 * leg + j, :] for j in (0, 1))
+            start, after = 2 * leg, 2 * ((leg + 1) % k)
+            height[..., start] = speed[..., leg] * a[..., leg]
+            height[..., start + 1] = speed[..., leg] * b[..., leg]
+            rate[..., start] = c[..., leg] - pull[..., leg] * a[..., leg]
+            rate[..., start + 1] = d[..., leg] - pull[..., leg] * b[..., leg]
+            height[..., after] -= speed[..., leg]
+            rate[..., after] += pull[..., leg]
+            rate[..., after + 1] -= 1
 
     def _fill_durations(self, matrix: np.ndarray) -> None:
         """The derivatives of the equations of the durations by the states and the durations."""
@@ -96,7 +92,7 @@ class LegsBeside:
     @cached_property
     def tops(self) -> Tops:
         """The highest points within the contacts at the points y."""
-        return tops_of(self.legs, self.legs.duration.shape[1:])
+        return tops_of(self.here)
 
     def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The values at the two points of a pair, of values of the legs."""

@@ -81,7 +81,9 @@ class _Contacts(NamedTuple):
         """The contacts with these indices; None if there are none or if they have no κ."""
         if legs.dynamics is None or not which.size:
             return None
-        dynamics, *ends = legs.dynamics.kept(which, legs.impact, legs.departure)
+        dynamics, ends = legs.dynamics, (legs.impact, legs.departure)
+        if which.size < legs.duration.size:
+            dynamics, *ends = dynamics.kept(which, *ends)
         height = dynamics.release_function(*ends)
         return None if height is None else cls(height, legs.duration.ravel()[which])
 
@@ -96,13 +98,11 @@ def heights_within(legs: Legs, which: np.ndarray, time: np.ndarray) -> np.ndarra
     return found
 
 
-def tops_of(legs: Legs, shape: tuple[int, ...]) -> Tops:
-    """The largest local maximum of δ + κ δ′ within each of the first contacts, which have this
-    shape, and its time.
-    """
-    height = np.full(shape, _FAR)
-    at = np.full(shape, np.nan)
-    duration = legs.duration.ravel()[: height.size]
+def tops_of(legs: Legs) -> Tops:
+    """The largest local maximum of δ + κ δ′ within each contact, and its time."""
+    duration = legs.duration.ravel()
+    height = np.full(legs.duration.shape, _FAR)
+    at = np.full(legs.duration.shape, np.nan)
     known = np.flatnonzero(np.isfinite(duration) & (duration > 0))
     contacts = _Contacts.of(legs, known)
     if contacts is not None:

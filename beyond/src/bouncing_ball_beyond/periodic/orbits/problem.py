@@ -389,9 +389,8 @@ class OrbitEquations:
         lengths = []
         for j, (column, (low, high)) in enumerate(ranges):
             here = y[..., column]
-            moved = step[..., column]
-            right = here + moved
-            left = here - moved
+            right = here + step
+            left = here - step
             if not ((left >= low) & (right <= high)).all():
                 inside = (here >= low) & (here <= high)
                 right = np.where(inside, np.minimum(right, high), here)
@@ -407,14 +406,11 @@ class OrbitEquations:
         return [np.arcsinh(self.balls.bounds(name)) for name in self.along]
 
     def _step(self, y: np.ndarray) -> np.ndarray:
-        """The steps of the central differences, of the shape of y."""
-        _, speed = self.states(np.abs(y))
+        """The steps of the central differences, shape (..., 1)."""
+        _, velocity = self.states(y)
         # The whole step where the speed is not known.
-        slowest = np.fmin(speed.min(axis=-1) * _PER_SLOW, 1.0)
-        share = np.maximum(slowest * slowest, _LEAST)
-        step = np.empty(y.shape)
-        step[...] = _DIFFERENCE * share[..., np.newaxis]
-        return step
+        slowest = np.fmin(np.abs(velocity).min(axis=-1, keepdims=True) * _PER_SLOW, 1.0)
+        return _DIFFERENCE * np.maximum(slowest * slowest, _LEAST)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""

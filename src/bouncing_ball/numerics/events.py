@@ -5,6 +5,7 @@ the branch, and then located as a solution of the extended system ``F(y) = 0, g(
 tolerance of Newton's method whatever the length of the step.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -68,6 +69,7 @@ class Event:
         *,
         values: tuple[float, float] | None = None,
         tangents: tuple[np.ndarray, np.ndarray] | None = None,
+        curvature: float = 0.0,
     ) -> SpecialPoint | None:
         """The zero between two points of the branch, each of shape (N + 1,).
 
@@ -76,10 +78,11 @@ class Event:
         step of the continuation was too long or because there is none. ``values`` are those of the
         test function and ``tangents`` those of the branch at the two points, if they are known.
         With tangents the estimate lies on a cubic through the two points, and not on their chord.
+        ``curvature`` is that of :class:`Change`.
         """
         before, after = values or (float(self.function(point)) for point in (left, right))
         chord = right - left
-        share = before / (before - after)
+        share = crossing(before, after, curvature)
         guess = left + share * chord
         if tangents is not None:
             length = np.linalg.norm(chord)
@@ -109,6 +112,22 @@ def limit(name: str, normal: np.ndarray, at: float, reason: str) -> Event:
     1.0
     """
     return Event(name, lambda y: y @ normal - at, terminal=True, reason=reason, normal=normal)
+
+
+def crossing(before: float, after: float, curvature: float = 0.0) -> float:
+    """The zero between 0 and 1 of ``before + (after - before) x + curvature x (x - 1)``, a parabola
+    with values of different signs at 0 and 1.
+
+    Examples
+    --------
+    >>> crossing(-1.0, 3.0), crossing(-1.0, 3.0, 4.0)
+    (0.25, 0.5)
+    """
+    if not (before and np.isfinite(curvature)):
+        return before / (before - after)
+    slope = after - before - curvature
+    root = math.copysign(math.sqrt(slope * slope - 4 * curvature * before), after - before)
+    return -2 * before / (slope + root)
 
 
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
@@ -154,17 +173,43 @@ def bend(share: Any, begins: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 
 class Change(NamedTuple):
-    """An event on a step, and its test function before and after the step, of different signs."""
+    """An event on a step, its test function before and after the step, of different signs, and the
+    second difference of this function over the square of the step; 0 if it is not known.
+    """
 
     event: Event
     before: float
     after: float
+    curvature: float
 
 
-def changes_of_sign(events: Sequence[Event], before: np.ndarray, after: np.ndarray) -> list[Change]:
-    """The events whose test functions differ in sign before and after a step."""
+def changes_of_sign(
+    events: Sequence[Event],
+    before: np.ndarray,
+    after: np.ndarray,
+    earlier: tuple[np.ndarray, float] | None = None,
+) -> list[Change]:
+    """The events whose test functions differ in sign before and after a step.
+
+    ``earlier`` are the test functions at the point before the step, and the length of the step
+    before over that of this one.
+
+    Examples
+    --------
+    The square of x less 2, at -1, 1 and 2:
+
+    >>> square = Event("square", lambda y: y[..., 0] ** 2 - 2)
+    >>> values = np.array([[-1.0], [-1.0], [2.0]])
+    >>> changes_of_sign([square], values[1], values[2], (values[0], 2.0))[0].curvature
+    1.0
+    """
+    curvature = np.zeros(before.shape)
+    if earlier is not None:
+        values, length = earlier
+        curvature = (after - before - (before - values) / length) / (1 + length)
     changed = np.flatnonzero((before >= 0) != (after >= 0))
-    return [Change(events[k], float(before[k]), float(after[k])) for k in changed.tolist()]
+    rows = np.stack([before, after, curvature], axis=-1)[changed]
+    return [Change(events[k], *row) for k, row in zip(changed, rows.tolist(), strict=True)]
 
 
 class Passage(NamedTuple):
@@ -194,12 +239,14 @@ def locate_all(
     missed = None
     last = right
     # Events beyond the end of the branch are not located.
-    for event, before, after in sorted(changes, key=lambda change: not change.event.terminal):
-        there = after if last is right else float(event.function(last))
+    for change in sorted(changes, key=lambda change: not change.event.terminal):
+        event, before, after, curvature = change
+        whole = last is right
+        there = after if whole else float(event.function(last))
         if (before >= 0) == (there >= 0):
             continue
-        known = tangents if last is right else None
-        special = event.locate(problem, left, last, values=(before, there), tangents=known)
+        known: dict[str, Any] = {"tangents": tangents, "curvature": curvature} if whole else {}
+        special = event.locate(problem, left, last, values=(before, there), **known)
         if special is None:
             missed = event
             continue

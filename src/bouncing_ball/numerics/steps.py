@@ -225,7 +225,11 @@ class Way:
         curvature = (attempt.tangent - state.tangent) / moved
         reached = State(attempt.point, attempt.tangent, curvature, attempt.values)
         problem, events = tested
-        changes = changes_of_sign(events, state.values, attempt.values)
+        earlier = None
+        if len(self.states) > 1:
+            before = self.states[-2]
+            earlier = before.values, float(np.linalg.norm(state.point - before.point) / moved)
+        changes = changes_of_sign(events, state.values, attempt.values, earlier)
         changed = [change for change in changes if change.event is not attempt.limit]
         tangents = state.tangent, attempt.tangent
         passage = locate_all(problem, changed, state.point, attempt.point, tangents)

@@ -32,7 +32,6 @@ from bouncing_ball_beyond.periodic.branches.following import orbits_on
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball_beyond.periodic.one_impact.searched_orbits import SearchedOrbits
-from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
 from bouncing_ball_beyond.periodic.orbits.motion import contact_motion, contact_path
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.special import bifurcations as events_of
@@ -171,16 +170,17 @@ def test_an_orbit_is_a_fixed_point_of_the_simulation(some):
 def test_the_monodromy_is_the_jacobian_of_the_simulated_map(some):
     _, model, _, orbit = some
     dynamics = model.dynamics(orbit.amplitude)
+    section = dynamics.section()
 
     def cycle(state):
-        impact = dynamics.at_section(*state[:, np.newaxis])
+        impact = section.impact(*state[:, np.newaxis])
         after, passed = dynamics.fly(dynamics.depart(impact))
         # The time runs on where the phase is reduced.
-        later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, impact)
-        return np.array([state[0] + later[0], dynamics.section(after)[1][0]])
+        later = passed + section.delay(after) - section.delay(impact)
+        return np.array([state[0] + later[0], section.state(after)[1][0]])
 
     start = dynamics.start(orbit.phases, np.array([orbit.relative_impact_velocity]))
-    state = np.array(dynamics.section(start))[:, 0]
+    state = np.array(section.state(start))[:, 0]
     expected = differences(cycle, state, np.full(2, 1e-3 * min(1.0, abs(state[1]))))
     computed = orbit.monodromy()
     assert np.abs(computed - expected).max() < 1e-8 * (1 + np.abs(computed).max() ** 2)

@@ -31,8 +31,8 @@ def step(law, phase, velocity):
     departure = dynamics.depart(impact, differentiate=True)
     after, passed = dynamics.fly(departure)
     jacobian = dynamics.jacobian(impact, departure, after, passed)
-    sections = np.array([dynamics.section(impact), dynamics.section(after)])
-    return sections, jacobian, departure.duration
+    states = np.array([dynamics.section().state(each) for each in (impact, after)])
+    return states, jacobian, departure.duration
 
 
 def starts(balls=200):

@@ -94,9 +94,9 @@ def test_two_neighbours_separate_as_the_product_of_the_derivatives_says(model):
     dynamics = model.dynamics(1.75)
     states = []
     deviation = np.ones(2), np.zeros(2)
-    first = dynamics.at_section(np.array([1.0, 1.0 + near]), np.full(2, -5.0))
+    first = dynamics.section().impact(np.array([1.0, 1.0 + near]), np.full(2, -5.0))
     for leg in islice(dynamics.legs(first, differentiate=True), 5):
         deviation = leg.jacobian().apply(*deviation)
-        states.append(np.array(dynamics.section(leg.after)))
+        states.append(np.array(dynamics.section().state(leg.after)))
     apart = states[-1][:, 1] - states[-1][:, 0]
     assert apart / near == pytest.approx([x[0] for x in deviation], rel=1e-3)

@@ -29,7 +29,7 @@ def known_orbit(name, amplitude, along=("amplitude",), n=1, side="stable"):
     orbit = n_t.orbit(ball.model, n, amplitude, side)
     dynamics = ball.dynamics()
     row, start, _ = dynamics.in_a_row([orbit.phase], [orbit.relative_impact_velocity])
-    phase, velocity = row.section(row.start(*start))
+    phase, velocity = row.section().state(row.start(*start))
     return orbit, *simulated(ball, float(phase[0]), float(velocity[0]), 1, along)
 
 

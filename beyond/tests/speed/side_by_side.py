@@ -243,8 +243,8 @@ def compiled_rows() -> tuple[Row, str]:
     start = bouncing_ball_beyond.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     to = 1.8
     ours, found = least(lambda: bouncing_ball_beyond.follow(start, to=to))
-    error = float(np.abs(found.residual).max())
-    task = f"the same branch by the public call `follow`, {found.sizes['point']} points"
+    error = float(found.orbits.defect().max())
+    task = f"the same branch by the public call `follow`, {len(found)} points"
     auto = compiled_auto.folder()
     if auto is None:
         return Row(task, ours, error, "AUTO-07p compiled: absent"), ""
@@ -345,8 +345,8 @@ evaluates the equations of the restitution model in Python, through its interfac
 of its runs is a process. "AUTO-07p compiled" has them in Fortran (`tests/speed/two_impacts.f90`),
 with the same settings; its time is that of its own clock, and both this and that of `follow` beside
 it are the least of {compiled_auto.OF_AUTO} and of {compiled_auto.RUNS} runs. Neither computes
-events except folds. This package also evaluates stability and grazing, and the public call `follow`
-makes a dataset with all observables of its points; the two rows above it are the driver alone.
+events except folds. This package also evaluates stability and grazing, also in the public call
+`follow`; the two rows above it are the driver alone.
 
 | task | this package | error | peer | peer's time | peer's error | ratio |
 | --- | --- | --- | --- | --- | --- | --- |

@@ -48,6 +48,15 @@ class Impact(NamedTuple):
         """Starts at the table's level, δ = 0."""
         return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
 
+    def resumed(self, lag: np.ndarray) -> "Impact":
+        """The impacts at δ = -κ δ′, where the force of the contact is zero; at δ = 0 for κ = 0.
+
+        κ is an array over the impacts, or the number 0.
+        """
+        if not (lag.ndim and lag.any()):
+            return self
+        return self._replace(displacement=-lag * self.velocity, resumes=lag != 0)
+
     @property
     def is_resumption(self) -> np.ndarray:
         """Whether the contacts resume; those with δ < 0 unless it is known."""
@@ -55,9 +64,7 @@ class Impact(NamedTuple):
 
 
 class DurationSlopes(NamedTuple):
-    """The derivatives of the durations of contacts by the state at their starts, which is that of
-    :meth:`.ContactsAndFlights.section`.
-    """
+    """The derivatives of the durations of contacts by their states on the section."""
 
     by_phase: np.ndarray
     by_velocity: np.ndarray
@@ -67,9 +74,7 @@ class Departure(NamedTuple):
     """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
     the :class:`~bouncing_ball_beyond.models.sequence.Status`.
 
-    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
-    flight before which the ball has not landed; it is used if it exceeds
-    :meth:`.Flight.earliest_landing`.
+    ``settling`` is the part of the duration in which the ball still bounces.
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
     ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
     it is None without derivatives.
@@ -81,10 +86,54 @@ class Departure(NamedTuple):
     flight: Flight
     status: np.ndarray
     settling: np.ndarray | float = 0.0
-    aloft: np.ndarray | float = 0.0
     by: Any = None
     sticks: Any = None
     slopes: DurationSlopes | None = None
+
+
+NO_LAG = np.array(0.0)
+"""κ of a contact that starts at δ = 0."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """The Poincaré section of a model, from which its return map leads to itself: the starts of the
+    contacts, with their phases and δ′ as states.
+
+    Flights end on the section, where δ + κ δ′ = 0. At the table's level κ = 0. A contact that
+    resumes below this level starts with the κ of its law, where the ball has been released by
+    force.
+
+    Parameters
+    ----------
+    dynamics : ContactsAndFlights
+        The model of a row of balls.
+    lag : array
+        κ of the contacts that resume and 0 for others; the number 0 if there are none.
+    """
+
+    dynamics: "ContactsAndFlights"
+    lag: np.ndarray
+
+    def impact(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """The impacts with these states."""
+        return self.dynamics.start(phase, velocity).resumed(self.lag)
+
+    def state(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The states of impacts: the phase and δ′."""
+        return impact.phase, impact.velocity
+
+    def delay(self, impact: Impact) -> np.ndarray:
+        """The times from the starts of the contacts to the section, as angles."""
+        return np.zeros(impact.phase.shape)
+
+    def gap(self, impact: Impact) -> np.ndarray:
+        """δ of the flights that end with these impacts, at the starts of the contacts."""
+        return impact.displacement
+
+    def reached(self, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """κ where a flight arrives with δ′, and d(κ δ′)/dδ′."""
+        return self.lag, self.lag
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,8 +146,7 @@ class ContactsAndFlights(Batch, ABC):
     table's level without duration:
 
     * ``start`` and ``within``, how a contact begins and how the ball moves in it;
-    * ``section``, ``at_section`` and ``section_lag``, the coordinates of the tangent map, which are
-      others than those at the start of a contact in the corrected model alone;
+    * ``section``, on which the tangent map leads from state to state;
     * ``comes_to_rest``, and ``release_function``, whose first zero is the end of a contact.
 
     A model that :attr:`continues` has other ends of its contacts than the first ones, those near
@@ -169,8 +217,7 @@ class ContactsAndFlights(Batch, ABC):
             If a flight is too long for floating-point numbers.
         """
         flight = departure.flight
-        start = np.maximum(departure.aloft, flight.earliest_landing())
-        return self.arrive(departure, land(flight, start))
+        return self.arrive(departure, land(flight, flight.earliest_landing()))
 
     def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
         """The next impact after a landing, and the time from the last impact to it."""
@@ -195,25 +242,15 @@ class ContactsAndFlights(Batch, ABC):
         both = Deviation.pair(*released)
         return Jacobian.of_columns(both.flown(start, end, time, after.velocity, lag))
 
-    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """The state of an impact on the Poincaré section: a phase and a relative velocity."""
-        return impact.phase, impact.velocity
-
-    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """The impacts with these states, in the coordinates of :meth:`section`."""
-        return self.start(phase, velocity)
-
-    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray | float, np.ndarray | float]:
-        """κ of the section, where flights have δ + κ δ′ = 0 if they arrive with δ′, and
-        d(κ δ′)/dδ′; both are 0 if the section is the table's level.
-        """
-        return 0.0, 0.0
+    def section(self, lag: np.ndarray = NO_LAG) -> "Section":
+        """The Poincaré section, where contacts that resume have this κ."""
+        return Section(self, lag)
 
     @abstractmethod
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Derivative of the map from one impact to the next, in the coordinates of :meth:`section`.
+        """Derivative of the map from one impact to the next, in states on :meth:`section`.
 
         ``passed`` is the time between the two impacts.
         """

@@ -32,6 +32,20 @@ class Flight(free.Flight):
         self.amplitude = amplitude
 
 
+class FromBelow(Flight):
+    """Flights from below the table's level, with times before which the balls have not landed, or 0
+    where it is not known.
+    """
+
+    def __init__(self, flight: Flight, aloft: np.ndarray):
+        vars(self).update(vars(flight))
+        self.aloft = aloft
+
+    def earliest_landing(self) -> np.ndarray:
+        """The later one of this time and that of every flight."""
+        return np.maximum(self.aloft, super().earliest_landing())
+
+
 class Rise(Motion):
     """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
 

@@ -144,7 +144,7 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
             balls = _without(done, leg, leg.impact, balls, found)
             if balls.lane.size:
                 _advance(balls, leg)
-                done = _ending(balls, *leg.dynamics.section(leg.after), impacts, found)
+                done = _ending(balls, *leg.dynamics.section().state(leg.after), impacts, found)
                 balls = _without(done, leg, leg.after, balls, found)
             impact = leg.after
             alive = balls.lane.size

@@ -144,6 +144,6 @@ def of_impact(balls: Balls, phase: float, velocity: float, impacts: int) -> Orbi
     dynamics = balls.dynamics()
     relative = velocity - float(table(np.asarray(phase), dynamics.amplitude)[0])
     row, (start, before), _ = dynamics.in_a_row([phase], [relative])
-    theta, closing = row.section(row.start(start, before))
+    theta, closing = row.section().state(row.start(start, before))
     problem, guess = simulated(balls, float(theta[0]), float(closing[0]), impacts, (LAMBDA,))
     return orbit_of_point(problem, point_near(problem, guess))

@@ -25,11 +25,17 @@ import numpy as np
 from bouncing_ball.models.flight import Unloaded, table
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero, first_zero
-from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
+from bouncing_ball_beyond.models.contacts_and_flights import (
+    NO_LAG,
+    Departure,
+    DurationSlopes,
+    Impact,
+    Section,
+)
 from bouncing_ball_beyond.models.corrected import impact as corrected_map
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
-from bouncing_ball_beyond.models.flight import Flight, emerge
+from bouncing_ball_beyond.models.flight import Flight, FromBelow, emerge
 from bouncing_ball_beyond.models.sticking import lift_off, lifted, stay
 
 # Newton steps from the landing to the instant: the start has an error of third order in t_c, and
@@ -49,6 +55,44 @@ _LATER = 1e-12
 _ELASTIC = 1e-10
 
 
+@dataclass(frozen=True)
+class Instants(Section):
+    """The instants of the impacts: the phase ψ, and δ′ = -v before the impact.
+
+    The ball is below the table there by h = v t_c(v), that is κ = -t_c(-δ′).
+    """
+
+    dynamics: "CorrectedDynamics"
+
+    def impact(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """The impacts at these instants, with their starts."""
+        law, amplitude = self.dynamics.law, self.dynamics.amplitude
+        instant = reduce_angle(phase)
+        arrival = velocity + table(instant, amplitude)[0]
+        hit = corrected_map.impact(law.where_known, amplitude, instant, arrival)
+        return Impact.at_level(*corrected_map.start_of(amplitude, hit), hit)
+
+    def state(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The phase of the instant and the relative velocity before it."""
+        hit = impact.known
+        return reduce_angle(hit.phase), -hit.speed
+
+    def delay(self, impact: Impact) -> np.ndarray:
+        """t_c."""
+        return reduce_angle(reduce_angle(impact.known.phase) - impact.phase)
+
+    def gap(self, impact: Impact) -> np.ndarray:
+        """δ of the flights t_c before the instants."""
+        now = np.zeros(impact.phase.shape)
+        gap, _ = self.dynamics.within(impact, self.dynamics.depart(impact, near=now), now)
+        return gap
+
+    def reached(self, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """-t_c and -d(v t_c)/dv."""
+        instant = self.dynamics.law.where_known(-velocity)
+        return -instant.delay, instant.d_delay * velocity - instant.delay
+
+
 @dataclass(frozen=True, repr=False)
 class CorrectedDynamics(Dynamics):
     """Impacts and flights of the corrected model; ``law`` is the signature."""
@@ -62,13 +106,6 @@ class CorrectedDynamics(Dynamics):
         instant = corrected_map.meeting(self.law, self.amplitude, phase, arrival)
         hit = corrected_map.impact(self.law, self.amplitude, *instant)
         return Impact.at_level(phase, velocity, hit)
-
-    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """Impacts whose instants are at phases ψ, with the given relative velocity before them."""
-        instant = reduce_angle(phase)
-        arrival = velocity + table(instant, self.amplitude)[0]
-        hit = corrected_map.impact(self.law.where_known, self.amplitude, instant, arrival)
-        return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 
     def depart(
         self, impact: Impact, *, near: np.ndarray | None = None, differentiate: bool = False
@@ -84,8 +121,9 @@ class CorrectedDynamics(Dynamics):
             departure = lifted(departure, self.amplitude)
             return departure._replace(slopes=_slopes(impact, departure))
         start, leaves = emerge(departure.flight)
-        departure = departure._replace(aloft=np.where(leaves, start, 0.0))
         departure = stay(departure, ~leaves, self.amplitude)
+        flight = FromBelow(departure.flight, np.where(leaves, start, 0.0))
+        departure = departure._replace(flight=flight)
         return lifted(departure, self.amplitude) if differentiate else departure
 
     def _released(self, impact: Impact) -> Departure:
@@ -200,15 +238,9 @@ class CorrectedDynamics(Dynamics):
         images = released.flown((x, y), end, between, -then.speed, -there.delay)
         return Jacobian.of_columns(images)
 
-    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """The phase of the instant and the relative velocity before it."""
-        hit = impact.known
-        return reduce_angle(hit.phase), -hit.speed
-
-    def section_lag(self, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """-t_c and -d(v t_c)/dv at v = -δ′: the ball is below the table by h = v t_c(v)."""
-        instant = self.law.where_known(-velocity)
-        return -instant.delay, instant.d_delay * velocity - instant.delay
+    def section(self, lag: np.ndarray = NO_LAG) -> Section:
+        """The instants; no contact resumes."""
+        return Instants(self, lag)
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """The factor of areas at the instant, 0 if the ball sticks.

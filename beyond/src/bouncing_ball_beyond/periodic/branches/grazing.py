@@ -182,7 +182,7 @@ def _grazing(orbit: Orbit, along: str | Path) -> Grazing:
     dynamics: Any = problem.dynamics(here)[0]
     phase, velocity = problem.states(here)
     impact = dynamics.start(reduce_angle(phase), velocity)
-    if np.any(np.abs(dynamics.section(impact)[0] - impact.phase) > _TOUCHES):
+    if np.any(dynamics.section().delay(impact) > _TOUCHES):
         raise NoOrbitError(
             f"in the {orbit.model.name} model an impact takes effect after a delay, so that none "
             "begins at a grazing flight"

@@ -206,7 +206,7 @@ def starts_fold(equations: OrbitEquations) -> list[Event]:
     The start at ``φ = ψ - t_c(v)`` determines the instant as long as the determinant of the state
     there by that at the instant, ``1 - t_c′(v) a`` with the load a, is positive.
     """
-    lag, slope = equations.balls.model.dynamics(1.0).section_lag(np.array(-1.0))
+    lag, slope = equations.balls.model.dynamics(1.0).section().reached(np.array(-1.0))
     if np.all(slope == lag):
         return []
 
@@ -216,7 +216,7 @@ def starts_fold(equations: OrbitEquations) -> list[Event]:
         if dynamics is None:
             return np.full(y.shape[:-1], np.nan)
         speed = velocity.ravel()
-        lag, slope = dynamics.section_lag(speed)
+        lag, slope = dynamics.section().reached(speed)
         _, level = table(phase.ravel(), dynamics.amplitude)
         # -t_c′(v), because κ = -t_c(-δ′).
         by_speed = (slope - lag) / speed

@@ -26,8 +26,6 @@ from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Balls, Path
 from bouncing_ball_beyond.periodic.orbits.legs import (
     lag_of,
     selects_ends,
-    time_to_section,
-    without_force,
 )
 from bouncing_ball_beyond.periodic.orbits.paths import balls_along
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
@@ -251,10 +249,10 @@ class OrbitImpacts(Suggesting, Batch):
         whole = (*self.shape, self.impacts)
         phase = np.broadcast_to(self.phases, whole).ravel()
         velocity = np.broadcast_to(closing(self), whole).ravel()
+        resumes = np.broadcast_to(self.resumes, whole).ravel()
         with np.errstate(invalid="ignore"):
             impact = dynamics.start(phase, velocity)
-        resumes = np.broadcast_to(self.resumes, whole).ravel()
-        return dynamics, without_force(impact, lag_of(dynamics, resumes))
+        return dynamics, impact.resumed(lag_of(dynamics, resumes))
 
     @cached_property
     def own_equations(self) -> tuple[OrbitEquations, np.ndarray]:
@@ -342,8 +340,8 @@ def point_of(orbit: OrbitImpacts, problem: OrbitEquations) -> np.ndarray:
     dynamics, impact = orbit.starts
     whole = (*orbit.shape, orbit.impacts)
     with np.errstate(invalid="ignore"):
-        phase = orbit.phases + time_to_section(dynamics, impact).reshape(whole)
-        _, velocity = dynamics.section(impact)
+        phase = orbit.phases + dynamics.section().delay(impact).reshape(whole)
+        _, velocity = dynamics.section().state(impact)
     given = {}
     if problem.along:
         values = Balls(orbit.model, orbit.amplitude, problem.balls.path).values

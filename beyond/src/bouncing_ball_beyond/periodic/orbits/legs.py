@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact
+from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact, Section
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.periodic.orbits.stability import matrices_of, product_of
@@ -100,7 +99,8 @@ class Legs:
         return self._arrived(self.landing.time, self.landing.velocity)
 
     def _arrived(self, time: np.ndarray, velocity: np.ndarray) -> tuple[Impact, np.ndarray]:
-        return arrived(self.dynamics, self.departure, time, velocity, self.landing.lag)
+        section = self.dynamics.section(self.landing.lag)
+        return arrived(section, self.departure, time, velocity)
 
     @cached_property
     def tangent(self) -> Jacobian:
@@ -195,22 +195,18 @@ class Landing(NamedTuple):
 
 
 def landed(
-    dynamics: Dynamics,
+    section: Section,
     impact: Impact,
     departure: Departure,
     duration: np.ndarray,
     interval: np.ndarray,
-    lag: np.ndarray,
 ) -> Landing:
-    """The landings near the times ``interval`` after the first impacts, both on the section.
-
-    κ is ``lag``, or that of the section (:meth:`.Dynamics.section_lag`).
-    """
-    time = interval + time_to_section(dynamics, impact) - duration
+    """The landings near the times ``interval`` after the first impacts, both on the section."""
+    time = interval + section.delay(impact) - duration
     gap, velocity, acceleration, _ = departure.flight.gap(time)
-    of_section, slope = dynamics.section_lag(velocity)
-    height = gap + (lag + of_section) * velocity
-    rate = velocity + (lag + slope) * acceleration
+    lag, slope = section.reached(velocity)
+    height = gap + lag * velocity
+    rate = velocity + slope * acceleration
     return Landing(
         time=time,
         height=height,
@@ -218,23 +214,18 @@ def landed(
         rate=rate,
         acceleration=acceleration,
         late=-height / rate,
-        lag=lag,
+        lag=section.lag,
     )
 
 
 def arrived(
-    dynamics: Dynamics,
-    departure: Departure,
-    time: np.ndarray,
-    velocity: np.ndarray,
-    lag: np.ndarray,
+    section: Section, departure: Departure, time: np.ndarray, velocity: np.ndarray
 ) -> tuple[Impact, np.ndarray]:
     """The impacts on the section at times since the starts of flights, with these δ′, and the times
     from impact to impact.
     """
-    impact = dynamics.at_section(departure.phase + time, velocity)
-    passed = departure.duration + time - time_to_section(dynamics, impact)
-    return without_force(impact, lag), passed
+    impact = section.impact(departure.phase + time, velocity)
+    return impact, departure.duration + time - section.delay(impact)
 
 
 def lag_of(dynamics: Dynamics, resumes: np.ndarray) -> np.ndarray:
@@ -242,37 +233,6 @@ def lag_of(dynamics: Dynamics, resumes: np.ndarray) -> np.ndarray:
     if dynamics.contact is None or not resumes.any():
         return np.zeros(resumes.shape)
     return np.where(resumes, dynamics.contact.lag, 0.0)
-
-
-def without_force(impact: Impact, lag: np.ndarray) -> Impact:
-    """The impacts at δ = -κ δ′, where the force of the contact is zero; at δ = 0 for κ = 0.
-
-    κ is an array over the impacts, or the number 0.
-    """
-    if not (lag.ndim and lag.any()):
-        return impact
-    return impact._replace(displacement=-lag * impact.velocity, resumes=lag != 0)
-
-
-def time_to_section(dynamics: Dynamics, impact: Impact) -> np.ndarray:
-    """The time from the start of the contact to the section, as an angle."""
-    phase, _ = dynamics.section(impact)
-    if phase is impact.phase:
-        return np.zeros(phase.shape)
-    return reduce_angle(phase - impact.phase)
-
-
-def gap_at_start(dynamics: Dynamics, impact: Impact) -> np.ndarray:
-    """δ of the flight that ends with each impact, at the start of the contact.
-
-    It is 0, or that of a resumption, unless the contact starts before the section.
-    """
-    phase, _ = dynamics.section(impact)
-    if phase is impact.phase:
-        return impact.displacement
-    now = np.zeros(phase.shape)
-    gap, _ = dynamics.within(impact, dynamics.depart(impact, near=now), now)
-    return gap
 
 
 def selects_ends(dynamics: Dynamics, impact: Impact, duration: np.ndarray) -> bool:

@@ -19,7 +19,6 @@ from bouncing_ball_beyond.periodic.orbits.impacts import (
     of_existing,
     table_amplitude,
 )
-from bouncing_ball_beyond.periodic.orbits.legs import gap_at_start
 
 # The highest point of a contact is searched in so many rounds of so many samples. The last steps
 # are 16⁻⁵ of the first, and the error of the height is of the order of the square of the last step.
@@ -40,7 +39,8 @@ def release_heights(orbit: OrbitImpacts) -> np.ndarray:
 
 def _landing_gap(orbit: OrbitImpacts) -> np.ndarray:
     """δ of the flights at the impacts with which they end, shape (..., k)."""
-    gap = gap_at_start(*orbit.starts).reshape(*orbit.shape, orbit.impacts)
+    dynamics, impact = orbit.starts
+    gap = dynamics.section().gap(impact).reshape(*orbit.shape, orbit.impacts)
     return np.roll(gap, -1, axis=-1)
 
 

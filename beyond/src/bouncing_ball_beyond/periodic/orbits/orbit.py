@@ -26,7 +26,6 @@ from bouncing_ball_beyond.periodic.orbits.impacts import (
     of_existing,
     of_impacts,
 )
-from bouncing_ball_beyond.periodic.orbits.legs import time_to_section
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.simulation import is_admissible
 
@@ -294,7 +293,8 @@ def orbit_of_point(problem: OrbitEquations, y: np.ndarray, kind: str = "") -> Or
         none = np.full(theta.shape, np.nan)
         return Orbit(problem.balls.model, lam, turns, none, none, none, along=along)
     with np.errstate(invalid="ignore"):
-        started = theta - time_to_section(legs.dynamics, legs.impact).reshape(theta.shape)
+        delay = legs.dynamics.section().delay(legs.impact)
+        started = theta - delay.reshape(theta.shape)
         phase = reduce_angle(started)
         whole = np.round((started - phase) / (2 * np.pi))
         of_table = lam[..., np.newaxis] * np.cos(phase)

@@ -54,12 +54,12 @@ import numpy as np
 from bouncing_ball.models.model import Status
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbit import Bifurcation
-from bouncing_ball_beyond.models.contacts_and_flights import Impact
+from bouncing_ball_beyond.models.contacts_and_flights import Impact, Section
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.periodic.orbits.balls import FREQUENCY, LAMBDA, Balls, dynamics_inside
 from bouncing_ball_beyond.periodic.orbits.beside import LegsBeside
-from bouncing_ball_beyond.periodic.orbits.legs import Legs, lag_of, landed, without_force
+from bouncing_ball_beyond.periodic.orbits.legs import Legs, lag_of, landed
 from bouncing_ball_beyond.periodic.orbits.stability import multiplier_at, shifted_determinant
 
 # Step of the central differences, near the optimum ε^(1/3).
@@ -71,8 +71,6 @@ _PER_SLOW = 10.0
 _LEAST = 1e-4
 # The ends of the range of a phase or a velocity.
 _UNLIMITED = np.array([-np.inf, np.inf])
-# κ of a contact that starts at δ = 0.
-_NONE = np.array(0.0)
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
 
@@ -300,17 +298,17 @@ class OrbitEquations:
             turns=turns[which] if turns.ndim > 1 else turns,
         )
 
-    def _lag(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Any:
-        """κ of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
+    def _section(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Section:
+        """The section of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
         if not self._some_resume:
-            return _NONE
-        return lag_of(dynamics, np.broadcast_to(resumes, shape).ravel())
+            return dynamics.section()
+        return dynamics.section(lag_of(dynamics, np.broadcast_to(resumes, shape).ravel()))
 
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
         phase, velocity = self.states(y)
-        start = dynamics.at_section(phase.ravel(), velocity.ravel())
-        return without_force(start, self._lag(dynamics, self.resuming, phase.shape))
+        section = self._section(dynamics, self.resuming, phase.shape)
+        return section.impact(phase.ravel(), velocity.ravel())
 
     def intervals(self, y: np.ndarray) -> np.ndarray:
         """θ_{i+1} - θ_i, shape (..., k)."""
@@ -333,8 +331,8 @@ class OrbitEquations:
         departure = dynamics.depart(impact, near=near.ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        lag = self._lag(dynamics, _of_next(self.resuming), shape)
-        landing = landed(dynamics, impact, departure, duration, interval, lag)
+        section = self._section(dynamics, _of_next(self.resuming), shape)
+        landing = landed(section, impact, departure, duration, interval)
         _, velocity = self.states(y)
         residual = np.empty((*shape, 2))
         residual[..., 0] = -landing.height.reshape(shape)

@@ -12,7 +12,7 @@ import numpy as np
 
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
-from bouncing_ball_beyond.periodic.orbits.legs import arrived, lag_of, landed, without_force
+from bouncing_ball_beyond.periodic.orbits.legs import arrived, lag_of, landed
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
 # Newton's method for a landing doubles its digits in each round.
@@ -65,24 +65,23 @@ def returned(
         for i in range(k):
             after = (i + 1) % k
             lag = lag_of(dynamics, whole & equations.resuming[i])
-            next_lag = lag_of(dynamics, whole & equations.resuming[after])
-            start = dynamics.at_section(reduce_angle(phases[i] + turned), velocity)
-            impact = without_force(start, lag)
+            ahead = dynamics.section(lag_of(dynamics, whole & equations.resuming[after]))
+            impact = dynamics.section(lag).impact(reduce_angle(phases[i] + turned), velocity)
             departure = dynamics.depart(impact, near=np.full(len(aside), lasts[i]))
             due = interval[i] - turned
             for _ in range(_ROUNDS):
-                landing = landed(dynamics, impact, departure, departure.duration, due, next_lag)
+                landing = landed(ahead, impact, departure, departure.duration, due)
                 due = due + landing.late
                 if not np.any(np.abs(landing.late) > _SETTLED * np.abs(due)):
                     break
             lands = np.abs(landing.late) <= _SMALL * np.abs(due)
             time = np.where(lands, landing.time + landing.late, np.nan)
             speed = landing.velocity + landing.late * landing.acceleration
-            end, passed = arrived(dynamics, departure, time, speed, next_lag)
+            end, passed = arrived(ahead, departure, time, speed)
             change = dynamics.jacobian(impact, departure, end, passed)
             matrix = np.moveaxis(np.array([[change.a, change.b], [change.c, change.d]]), -1, 0)
             derivative = matrix @ derivative
-            phase, velocity = dynamics.section(end)
+            phase, velocity = ahead.state(end)
             turned = reduce_angle(phase - phases[after])
     distance = np.stack([turned, velocity - velocities[0]], axis=-1)
     return Returned(distance, derivative)

@@ -14,8 +14,6 @@ from bouncing_ball_beyond.periodic.orbits.legs import (
     lag_of,
     rests_as_expected,
     selects_ends,
-    time_to_section,
-    without_force,
 )
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
@@ -42,10 +40,10 @@ def simulated(
     """
     dynamics = balls.dynamics()
     dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
-    impact = dynamics.at_section(*start)
     if velocity > 0:
         _check_resumption(dynamics)
-        impact = without_force(impact, lag_of(dynamics, np.array([True])))
+    section = dynamics.section(lag_of(dynamics, np.array([velocity > 0])))
+    impact = section.impact(*start)
     phases = [float(reduce_angle(start[0])[0])]
     turns = []
     velocities = []
@@ -54,11 +52,11 @@ def simulated(
     selects = False
     for leg in islice(dynamics.legs(impact), impacts):
         after, passed = leg.fly()
-        velocities.append(float(dynamics.section(leg.impact)[1][0]))
+        velocities.append(float(section.state(leg.impact)[1][0]))
         durations.append(float(leg.departure.duration[0]))
         selects |= selects_ends(dynamics, leg.impact, leg.departure.duration)
         resumes.append(bool(leg.impact.displacement[0] < 0))
-        later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, leg.impact)
+        later = passed + section.delay(after) - section.delay(leg.impact)
         last = phases[-1] + float(later[0])
         phases.append(float(reduce_angle(np.array(last))))
         turns.append(round((last - phases[-1]) / (2 * np.pi)))
@@ -115,8 +113,9 @@ def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     interval = equations.intervals(y).ravel()[possible]
     before = velocity.ravel()[possible]
     next_velocity = np.roll(velocity, -1, axis=-1).ravel()[possible]
-    faster = part.section(after)[1] - next_velocity
-    late = passed + time_to_section(part, after) - time_to_section(part, leg.impact) - interval
+    section = part.section()
+    faster = section.state(after)[1] - next_velocity
+    late = passed + section.delay(after) - section.delay(leg.impact) - interval
     longer = leg.departure.duration - expected if equations.selects else np.zeros_like(late)
     resumes = np.broadcast_to(np.roll(equations.resuming, -1), shape).ravel()[possible]
     alike = (after.displacement < 0) == resumes

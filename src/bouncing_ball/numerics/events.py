@@ -207,9 +207,9 @@ def changes_of_sign(
     if earlier is not None:
         values, length = earlier
         curvature = (after - before - (before - values) / length) / (1 + length)
-    changed = np.flatnonzero((before >= 0) != (after >= 0))
-    rows = np.stack([before, after, curvature], axis=-1)[changed]
-    return [Change(events[k], *row) for k, row in zip(changed, rows.tolist(), strict=True)]
+    changed = np.flatnonzero((before >= 0) != (after >= 0)).tolist()
+    rows = np.stack([before, after, curvature], axis=-1)[changed].tolist()
+    return [Change(events[k], *row) for k, row in zip(changed, rows, strict=True)]
 
 
 class Passage(NamedTuple):

@@ -153,6 +153,9 @@ def test_without_a_minimum_in_a_flight_the_lowest_is_one():
     assert np.mean(Flight(phase, height, velocity, lam).lowest(s0 - 1e-6) == 1.0) > 0.9
     slow = Flight(*rows(0.0, 0.0, 3.0, 1.0)).lowest(np.full(1, 6.0))
     endless = Flight(*rows(0.0, 0.0, 3.0, 2.0)).lowest(np.full(1, np.inf))
+    # A search over all turns would take hours.
+    diverged = Flight(*rows(0.0, 0.0, 3.0, 2.0)).lowest(np.full(1, 1e12))
+    assert diverged.tolist() == [1.0]
     assert slow.tolist() == endless.tolist() == [1.0]
 
 

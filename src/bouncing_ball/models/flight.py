@@ -26,6 +26,9 @@ _STEPS = 60
 # Intervals of all flights that are searched for minima at the same time.
 _TOGETHER = 8192
 _NO_MINIMUM = 1.0
+# Flights of so many radians occur where a method of solution diverges. Their minima, one for each
+# turn of the table, are not sought.
+_LONGEST = 1e6
 
 
 def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
@@ -135,7 +138,8 @@ class Flight(Motion):
         return np.where(left_behind, np.maximum(by_lift, 4 * self.x / top), time)
 
     def lowest(self, time: np.ndarray) -> np.ndarray:
-        """The smallest local minimum of δ within each flight of this duration, 1 if there is none.
+        """The smallest local minimum of δ within each flight of this duration, 1 if there is none,
+        or if the flight lasts for more than 10⁶ radians.
 
         Where it falls to 0 the flight grazes the table. A minimum is unique in each interval in
         which Λ sin τ > 1, because δ″ = Λ sin τ - 1 is positive there and nowhere else. All minima
@@ -149,7 +153,7 @@ class Flight(Motion):
         """
         lowest = np.full(time.shape, _NO_MINIMUM)
         amplitude = np.broadcast_to(self.amplitude, time.shape)
-        may = np.flatnonzero((amplitude > 1) & np.isfinite(time))
+        may = np.flatnonzero((amplitude > 1) & (time < _LONGEST))
         if not may.size:
             return lowest
         part = self.take(may)

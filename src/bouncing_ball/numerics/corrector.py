@@ -199,10 +199,11 @@ def solve(
         iterations += going
         values, matrix = equations(y)
         np.copyto(residual, np.abs(values).max(axis=-1), where=going)
-        going &= np.isfinite(residual) & np.isfinite(matrix).all(axis=(-2, -1))
-        if not going.all():
+        finite = np.isfinite(residual) & np.isfinite(matrix).all(axis=(-2, -1))
+        going &= finite
+        if not finite.all():
             # A matrix of NaN would cause a warning beside one that is singular.
-            matrix = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
+            matrix = np.where(finite[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
         change = solve_linear(matrix, values)
         length = _norm(change)
         going &= np.isfinite(length)

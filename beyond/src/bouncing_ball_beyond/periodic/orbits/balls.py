@@ -6,7 +6,7 @@ Several parameters vary together on a :class:`Path`: then its variable is one mo
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
@@ -176,23 +176,22 @@ amplitude, frequency
 
 
 def dynamics_inside(
-    balls: Balls, varied: Mapping[str, np.ndarray], along: Sequence[str]
+    balls: Balls, varied: Mapping[str, np.ndarray], bounds: Mapping[str, tuple[float, float]]
 ) -> tuple[Dynamics | None, np.ndarray]:
     """The dynamics of a row of balls, and which of them are inside the ranges.
 
-    ``varied`` are values of the parameters in ``along``, one for each ball, which may be outside
-    their ranges. Such balls have the first value that is inside. The dynamics is None if there is
-    none, or if the model refuses the parameters for another reason.
+    ``varied`` are values of parameters, one for each ball, which may be outside their ``bounds``,
+    the smallest and the largest value of each. Such balls have the first value that is inside. The
+    dynamics is None if there is none, or if the model refuses the parameters for another reason.
     """
     inside = np.ones(next(iter(varied.values())).shape, dtype=bool)
-    for name in along:
-        low, high = balls.bounds(name)
+    for name, (low, high) in bounds.items():
         inside &= (varied[name] >= low) & (varied[name] <= high)
     if not inside.any():
         return None, inside
     if not inside.all():
         first = inside.argmax()
-        varied = {name: np.where(inside, varied[name], varied[name][first]) for name in along}
+        varied = {name: np.where(inside, x, x[first]) for name, x in varied.items()}
     try:
         return balls.at(varied).dynamics(), inside
     except ModelError:

@@ -273,6 +273,8 @@ def with_explained_ends(
     limits : sequence of Event
         The ends of the range of the parameter, in the unknowns of ``problem.equations``.
     """
+    if not any(map(_is_unexplained, (branch.start, branch.end))):
+        return branch
     tests = events_along(problem.equations)
 
     def explained_at(end: End, points: np.ndarray) -> tuple[End, list[SpecialPoint]]:
@@ -291,6 +293,11 @@ def with_explained_ends(
         start, first = explained_at(branch.start, branch.points)
         end, last = explained_at(branch.end, branch.points[::-1])
     return replace(branch, special=(*first, *branch.special, *last), start=start, end=end)
+
+
+def _is_unexplained(end: End) -> bool:
+    """Whether no step was short enough at an end, or if it lies at a margin."""
+    return end.stuck or end.event in list(AtMargin)
 
 
 def explained(
@@ -320,9 +327,9 @@ def explained(
         Its ``event`` is the nearest one. It is not finished if an event on the last step could not
         be located; where the flight vanishes, the sentence has this event as well.
     """
-    at_margin = end.event in list(AtMargin)
-    if not (end.stuck or at_margin):
+    if not _is_unexplained(end):
         return end
+    at_margin = end.event in list(AtMargin)
     last = points[0]
     nearest = Special.GRAZING_IMPACT if at_margin else next_to(tests, last)
     if _merges(equations, points, nearest):

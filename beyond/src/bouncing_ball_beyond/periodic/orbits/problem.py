@@ -71,6 +71,8 @@ _PER_SLOW = 10.0
 _LEAST = 1e-4
 # The ends of the range of a phase or a velocity.
 _UNLIMITED = np.array([-np.inf, np.inf])
+# numpy converts a member of an enumeration in each comparison.
+_BOUNCING = int(Status.BOUNCING)
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
 
@@ -245,7 +247,7 @@ class OrbitEquations:
         if not self.along:
             return row.dynamics(), np.ones(math.prod(leading) * self.impacts, dtype=bool)
         varied = {name: np.repeat(x.ravel(), self.impacts) for name, x in self.values(y).items()}
-        return dynamics_inside(row, varied, self.along)
+        return dynamics_inside(row, varied, self._bounds)
 
     @cached_property
     def _row(self) -> Callable[[tuple[int, ...]], Balls]:
@@ -298,16 +300,17 @@ class OrbitEquations:
             turns=turns[which] if turns.ndim > 1 else turns,
         )
 
-    def _section(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Section:
-        """The section of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
+    def _section(self, dynamics: Dynamics, shape: tuple[int, ...], after: bool) -> Section:
+        """The section of the impacts in a row, or of those ``after`` each of them."""
         if not self._some_resume:
             return dynamics.section()
+        resumes = _of_next(self.resuming) if after else self.resuming
         return dynamics.section(lag_of(dynamics, np.broadcast_to(resumes, shape).ravel()))
 
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
         phase, velocity = self.states(y)
-        section = self._section(dynamics, self.resuming, phase.shape)
+        section = self._section(dynamics, phase.shape, after=False)
         return section.impact(phase.ravel(), velocity.ravel())
 
     def intervals(self, y: np.ndarray) -> np.ndarray:
@@ -329,9 +332,9 @@ class OrbitEquations:
             clock = np.broadcast_to(dynamics.law.frequency_ratio, interval.shape).reshape(shape)
             near = np.sinh(near) / clock
         departure = dynamics.depart(impact, near=near.ravel())
-        bouncing = inside & (departure.status == Status.BOUNCING)
+        bouncing = inside & (departure.status == _BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        section = self._section(dynamics, _of_next(self.resuming), shape)
+        section = self._section(dynamics, shape, after=True)
         landing = landed(section, impact, departure, duration, interval)
         _, velocity = self.states(y)
         residual = np.empty((*shape, 2))
@@ -399,9 +402,14 @@ class OrbitEquations:
         return points, lengths
 
     @cached_property
+    def _bounds(self) -> dict[str, tuple[float, float]]:
+        """The least and the greatest values of the parameters that vary."""
+        return {name: self.balls.bounds(name) for name in self.along}
+
+    @cached_property
     def _limits(self) -> list[np.ndarray]:
-        """The least and the greatest coordinates of the parameters that vary."""
-        return [np.arcsinh(self.balls.bounds(name)) for name in self.along]
+        """The least and the greatest coordinates of these parameters."""
+        return [np.arcsinh(ends) for ends in self._bounds.values()]
 
     def _step(self, y: np.ndarray) -> np.ndarray:
         """The steps of the central differences, shape (..., 1)."""
@@ -429,7 +437,8 @@ class OrbitEquations:
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy, each with the leading shape of y."""
-        return self.compared(y).here.trace_and_determinant
+        trace, determinant = self.compared(y).legs.trace_and_determinant
+        return trace[0], determinant[0]
 
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.

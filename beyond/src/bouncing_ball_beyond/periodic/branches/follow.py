@@ -249,7 +249,6 @@ def _parameters(orbit: Orbit, along: Any) -> tuple[str | Path, ...]:
         raise ParameterError(
             "{along} = {} is not one parameter or two different ones", shortened(along)
         )
-    balls_along(orbit.model, orbit.amplitude, *given)
     return given
 
 

@@ -152,7 +152,7 @@ class Legs:
             return self.duration
         duration = np.where(np.isfinite(self.duration.ravel()), self.departure.duration, np.nan)
         with np.errstate(all="ignore"):
-            _, passed = self.after
+            _, passed = self.near
             height = self.departure.flight.lowest(passed - duration)
         return height.reshape(self.duration.shape)
 

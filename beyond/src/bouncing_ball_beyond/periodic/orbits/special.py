@@ -100,7 +100,7 @@ def flight_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """The smallest local minimum of δ in flight over the legs of each orbit, of the leading shape
     of y; 1 where there is none.
     """
-    return equations.legs(y).lowest.min(axis=-1)
+    return equations.compared(y).legs.lowest[0].min(axis=-1)
 
 
 def impact_margin(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:

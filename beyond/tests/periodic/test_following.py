@@ -1,5 +1,6 @@
 """Branches along any parameter, their events, and the doubled branches."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -571,3 +572,25 @@ def test_a_branch_ends_at_the_end_of_a_range_in_a_few_steps(ball, along, to):
     assert np.abs(np.diff(found[along].values)).min() > 1e-5
     *_, last = found.states()
     assert last.defect() < 1e-12
+
+
+def test_a_branch_says_what_its_dataset_says():
+    """The record has no labels, and the dataset that is made of it has the same orbits."""
+    ball = bouncing_ball_beyond.spring_damper(restitution=0.65, frequency_ratio=20.0)
+    one = bouncing_ball_beyond.orbit(ball, amplitude=0.8)
+    branch = bouncing_ball_beyond.follow(one, to=(0.3, 2.0))
+    data = branch.to_dataset()
+    assert len(branch) == data.sizes["point"] and branch.along == (data.attrs["along"],)
+    assert [branch.start_reason, branch.end_reason] == data.end_reason.values.tolist()
+    assert (branch.impacts, branch.periods) == (data.attrs["impacts"], data.attrs["periods"])
+    assert list(branch.states()) == list(data.states())
+    assert branch.special_states() == data.special_states()
+    assert branch.first("saddle-node") == data.first("saddle-node")
+    assert branch.orbits.is_stable().tolist() == data.stable.values.tolist()
+    assert branch.orbits.is_admissible().tolist() == data.admissible.values.tolist()
+    # In order along the branch, which begins at the smaller end of the range.
+    places = [orbit.amplitude for _, orbit in branch.special_states()]
+    assert len(places) == 2 and data.special_amplitude.values.tolist() == places
+    rows = repr(branch).splitlines()
+    assert rows[0] == "FollowedBranch" and rows[-1].endswith(branch.end_reason)
+    assert pickle.loads(pickle.dumps(branch)).special_states() == branch.special_states()

@@ -591,6 +591,10 @@ def test_a_branch_says_what_its_dataset_says():
     # In order along the branch, which begins at the smaller end of the range.
     places = [orbit.amplitude for _, orbit in branch.special_states()]
     assert len(places) == 2 and data.special_amplitude.values.tolist() == places
+    assert branch.orbits.parameters["amplitude"].tolist() == data.amplitude.values.tolist()
+    # The orbit at an end, whose parameter has a rounding error, is in the range up to this end.
+    whole = bouncing_ball_beyond.follow(branch.orbits[-1], to=(0.3, 2.0))
+    assert [kind for kind, _ in whole.special_states()] == ["saddle-node", "period doubling"]
     rows = repr(branch).splitlines()
     assert rows[0] == "FollowedBranch" and rows[-1].endswith(branch.end_reason)
     assert pickle.loads(pickle.dumps(branch)).special_states() == branch.special_states()

@@ -212,3 +212,16 @@ def test_what_has_no_branch_with_one_impact_more_says_why(refusal):
     for other in (bouncing_ball_beyond.orbit(rigid, amplitude=1.4), rigid, 0.5, None):
         with refusal(NoOrbitError, "the orbit is no grazing of a flight of a branch"):
             bouncing_ball_beyond.grazing_form(other)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.45, 0.65])
+@pytest.mark.parametrize("ratio", [10.0, 20.0, 50.0])
+def test_the_branch_with_one_impact_more_begins_although_rounding_errors_are_large(
+    restitution, ratio
+):
+    """Next to the grazing the equations have rounding errors of 3e-13."""
+    ball = bouncing_ball_beyond.spring_damper(restitution=restitution, frequency_ratio=ratio)
+    high = bouncing_ball_beyond.orbit(ball, amplitude=2.0, side="unstable")
+    grazing = bouncing_ball_beyond.follow(high, to=3.0).first("grazing of a flight")
+    more = bouncing_ball_beyond.follow(grazing, points=10)
+    assert more.impacts == 2 and more.orbits.defect().max() < 1e-11

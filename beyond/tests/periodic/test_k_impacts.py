@@ -127,6 +127,8 @@ def test_attributes_are_suggested_as_keywords_are():
         with pytest.raises(AttributeError, match=rf"no attribute '{wrong}'; did you mean {meant}"):
             getattr(asked, wrong)
         assert not hasattr(asked, "something_else")
+    with pytest.raises(AttributeError, match=r"no attribute 'admissible'; its orbits and its to_d"):
+        _ = found.admissible
 
 
 def test_an_editor_completes_what_a_user_needs_of_an_orbit():

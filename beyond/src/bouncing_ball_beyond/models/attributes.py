@@ -1,12 +1,13 @@
 """Objects whose attributes are suggested, as keywords of calls are."""
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, ClassVar, NoReturn
 
 from bouncing_ball.errors import did_you_mean
 
 
 class Suggesting:
-    """An object that answers an unknown attribute with the one that it resembles.
+    """An object that answers an unknown attribute with the one that it resembles, or with a
+    sentence of its own.
 
     Examples
     --------
@@ -17,6 +18,8 @@ class Suggesting:
     AttributeError: Table has no attribute 'amplitud'; did you mean amplitude?
     """
 
+    _elsewhere: ClassVar[str] = ""
+
     # A type checker would accept every attribute.
     if not TYPE_CHECKING:
 
@@ -24,4 +27,5 @@ class Suggesting:
             # Attributes with an underscore are asked for by programs, such as numpy and pickle.
             known = [] if name.startswith("_") else dir(self)
             kind = type(self).__name__
-            raise AttributeError(f"{kind} has no attribute {name!r}{did_you_mean(name, known)}")
+            hint = did_you_mean(name, known) or (self._elsewhere if known else "")
+            raise AttributeError(f"{kind} has no attribute {name!r}{hint}")

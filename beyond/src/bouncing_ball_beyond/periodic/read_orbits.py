@@ -66,7 +66,10 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | BranchDataset:
     True
     """
     if not isinstance(source, str | Path | xr.Dataset):
-        raise ParameterError("{source} = {} is neither a path nor a dataset", shortened(source))
+        raise ParameterError(
+            "{source} = {} is neither a path nor a dataset, such as that of to_dataset()",
+            shortened(source),
+        )
     where = "the dataset" if isinstance(source, xr.Dataset) else str(source)
     data = source if isinstance(source, xr.Dataset) else read_dataset(source)
     if not has_orbits(data):

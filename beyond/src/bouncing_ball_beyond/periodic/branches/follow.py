@@ -64,7 +64,8 @@ def follow(
         "restitution" or the "stiffness" of a contact law. "frequency" is that of the table at a
         fixed stroke a, Ω/√(g/a) = √Λ, along which the parameters of the contact change as well. A
         :class:`ParameterPath` has parameters as functions of one variable. The default is the
-        parameter of the branch from which the orbit comes, otherwise the amplitude.
+        parameter of the branch from which the orbit comes, otherwise the amplitude; orbits do not
+        know a path of your own, so that it is given again.
     to : float or two of them, optional
         The value at which the branch ends; by default the parameter rises to the end of its
         range, or to ten times its first value, and at least 10, if the range has no end.
@@ -72,7 +73,7 @@ def follow(
         value is beyond the saddle-node, ``end_reason`` says so. With two values the branch through
         an ordinary orbit or a saddle-node is followed both ways between them.
     points : int
-        The largest number of points, of a curve in each direction.
+        The largest number of points, of a curve in each direction; at least 10.
     ranges : mapping, optional
         For a curve, the ranges of its parameters outside which it is not followed, by name.
 
@@ -296,9 +297,11 @@ def _window(name: str, given: Any, start: float) -> Window:
             shortened(given),
         )
     low, high = numbers
-    if not low <= start <= high:
+    # The orbit at the end of a branch has the value of its parameter up to rounding.
+    slack = _REACHED * max(1.0, abs(start))
+    if not low - slack <= start <= high + slack:
         raise ParameterError(
             f"the range {low:g} to {high:g} does not contain {name} = {start:g}, the value at the "
             "start"
         )
-    return Window(low, high)
+    return Window(min(low, start), max(high, start))

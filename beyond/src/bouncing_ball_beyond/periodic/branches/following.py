@@ -253,7 +253,8 @@ def range_ahead(equations: OrbitEquations, start: np.ndarray, to: float | None) 
     here = float(equations.values(start)[name])
     if to is not None:
         back = 2 * here - to
-        return Window(max(low, min(to, back)), min(high, max(to, back)), back)
+        behind = back if back != to else None
+        return Window(max(low, min(to, back)), min(high, max(to, back)), behind)
     return Window(low, min(high, _FARTHEST * max(abs(here), 1.0)))
 
 

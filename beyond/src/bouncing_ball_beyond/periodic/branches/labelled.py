@@ -27,7 +27,7 @@ from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits.saved import KEPT, MOVED, fields_in
-from bouncing_ball_beyond.periodic.orbits.special import Special
+from bouncing_ball_beyond.periodic.orbits.special import Degenerate, Special
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +43,8 @@ CURVE = "curve_kind"
 class FollowedBranch(Suggesting):
     """Orbits with k impacts in m periods followed along a parameter, or special orbits along two.
 
+    A start or an end at a value of the parameter has this value up to a rounding error.
+
     Its length is the number of its orbits. With two parameters it is a curve, whose orbits have
     their :attr:`kind`, so that each of them can be followed.
 
@@ -57,6 +59,7 @@ class FollowedBranch(Suggesting):
       periods               1
       along                 amplitude, 0.9 to 1.2
       special orbits        period doubling
+      start                 starting point
       end                   amplitude = 1.2 is reached
     >>> found.orbits.is_stable().tolist()
     [True, True, True, False, False]
@@ -64,6 +67,8 @@ class FollowedBranch(Suggesting):
 
     _found: Followed
     kind: str = ""
+
+    _elsewhere = "; its orbits and its to_dataset() have the quantities of the orbits"
 
     def __len__(self) -> int:
         return len(self._found)
@@ -78,6 +83,7 @@ class FollowedBranch(Suggesting):
             "periods": self.periods,
             "along": "; ".join(f"{name}, {x[0]:.6g} to {x[1]:.6g}" for name, x in ends),
             "special orbits": ", ".join(kinds) or "none",
+            "start": self.start_reason,
             "end": self.end_reason,
         }
         return "\n".join([type(self).__name__, *(f"  {k:<22}{x}" for k, x in rows.items())])
@@ -244,7 +250,7 @@ def _one_by_one(orbits: Orbit) -> Iterator[Orbit]:
 
 def _first(kind: str, special: list[tuple[str, Orbit]], end: str) -> Orbit:
     """The first special orbit of a kind on a branch that ends for a reason."""
-    name = chosen("kind", kind, [str(each) for each in Special])
+    name = chosen("kind", kind, [*map(str, (*Special, *Degenerate))])
     for here, orbit in special:
         if here == name:
             return orbit

@@ -176,10 +176,10 @@ class OrbitImpacts(Suggesting, Batch):
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The values of the parameters of the branch from which the orbit comes."""
+        """The values of the parameters of the branch from which the orbits come."""
         balls, names = balls_along(self.model, self.amplitude, *self.along)
         values = balls.values
-        return {name: float(values[name]) for name in names}
+        return {name: number_or_row(values[name]) for name in names}
 
     @property
     def exists(self) -> Any:

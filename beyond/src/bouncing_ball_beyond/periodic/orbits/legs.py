@@ -130,10 +130,9 @@ class Legs:
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy of each orbit.
 
-        The determinant is the product of the contractions. The derivatives are those of the
-        equations, with which the monodromy of a solution agrees.
+        The determinant is the product of the contractions.
         """
-        product = product_of(matrices_of(self.tangent_near))
+        product = self.monodromy
         return product[..., 0, 0] + product[..., 1, 1], self.contraction.prod(axis=-1)
 
     @cached_property

@@ -437,8 +437,7 @@ class OrbitEquations:
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy, each with the leading shape of y."""
-        trace, determinant = self.compared(y).legs.trace_and_determinant
-        return trace[0], determinant[0]
+        return self.compared(y).here.trace_and_determinant
 
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.

@@ -98,6 +98,8 @@ def test_mistakes_have_one_line(record, tmp_path, refusal):
         data.plot("talk.jpg")
     with refusal(bouncing_ball.ModelError, "size = (0, 1) is not a width and a height"):
         data.plot(size=(0, 1))
+    with refusal(bouncing_ball.ModelError, "size = 3 is not a width and a height"):
+        data.plot(size=3)
     with refusal(bouncing_ball.ModelError, "font_size = -1 is not a number of points > 0"):
         data.plot(font_size=-1)
     with refusal(bouncing_ball.ModelError, "no dataset"):

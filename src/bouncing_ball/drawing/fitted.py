@@ -62,7 +62,7 @@ def fit_figure(
         If a size is not positive.
     """
     if size is not None:
-        if not len(size) == 2 or not all(0 < x < np.inf for x in size):
+        if np.shape(size) != (2,) or not all(0 < x < np.inf for x in size):
             raise ModelError(f"size = {size!r} is not a width and a height in inches, both > 0")
         figure.set_size_inches(*size)
     panels = tuple(axes)

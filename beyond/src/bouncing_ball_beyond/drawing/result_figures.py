@@ -74,7 +74,8 @@ def special_curve(data: xr.Dataset) -> Figure:
     first, second = data.attrs["along"].split(", ")
     shown = data.admissible
     look: Look = {"color": COLOURS[1], "label": data.attrs["curve_kind"]}
-    axes.plot(data[second], data[first], **look | LINES["inadmissible"] | {"label": None})
+    beneath: Look = {"label": None if shown.all() else "inadmissible"}
+    axes.plot(data[second], data[first], **look | LINES["inadmissible"] | beneath)
     axes.plot(data[second], data[first].where(shown), **look)
     _mark_special(axes, data, data[f"special_{second}"].values, data[f"special_{first}"].values)
     axes.set(xlabel=symbol(second), ylabel=symbol(first), title=_orbit_title(data))

@@ -174,7 +174,9 @@ def test_after_a_release_by_force_a_contact_resumes_where_its_force_returns(lag)
     speed = rng.uniform(0.0, 0.6, 300)
     # δ + κ δ′ = 0 at the release, and it must increase.
     opens = speed + lag * (lam * np.sin(phase) - 1) > 1e-3
-    lam, phase, speed = lam[opens], phase[opens], speed[opens]
+    lam = lam[opens]
+    phase = phase[opens]
+    speed = speed[opens]
     gap = -lag * speed
     found = fly(phase, gap, speed, lam, np.full(speed.size, lag))
     resumed = found.displacement < 0

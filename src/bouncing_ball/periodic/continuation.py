@@ -115,7 +115,8 @@ class PaperEquations:
 
     def _of_table(self, angle: np.ndarray) -> tuple[np.ndarray, ...]:
         """At a phase τ of a table with Λ = 1: cos τ, sin τ, ϖδ and δ′ of the steady part."""
-        cosine, sine = np.cos(angle), np.sin(angle)
+        cosine = np.cos(angle)
+        sine = np.sin(angle)
         beta, chi = self._steady
         displacement = self.contact.frequency_ratio * (beta * cosine + chi * sine)
         return cosine, sine, displacement, chi * cosine - beta * sine

@@ -196,10 +196,6 @@ def curve(
     traced = library.follow(special, along=(first, name), points=points, ranges=ranges)
     if plot is not None:
         traced.plot(plot)
-    data = traced.to_dataset()
-    places = [
-        {"kind": str(kind)} | {each: float(data[f"special_{each}"][k]) for each in (first, name)}
-        for k, (kind, _) in enumerate(traced.special_states())
-    ]
+    places = [{"kind": kind, **state.parameters} for kind, state in traced.special_states()]
     ends = {"start": traced.start_reason, "end": traced.end_reason}
     return {"orbits": places, "points": len(traced), **ends}

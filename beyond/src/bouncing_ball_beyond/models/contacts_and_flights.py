@@ -242,7 +242,7 @@ class ContactsAndFlights(Batch, ABC):
         both = Deviation.pair(*released)
         return Jacobian.of_columns(both.flown(start, end, time, after.velocity, lag))
 
-    def section(self, lag: np.ndarray = NO_LAG) -> "Section":
+    def section(self, lag: np.ndarray = NO_LAG) -> Section:
         """The Poincaré section, where contacts that resume have this κ."""
         return Section(self, lag)
 

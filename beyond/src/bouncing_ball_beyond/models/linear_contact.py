@@ -195,7 +195,7 @@ class ClosedFormMotion(ContactMotion):
         self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
         self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
 
-    def _oscillations(self, time: np.ndarray) -> "_Oscillations":
+    def _oscillations(self, time: np.ndarray) -> _Oscillations:
         angles = np.array([self.damped * time, time])
         (sine, slow_sine), versines = sine_and_versine(angles)
         cosine, slow_cosine = _ONE - versines
@@ -210,30 +210,34 @@ class ClosedFormMotion(ContactMotion):
             forced_rate=self.sine * slow_cosine - self.cosine * slow_sine,
         )
 
+    def _value(self, at: _Oscillations) -> np.ndarray:
+        """y."""
+        return (at.free - _ONE / self.stiffness) + at.forced
+
+    def _free_rates(self, at: _Oscillations) -> tuple[np.ndarray, np.ndarray]:
+        """The first two derivatives of the transient."""
+        rate = self.damped * at.across - self.decay * at.free
+        return rate, -_TWO * self.decay * rate - self.stiffness * at.free
+
     def height(self, time: np.ndarray) -> np.ndarray:
         """y at times since the start."""
-        at = self._oscillations(time)
-        return (at.free - _ONE / self.stiffness) + at.forced
+        return self._value(self._oscillations(time))
 
     def up_to_second(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """y, y′ and y″ at times since the start."""
         at = self._oscillations(time)
-        free_rate = self.damped * at.across - self.decay * at.free
-        free_second = -_TWO * self.decay * free_rate - self.stiffness * at.free
-        value = (at.free - _ONE / self.stiffness) + at.forced
-        return value, free_rate + at.forced_rate, free_second - at.forced
+        free_rate, free_second = self._free_rates(at)
+        return self._value(at), free_rate + at.forced_rate, free_second - at.forced
 
     def __call__(self, time: np.ndarray) -> Derivatives:
         at = self._oscillations(time)
-        loss = _TWO * self.decay
-        free_rate = self.damped * at.across - self.decay * at.free
-        free_second = -loss * free_rate - self.stiffness * at.free
-        free_third = -loss * free_second - self.stiffness * free_rate
+        free_rate, free_second = self._free_rates(at)
+        free_third = -_TWO * self.decay * free_second - self.stiffness * free_rate
         level = _ONE / self.stiffness
         envelope = self.envelope * at.decay
         bound = self.stiffness * envelope
         return Derivatives(
-            value=(at.free - level) + at.forced,
+            value=self._value(at),
             rate=free_rate + at.forced_rate,
             second=free_second - at.forced,
             third=free_third - at.forced_rate,

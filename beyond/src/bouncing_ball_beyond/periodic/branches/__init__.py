@@ -9,6 +9,6 @@ In reading order:
 ``sticking_curve``  the end of sticking in two parameters
 ``curves``          curves of special orbits in two parameters
 ``observables``     the quantities of orbits, as datasets have them
-``labelled``        branches and curves as datasets that have their orbits and a figure
+``labelled``        branches and curves as records, and as datasets that have their orbits
 ``follow``          ``follow``, which a user calls
 """

@@ -46,10 +46,10 @@ _FOLD = 1e-2
 CLOSE = 1e-2
 """How small the function of an event is where a branch with too short steps ends next to it. Close
 to an event the functions are of the order of the square root of the distance."""
-AT_BOUND = 1e-6
-"""A parameter this close to the end of its range is the reason of too short steps."""
-BOUND = "bound"
-"""The name of the end of a branch at an end of the range of its parameter."""
+# A parameter this close to the end of its range is the reason of too short steps.
+_AT_BOUND = 1e-6
+# The name of the end of a branch at an end of the range of its parameter.
+_BOUND = "bound"
 # Next to the threshold of permanent contact the lift-off moves as the root of the distance, so that
 # the steps become short at this distance.
 _AT_THRESHOLD = 1e-4
@@ -247,7 +247,7 @@ def limits_of(equations: OrbitEquations, *ranges: Window) -> list[Event]:
                 if bound == within.behind:
                     reason += ", as far behind the start as the given value is ahead of it"
                 at = _coordinate(within, bound, sign)
-                found.append(limit(BOUND, sign * axis, sign * at, reason))
+                found.append(limit(_BOUND, sign * axis, sign * at, reason))
     return found
 
 
@@ -338,7 +338,7 @@ def explained(
     if at_margin:
         return end
     for each in limits:
-        if abs(float(each.function(last))) < AT_BOUND:
+        if abs(float(each.function(last))) < _AT_BOUND:
             return End(each.reason)
     if _at_threshold(equations, last):
         return End(_HELD)

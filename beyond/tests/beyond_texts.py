@@ -2,6 +2,7 @@
 
 import pytest
 from article_texts import ROOT, TEMPLATES, rendered
+from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
 
 from bouncing_ball_beyond.exhibits import (
     certified_verdicts_figures,
@@ -10,7 +11,6 @@ from bouncing_ball_beyond.exhibits import (
     proofs_figures,
 )
 from bouncing_ball_beyond.exhibits.artifacts import ARTIFACTS
-from bouncing_ball_beyond.exhibits.certified_verdicts import certified_verdicts
 
 HOUSE = ROOT / "beyond"
 REPORT = HOUSE / "report"

@@ -6,8 +6,8 @@ import pytest
 from declared_variables import variables_of
 
 import bouncing_ball_beyond
-from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.periodic.branches import VARIABLES
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset
+from bouncing_ball_beyond.inherited.periodic.branches import VARIABLES
 
 HOUSE = Path(__file__).resolve().parents[1]
 # Of the root: references, the command line, the browser. Here: a reference integration.

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from random_arguments import Calls, Draw
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import Range
+from bouncing_ball_beyond.inherited.errors import Range
 from bouncing_ball_beyond.models.named_laws import LAWS
 from bouncing_ball_beyond.periodic.branches.labelled import BranchDataset, FollowedBranch
 from bouncing_ball_beyond.periodic.law_balls import _RANGES as OF_LAWS

@@ -11,7 +11,7 @@ from labels_of_arguments import (
 )
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 
 BALL = bb.rigid(restitution=0.85)
 LAW = bb.contact_law("hunt-crossley", restitution=0.7, duration=0.3)

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from page_checks import every_module_exists, its_examples_run, lost_references
 
-import bouncing_ball
 import bouncing_ball_beyond
+import bouncing_ball_beyond.inherited
 from bouncing_ball_beyond.cli.commands import COMMANDS
 
 HOUSE = Path(__file__).parents[1]
@@ -73,4 +73,4 @@ def test_readme_names_every_command():
 
 @pytest.mark.slow
 def test_everything_that_a_docstring_refers_to_exists():
-    assert lost_references(bouncing_ball_beyond, bouncing_ball) == []
+    assert lost_references(bouncing_ball_beyond, bouncing_ball_beyond.inherited) == []

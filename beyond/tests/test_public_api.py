@@ -9,8 +9,6 @@ import pytest
 from public_face import PublicFace
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError
-from bouncing_ball.periodic.orbit import Side
 from bouncing_ball_beyond import (
     ContactModel,
     RestitutionModel,
@@ -23,6 +21,8 @@ from bouncing_ball_beyond import (
     simulate,
     spring_damper,
 )
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_beyond.periodic.one_impact import n_t

@@ -16,9 +16,9 @@ from random_arguments import Calls, RandomCall, check, numbers, sometimes, undec
 from random_laws import CallsOfBeyond, arguments
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.datasets.arguments import POSITIVE, START
-from bouncing_ball.errors import ModelError, Range
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
+from bouncing_ball_beyond.inherited.datasets.arguments import POSITIVE, START
+from bouncing_ball_beyond.inherited.errors import ModelError, Range
 from bouncing_ball_beyond.periodic.orbits.special import Special
 
 # Random calls of each function, of all functions in the long test.

@@ -1,8 +1,7 @@
-# The article, from the results of the studies that it is about and the accepted verdicts on the
-# paper.
+# The article, from the results of the studies that it is about.
 
-PAPER = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 TEMPLATES = os.path.relpath(Path(HOUSE, "report"))
+SHARED = f"{TEMPLATES}/shared"
 
 
 rule beyond_article:
@@ -10,31 +9,30 @@ rule beyond_article:
         "Writing results/article.md"
     input:
         code=code(
-            f"{ROOT}/workflow/scripts/paper.py",
+            "article.py",
             *sorted(map(str, Path(TEMPLATES).glob("*.md.j2"))),
             f"{TEMPLATES}/references.yaml",
-            f"{PAPER}/macros.md.j2",
-            f"{PAPER}/front_matter.md.j2",
-            f"{PAPER}/references.yaml",
-            f"{PAPER}/numbered.csl",
-            "../figures/claims.nc",
+            f"{SHARED}/macros.md.j2",
+            f"{SHARED}/front_matter.md.j2",
+            f"{SHARED}/references.yaml",
+            f"{SHARED}/numbered.csl",
         ),
-        citation=os.path.relpath(Path(ROOT, "CITATION.cff")),
+        citation=os.path.relpath(Path(HOUSE, "CITATION.cff")),
+        # What the paper says, in numbers that are frozen.
+        replicated=os.path.relpath(Path(HOUSE, "config/replicated.yaml")),
         data=[
             rules.compute_ext_instant.output,
             rules.compute_ext_orders.output,
             rules.compute_ext_map.output,
             rules.compute_ext_laws.output,
-            "../figures/claims.nc",
         ],
-        tables=[],
     output:
         "results/article.md",
     params:
-        templates=[f"{TEMPLATES}/article.md.j2"],
-        shared=PAPER,
+        template=f"{TEMPLATES}/article.md.j2",
+        shared=SHARED,
         artifacts=ARTIFACTS,
     log:
         "results/logs/article.log",
     run:
-        work(f"{ROOT}/workflow/scripts/paper.py", rule, input, output, params, log)
+        work("article.py", rule, input, output, params, log)

@@ -1,5 +1,4 @@
-# The datasets of beyond, each computed by the study that its script imports. They read the accepted
-# record of the paper, in `figures/` one folder above, and never a result of its rules.
+# The datasets of beyond, each computed by the study that its script imports.
 
 
 rule compute_ext_instant:
@@ -139,40 +138,3 @@ rule compute_explorer:
     run:
         work("compute_explorer.py", rule, input, output, params, log)
 
-
-rule compute_ext_proofs:
-    """Numbers of the paper with intervals that certainly contain them."""
-    message:
-        "Computing ext_proofs"
-    input:
-        code=code("compute_ext_proofs.py"),
-    output:
-        "results/figures/ext_proofs.nc",
-    params:
-        artifact=about("ext_proofs"),
-        parameters=config["beyond"]["ext_proofs"],
-    log:
-        "results/logs/compute_ext_proofs.log",
-    run:
-        work("compute_ext_proofs.py", rule, input, output, params, log)
-
-
-rule compute_ext_verdicts:
-    """The verdicts on printed numbers, decided by certified intervals."""
-    message:
-        "Computing ext_verdicts"
-    input:
-        code=code("compute_ext_verdicts.py", "../figures/claims.nc"),
-        # An accepted dataset counts as code, because no job makes it.
-        data=[
-            "results/figures/ext_proofs.nc",
-            "../figures/claims.nc",
-        ],
-    output:
-        "results/figures/ext_verdicts.nc",
-    params:
-        artifact=about("ext_verdicts"),
-    log:
-        "results/logs/compute_ext_verdicts.log",
-    run:
-        work("compute_ext_verdicts.py", rule, input, output, params, log)

@@ -1,6 +1,6 @@
 # The tables of beyond, each as CSV and in Markdown from its dataset, and the page of the explorer.
 
-TITLE = f"{ROOT}/workflow/report/title.rst"
+TITLE = "../report/title.rst"
 
 
 rule set_ext_orders:
@@ -47,48 +47,6 @@ rule set_ext_laws:
         work("set_ext_laws.py", rule, input, output, params, log)
 
 
-rule set_ext_proofs:
-    message:
-        "Setting ext_proofs"
-    input:
-        code=code("set_ext_proofs.py"),
-        data="results/figures/ext_proofs.nc",
-    output:
-        csv=report(
-            "results/figures/ext_proofs.csv",
-            caption=TITLE,
-            category="Tables",
-            labels={"table": "ext_proofs"},
-        ),
-        md="results/figures/ext_proofs.md",
-    params:
-        title=ARTIFACTS["ext_proofs"].title,
-    log:
-        "results/logs/set_ext_proofs.log",
-    run:
-        work("set_ext_proofs.py", rule, input, output, params, log)
-
-
-rule set_ext_verdicts:
-    message:
-        "Setting ext_verdicts"
-    input:
-        code=code("set_ext_verdicts.py"),
-        data="results/figures/ext_verdicts.nc",
-    output:
-        csv=report(
-            "results/figures/ext_verdicts.csv",
-            caption=TITLE,
-            category="Tables",
-            labels={"table": "ext_verdicts"},
-        ),
-        md="results/figures/ext_verdicts.md",
-    params:
-        title=ARTIFACTS["ext_verdicts"].title,
-    log:
-        "results/logs/set_ext_verdicts.log",
-    run:
-        work("set_ext_verdicts.py", rule, input, output, params, log)
 
 
 # With reference orbits for the check of its results.

@@ -65,18 +65,3 @@ rule explorer:
         rules.compute_explorer.output,
         rules.draw_explorer.output,
 
-
-rule ext_proofs:
-    """Printed numbers, certified by ball arithmetic."""
-    localrule: True
-    input:
-        rules.compute_ext_proofs.output,
-        rules.set_ext_proofs.output,
-
-
-rule ext_verdicts:
-    """Verdicts on the printed numbers by certified intervals."""
-    localrule: True
-    input:
-        rules.compute_ext_verdicts.output,
-        rules.set_ext_verdicts.output,

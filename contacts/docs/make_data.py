@@ -13,18 +13,18 @@ from typing import Any, NamedTuple
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from bouncing_ball.datasets.files import (
+from bouncing_ball_beyond.inherited.datasets.files import (
     CONVENTIONS,
     parameter_attributes,
     read_dataset,
     write_dataset,
     write_text,
 )
-from bouncing_ball.drawing.files import save
-from bouncing_ball.drawing.style import style
-from bouncing_ball.drawing.tables import TextTable, to_csv, to_markdown
-from bouncing_ball.pipeline.article import FORMATS, by_sentence
-from bouncing_ball.pipeline.front import with_parts
+from bouncing_ball_beyond.inherited.drawing.files import save
+from bouncing_ball_beyond.inherited.drawing.style import style
+from bouncing_ball_beyond.inherited.drawing.tables import TextTable, to_csv, to_markdown
+from bouncing_ball_beyond.inherited.pipeline.article import FORMATS, by_sentence
+from bouncing_ball_beyond.inherited.pipeline.front import with_parts
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.documents import bounces, engine_steps, measured_impacts
 from bouncing_ball_contacts.documents.bounces_figures import bounces as draw_bounces

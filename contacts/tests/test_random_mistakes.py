@@ -16,7 +16,7 @@ from random_mistakes import (
     typed_options,
 )
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.cli.commands import COMMANDS
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import quantities

@@ -1,9 +1,8 @@
 """Past the paper: how stiff is stiff enough, for any orbit and any contact law.
 
-The house on the plot that stands on ``bouncing_ball``, the replication. It has what the paper does
-not ask for: contacts of other laws, the corrected restitution model, periodic orbits with any
-number of impacts, which are followed along any parameter, the motions on which balls end, and
-enclosures that prove the paper's printed numbers.
+It has what the paper does not ask for: contacts of other laws, the corrected restitution model,
+periodic orbits with any number of impacts, which are followed along any parameter, and the motions
+on which balls end.
 
 A ball is made once and handed to functions::
 
@@ -13,12 +12,12 @@ A ball is made once and handed to functions::
     bouncing_ball_beyond.motion_of(ball, amplitude=1.1)
 
 A list or an array in place of a number becomes an axis of the result. All quantities are
-dimensionless, as in ``bouncing_ball``.
+dimensionless.
 """
 
 from typing import TYPE_CHECKING
 
-from bouncing_ball.first_use import first_use
+from bouncing_ball_beyond.inherited.first_use import first_use
 
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:

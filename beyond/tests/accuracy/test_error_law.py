@@ -3,12 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.periodic.restitution_branch import (
-    restitution_period_doubling,
-    restitution_saddle_node,
-)
 from bouncing_ball_beyond.accuracy.error_law import (
     coefficients,
     law_errors,
@@ -20,6 +14,12 @@ from bouncing_ball_beyond.accuracy.error_law import (
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.exhibits.random_orbits import half_next_to_saddle_node, random_orbits
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
+    restitution_period_doubling,
+    restitution_saddle_node,
+)
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import (

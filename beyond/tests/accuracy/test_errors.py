@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import Quantity, modulus
 from bouncing_ball_beyond.accuracy.errors import (
     OF_IMPACTS,
     OF_LIMITS,
@@ -14,6 +13,7 @@ from bouncing_ball_beyond.accuracy.errors import (
     relative_errors,
     values,
 )
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity, modulus
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import Quantity, modulus
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.accuracy.errors import relative_errors
 from bouncing_ball_beyond.accuracy.simple_models import search
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity, modulus
+from bouncing_ball_beyond.inherited.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.rigid import RestitutionModel

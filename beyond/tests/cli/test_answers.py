@@ -18,8 +18,8 @@ from answer_checks import (
 from hypothesis import given
 
 import bouncing_ball_beyond
-from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond import corrected, rigid, spring_damper
+from bouncing_ball_beyond.inherited.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw

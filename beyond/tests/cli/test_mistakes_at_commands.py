@@ -68,14 +68,6 @@ curve --amplitude 1 --restitution 0.85 --to 1.3 DOUBLINGS --across restitution -
     the range of restitution = (0.9, 0.1) is not two numbers of which the second is larger
 follow --amplitude 1 --restitution 0.85 --to 1.3 --plot ""
     argument --plot: the name is empty
-certify --frequency-ratio 10
-    the following arguments are required: --restitution
-certify --restitution 0.85 --frequency-ratio 10 --digits 5
-    argument --digits: '5' is not a whole number from 10 to 100
-certify --restitution 0.85 --frequency-ratio 10 --amplitude 1
-    unrecognized arguments: --amplitude 1: it is an option of
-certify --restitution 0.85 --omega 10
-    the following arguments are required: --frequency-ratio
 law-orbit --amplitude 1 --law tsuji --set stiffness=9,c=1
     argument --set: 'stiffness=9,c=1' is not NAME=NUMBER … repeat the option for each parameter
 law-orbit --amplitude 1 --law tsuji --set stiffness=9N --set damping=1

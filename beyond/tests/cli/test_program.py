@@ -7,10 +7,10 @@ import shlex
 
 import pytest
 
-from bouncing_ball.cli.answers import COMMANDS as ALL
-from bouncing_ball.cli.commands import how_to_install
-from bouncing_ball.cli.options import meanings
 from bouncing_ball_beyond.cli.commands import COMMANDS
+from bouncing_ball_beyond.inherited.cli.answers import COMMANDS as ALL
+from bouncing_ball_beyond.inherited.cli.commands import how_to_install
+from bouncing_ball_beyond.inherited.cli.options import meanings
 from bouncing_ball_beyond.models.makers import spring_damper
 from bouncing_ball_beyond.models.named_laws import LAWS
 

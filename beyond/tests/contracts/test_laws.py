@@ -16,8 +16,8 @@ from loaded_laws import Sharing
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.models.model import Status
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.laws.collocation import contacts, path

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics import first_zero
+from bouncing_ball_beyond.inherited.numerics import first_zero
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel

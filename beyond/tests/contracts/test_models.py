@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from loaded_laws import Sharing
 
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Side
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.corrector import NewtonSettings, newton
+from bouncing_ball_beyond.inherited.periodic.orbit import OBSERVABLES, Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw

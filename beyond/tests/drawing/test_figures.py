@@ -10,19 +10,17 @@ import numpy as np
 import pytest
 from figure_checks import follows_its_data
 
-from bouncing_ball.drawing.files import save
-from bouncing_ball.drawing.style import style
-from bouncing_ball.pipeline.diff.pictures import compare_pixels
-from bouncing_ball.pipeline.provenance import read_attributes
 from bouncing_ball_beyond.exhibits import (
     cascade_of_flights_figures,
-    certified_verdicts_figures,
     contact_laws_figures,
     corrected_model_figures,
-    proofs_figures,
     release_rules_figures,
     stiffness_map_figures,
 )
+from bouncing_ball_beyond.inherited.drawing.files import save
+from bouncing_ball_beyond.inherited.drawing.style import style
+from bouncing_ball_beyond.inherited.pipeline.diff.pictures import compare_pixels
+from bouncing_ball_beyond.inherited.pipeline.provenance import read_attributes
 
 pytestmark = pytest.mark.slow
 
@@ -38,8 +36,6 @@ DRAWN = {
 TABLES = {
     "ext_laws": contact_laws_figures.ext_laws,
     "ext_orders": corrected_model_figures.ext_orders,
-    "ext_proofs": proofs_figures.ext_proofs,
-    "ext_verdicts": certified_verdicts_figures.ext_verdicts,
 }
 
 

@@ -6,9 +6,9 @@ from openings_found import motions, opening, threshold
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.cascade_of_flights import cascade_of_flights, stiff_openings
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

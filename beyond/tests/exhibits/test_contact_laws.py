@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.accuracy.simple_models import search
 from bouncing_ball_beyond.exhibits.contact_laws import (
     LINEAR,
@@ -14,6 +13,7 @@ from bouncing_ball_beyond.exhibits.contact_laws import (
     exact_model,
     law_errors,
 )
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.collocation import contacts

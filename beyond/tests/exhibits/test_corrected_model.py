@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.accuracy.simple_models import errors
 from bouncing_ball_beyond.exhibits import corrected_model as study
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 

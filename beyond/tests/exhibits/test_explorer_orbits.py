@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit

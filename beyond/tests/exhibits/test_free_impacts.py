@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.release_rules import free_impacts
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 
 DATA = typed(free_impacts)({"restitution": 0.4, "restitution_min": 0.2, "samples": 2001})
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.corrected_model import meeting_flights
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 
 PARAMETERS = {
     "n": 1,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.exhibits.release_rules import release_rules
+from bouncing_ball_beyond.inherited.accuracy.thresholds import ThresholdStatus
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.spring_damper_bifurcations import saddle_node

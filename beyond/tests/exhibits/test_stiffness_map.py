@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import RATIOS
-from bouncing_ball.drawing.style import style
 from bouncing_ball_beyond.accuracy.error_law import (
     law_errors,
     remainder_scale,
@@ -19,6 +16,9 @@ from bouncing_ball_beyond.exhibits.stiffness_map import (
     stiffness_map,
 )
 from bouncing_ball_beyond.exhibits.stiffness_map_figures import stiffness_map as drawn
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.accuracy.thresholds import RATIOS
+from bouncing_ball_beyond.inherited.drawing.style import style
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -17,11 +17,11 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.pipeline.job import typed
 from bouncing_ball_beyond.accuracy.errors import QUANTITIES, as_deviation, relative_errors
 from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball_beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball_beyond.explorer.document import BOUND, to_html
+from bouncing_ball_beyond.inherited.pipeline.job import typed
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.history import motion_at

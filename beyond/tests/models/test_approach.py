@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond import contact_law, corrected, orbit, rigid, spring_damper
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import (
     LINEAR,
     Release,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.models import damping as linear
 from bouncing_ball_beyond import contact_law
+from bouncing_ball_beyond.inherited.models import damping as linear
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import bouncing_ball
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError
+import bouncing_ball_beyond.inherited
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.given_ball import a_ball, a_single_ball
 from bouncing_ball_beyond.models.rigid import RestitutionModel
@@ -42,7 +42,9 @@ OF_ONE_BALL = {
 
 def both(case):
     maker, parameters = CASES[case]
-    return getattr(bouncing_ball, maker)(**parameters), getattr(bb, maker)(**parameters)
+    return getattr(bouncing_ball_beyond.inherited, maker)(**parameters), getattr(bb, maker)(
+        **parameters
+    )
 
 
 def require_same(found, expected):
@@ -92,12 +94,12 @@ def test_a_ball_of_the_root_is_corrected_and_compared():
 
 
 def test_a_model_of_the_root_keeps_its_fields():
-    contact = bouncing_ball.SpringDamper(np.array([5.0, 10.0]), 0.1, "force")
+    contact = bouncing_ball_beyond.inherited.SpringDamper(np.array([5.0, 10.0]), 0.1, "force")
     expected = ContactModel(SpringDamper(np.array([5.0, 10.0]), 0.1, "force"))
     require_equal(a_ball(contact), expected)
-    assert a_ball(bouncing_ball.RestitutionModel(0.5)) == RestitutionModel(0.5)
+    assert a_ball(bouncing_ball_beyond.inherited.RestitutionModel(0.5)) == RestitutionModel(0.5)
 
 
 def test_several_balls_of_the_root_are_refused_where_one_is_needed(refusal):
     with refusal(ModelError, "restitution", "single number"):
-        a_single_ball(bouncing_ball.rigid(restitution=[0.5, 0.6]))
+        a_single_ball(bouncing_ball_beyond.inherited.rigid(restitution=[0.5, 0.6]))

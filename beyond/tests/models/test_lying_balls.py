@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 
 
 def on_contact(stiffness, damping):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.models.flight import land, table
+from bouncing_ball_beyond.inherited.models.flight import land, table
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from steady_contacts import a_period_after, exact_threshold, just_reaches_its_release
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.models import damping as linear
-from bouncing_ball.models import permanent_contact as root
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.models import damping as linear
+from bouncing_ball_beyond.inherited.models import permanent_contact as root
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -6,9 +6,9 @@ from bounces_in_digits import summed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.models.model import Status
-from bouncing_ball.models.restitution import lift_off_phase
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.models.restitution import lift_off_phase
 from bouncing_ball_beyond.models.history import motion_at
 from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 from bouncing_ball_beyond.models.rigid import RestitutionModel

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.motions import over_time
 

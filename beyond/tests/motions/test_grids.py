@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.cli.main import main
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.cli.main import main
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
 R = bb.rigid(restitution=0.5)

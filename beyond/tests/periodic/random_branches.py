@@ -7,7 +7,7 @@ import numpy as np
 from second_code import closing_of, corrected_defect, defect_of, rates_of_release
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 
 BALLS = ("rigid", "displacement", "force", "hunt-crossley", "corrected")
 # The integrator keeps about eleven digits of a contact, and a stiff contact (ϖ = 60) loses two.

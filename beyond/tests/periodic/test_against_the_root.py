@@ -7,11 +7,16 @@ own orbit; they agree to rounding.
 import numpy as np
 import pytest
 
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.restitution import RestitutionModel
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.explicit import explicit_branch
-from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Side, trace_and_determinant
+from bouncing_ball_beyond.inherited.models.damping import Release
+from bouncing_ball_beyond.inherited.models.restitution import RestitutionModel
+from bouncing_ball_beyond.inherited.models.spring_damper import SpringDamper
+from bouncing_ball_beyond.inherited.periodic.explicit import explicit_branch
+from bouncing_ball_beyond.inherited.periodic.orbit import (
+    OBSERVABLES,
+    Bifurcation,
+    Side,
+    trace_and_determinant,
+)
 from bouncing_ball_beyond.models.given_ball import a_ball
 from bouncing_ball_beyond.periodic.one_impact import n_t
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

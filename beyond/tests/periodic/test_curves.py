@@ -5,8 +5,8 @@ import pytest
 from orbits_found import FOUND, balls, first, found_orbit
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.periodic.restitution_branch import (
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
     restitution_period_doubling,
     restitution_saddle_node,
 )

@@ -8,8 +8,8 @@ from mpmath import findroot, mp, mpf, workdps
 from second_code import defect_of, rates_of_release
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.periodic.restitution_branch import restitution_period_doubling
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_period_doubling
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of

@@ -8,10 +8,10 @@ import pytest
 from orbits_found import FOUND, balls, first, found_orbit, legs_of
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
-from bouncing_ball.models.flight import table
-from bouncing_ball.numerics.corrector import newton, plane
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.numerics.corrector import newton, plane
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.motions.destination import final_motions

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 
 R = 0.5
 

@@ -8,9 +8,9 @@ from orbits_found import balls, first, legs_of
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.flight import table
-from bouncing_ball.numerics.corrector import plane
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.numerics.corrector import plane
 from bouncing_ball_beyond.periodic.branches.following import branch_from
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball_beyond.periodic import k_impacts
 from bouncing_ball_beyond.periodic.one_impact import n_t
 

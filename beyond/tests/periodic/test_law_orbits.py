@@ -9,11 +9,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.periodic.orbit import Side
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import curvature_of, doubling_lift, law_errors
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, paper_error, values
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from orbits_found import balls, legs_of
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 from bouncing_ball_beyond.motions.destination import final_motions
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_beyond.motions.orbit_of_motion import of_impact

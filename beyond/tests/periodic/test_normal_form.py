@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.return_map import returned

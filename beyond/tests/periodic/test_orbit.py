@@ -6,8 +6,8 @@ from orbits_found import FOUND, found_orbit
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.corrector import solve
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.numerics.corrector import solve
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -5,7 +5,7 @@ import pytest
 from own_return_map import differences, returned, solved
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 
 # Balls, each with a Λ at which its 1-T orbit is stable.
 BALLS = [

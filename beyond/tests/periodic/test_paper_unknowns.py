@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from one_branch import continue_branch
 from scipy.optimize import brentq
 
-from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball_beyond.inherited.numerics.steps import StepControl
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold

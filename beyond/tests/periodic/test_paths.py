@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 
 # A stroke of 0.5 mm below a ball on a contact of 500 Hz, in SI units.

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.branch import ContinuationError
+from bouncing_ball_beyond.inherited.numerics.branch import ContinuationError
 from bouncing_ball_beyond.periodic.branches.point_by_point import (
     OTHER,
     AllPoints,

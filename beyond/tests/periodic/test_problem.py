@@ -5,7 +5,7 @@ import pytest
 import shooting
 from orbits_found import FOUND, balls, first, found_orbit, known_orbit
 
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import branch_from, point_near
 from bouncing_ball_beyond.periodic.orbits.halves import twice
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of

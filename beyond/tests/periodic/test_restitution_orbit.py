@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bouncing_ball_beyond as bb
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.periodic.orbit import Bifurcation, Side
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation, Side
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import phase

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bouncing_ball.periodic.orbit import Bifurcation, Side
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact import corrected_branch, n_t

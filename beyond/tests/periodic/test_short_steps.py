@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from circle import Circle
 
-from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball_beyond.inherited.numerics.corrector import newton, plane
 from bouncing_ball_beyond.periodic.orbits.short_steps import (
     ShortSteps,
     newton_short,

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sixty_digits import Exact
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.oscillator import responses
 from bouncing_ball_beyond.models.permanent_contact import permanent_contact_threshold

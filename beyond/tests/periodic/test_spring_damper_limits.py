@@ -5,8 +5,8 @@ import pytest
 from random_contacts import drawn_contacts
 from scipy.optimize import minimize_scalar
 
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.periodic.orbit import Bifurcation, Side
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation, Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball.periodic.orbit import Side
-from bouncing_ball.periodic.restitution_branch import (
+from bouncing_ball_beyond.inherited.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
     restitution_period_doubling,
     restitution_saddle_node,
 )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.periodic.one_impact.whole_branch import whole_branch

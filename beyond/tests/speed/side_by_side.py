@@ -21,7 +21,7 @@ import compiled_auto
 import numpy as np
 
 import bouncing_ball_beyond
-from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball_beyond.inherited.numerics.corrector import newton, plane
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.linear_contact import LinearContactDynamics
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

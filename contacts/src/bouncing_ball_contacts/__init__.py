@@ -20,7 +20,7 @@ Measured restitution coefficients and contact times determine a contact::
 
 from typing import TYPE_CHECKING
 
-from bouncing_ball.first_use import first_use
+from bouncing_ball_beyond.inherited.first_use import first_use
 
 # What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ import pytest
 from asked_contacts import assessed
 from PIL import Image
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.drawing.labels import QUANTITIES
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.drawing.labels import QUANTITIES
 from bouncing_ball_contacts.contact.page_data import chart_and_motion
 from bouncing_ball_contacts.contact.page_figures import draw
 from bouncing_ball_contacts.contact.rows import document

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from bouncing_ball.cli.options import meanings
+from bouncing_ball_beyond.inherited.cli.options import meanings
 from bouncing_ball_contacts.cli import design
 from bouncing_ball_contacts.cli.commands import COMMANDS
 from bouncing_ball_contacts.contact.contact import Contact
@@ -51,7 +51,7 @@ def test_what_an_answer_does_not_need_is_not_imported():
     for arguments, unneeded in pairs:
         code = (
             "import sys\n"
-            "from bouncing_ball.cli.main import main\n"
+            "from bouncing_ball_beyond.inherited.cli.main import main\n"
             "try:\n"
             f"    main({arguments!r}.split())\n"
             "except SystemExit:\n"
@@ -110,7 +110,7 @@ def without_extras(code):
 def test_without_the_extras_calls_and_commands_work_or_say_in_one_line_what_they_need():
     done = without_extras(
         "import bouncing_ball_contacts as contacts\n"
-        "from bouncing_ball.cli.main import main\n"
+        "from bouncing_ball_beyond.inherited.cli.main import main\n"
         "names = [name for name in contacts.__all__ if getattr(contacts, name)]\n"
         f"main([*{DESIGN!r}, '--json'])\n"
         "main(['fit', 'croquet', '--json'])\n"

@@ -4,7 +4,7 @@ import pytest
 
 import bouncing_ball_beyond
 import bouncing_ball_contacts
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.question import EngineSetup, Question
 from bouncing_ball_contacts.contact.table import Table

@@ -13,7 +13,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_contacts import Contact, Question, Table, assess_contact
 

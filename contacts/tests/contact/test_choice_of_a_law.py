@@ -5,7 +5,7 @@ import re
 import pytest
 from asked_contacts import assessed
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 from bouncing_ball_contacts import Contact, Question, Table, choose_contact
 
 pytestmark = pytest.mark.usefixtures("short_runs")

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from asked_contacts import answered, assessed
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.simple_models import errors
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.laws.signature import Signature

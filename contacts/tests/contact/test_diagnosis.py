@@ -8,7 +8,7 @@ import pytest
 from asked_contacts import answered
 from installed_engines import only_if_installed
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.engines.choice import ENGINES, engine_named
 
 DRAKE = {"point_contact_stiffness": 1e6, "relaxation_time": 0.1, "time_step": 1e-3}

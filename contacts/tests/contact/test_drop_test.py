@@ -7,7 +7,7 @@ import pytest
 from asked_contacts import answered, assessed, described
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball_beyond.periodic.one_impact import n_t

@@ -5,7 +5,7 @@ import math
 import pytest
 from asked_contacts import answered, assessed, described
 
-from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.physical import Physical

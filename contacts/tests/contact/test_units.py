@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.contact import units
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import drop_at_rest

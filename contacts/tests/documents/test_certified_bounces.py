@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.documents.certified_bounces import enclosed_rebounds, hard, rounded_ball
 

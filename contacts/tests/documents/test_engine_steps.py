@@ -5,9 +5,9 @@ import pytest
 from make_data import ENGINE_STEPS
 from the_docs import DATA
 
-from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.accuracy.simple_models import errors
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.documents.engine_steps import EngineOrbit, conformance
 from bouncing_ball_contacts.engines.choice import ENGINES

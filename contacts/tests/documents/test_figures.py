@@ -8,10 +8,10 @@ import pytest
 from figure_checks import follows_its_data
 from the_docs import DATA
 
-from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.drawing.files import save
-from bouncing_ball.pipeline.diff.pictures import compare_pixels
-from bouncing_ball.pipeline.provenance import read_attributes
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset
+from bouncing_ball_beyond.inherited.drawing.files import save
+from bouncing_ball_beyond.inherited.pipeline.diff.pictures import compare_pixels
+from bouncing_ball_beyond.inherited.pipeline.provenance import read_attributes
 
 pytestmark = pytest.mark.slow
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball_beyond.models.rigid import RestitutionModel

@@ -14,8 +14,8 @@ from bounce_runs import BOUNCE, SETTINGS, G, rebounds
 from installed_engines import LAST_SEEN, engine_of, only_if_installed, package
 from the_docs import DATA, MEASURED
 
-from bouncing_ball.datasets.files import read_dataset, write_dataset
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset, write_dataset
+from bouncing_ball_beyond.inherited.datasets.variables import describe
 from bouncing_ball_contacts.documents.bounces import (
     ALL_VARIABLES,
     SETTINGS_TITLE,

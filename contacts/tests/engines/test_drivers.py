@@ -12,8 +12,8 @@ from driver_runs import DRIVERS, certified, top
 from installed_engines import LAST_SEEN, only_if_installed
 from the_docs import DATA, DOCS, MEASURED
 
-from bouncing_ball.datasets.files import read_dataset, write_dataset
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset, write_dataset
+from bouncing_ball_beyond.inherited.datasets.variables import describe
 from bouncing_ball_contacts.documents.bounces import ALL_VARIABLES, DRIVERS_TITLE
 
 FOLDER = DOCS / "bounces"

@@ -8,7 +8,7 @@ import pytest
 from asked_contacts import answered
 from installed_engines import only_if_installed
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.cli.design import answer_design
 from bouncing_ball_contacts.engines.drop_scripts import ENGINES, drop_script
 

@@ -9,7 +9,7 @@ from asked_contacts import answered
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_contacts import Contact, describe_contact
 from bouncing_ball_contacts.engines.choice import ENGINES, engine_named, engine_of

@@ -9,7 +9,7 @@ from asked_contacts import answered
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts import Contact, EngineSetup, write_contact

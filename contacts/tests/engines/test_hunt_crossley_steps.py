@@ -10,7 +10,7 @@ from asked_contacts import answered
 from engine_runs import Trial, drake
 from installed_engines import only_if_installed
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_contacts.engines import hunt_crossley_steps

@@ -24,11 +24,11 @@ from make_data import ENGINE_STEPS as PARAMETERS
 from pandas import DataFrame
 from the_docs import DATA, MEASURED
 
-from bouncing_ball.datasets.files import read_dataset, write_dataset
-from bouncing_ball.datasets.variables import describe
 from bouncing_ball_beyond import corrected, limits, rigid, spring_damper
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset, write_dataset
+from bouncing_ball_beyond.inherited.datasets.variables import describe
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball_beyond.models.laws.collocation import contacts

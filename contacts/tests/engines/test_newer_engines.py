@@ -10,7 +10,7 @@ from engine_runs import Trial
 from installed_engines import only_if_installed
 from newer_runs import NEWER, RECIPES
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.engines.choice import ENGINES
 
 G = 9.80665

@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from the_docs import DOCS
 
-from bouncing_ball.cli.main import main
+from bouncing_ball_beyond.inherited.cli.main import main
 from bouncing_ball_contacts.documents.bounces_figures import in_javascript, rapier_974
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.engine import Physical

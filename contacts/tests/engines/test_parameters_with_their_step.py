@@ -9,7 +9,7 @@ from asked_contacts import answered
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.cli.design_text import design_lines
 from bouncing_ball_contacts.engines.engine import filled, text_to_paste
 

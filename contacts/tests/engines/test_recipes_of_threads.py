@@ -10,7 +10,7 @@ from engine_runs import RADIUS, Trial, lammps
 from installed_engines import only_if_installed
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.contact.texts import shown
 
 HERTZ = {"mass": 0.02, "radius": RADIUS, "reduced_modulus": "1 GPa", "speed": "1 m/s"}

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball_contacts.engines.choice import ENGINES
 from bouncing_ball_contacts.engines.given_step import spread_in_steps

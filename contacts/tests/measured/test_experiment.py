@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.experiment import DATA, experiment, experiment_names, read
 

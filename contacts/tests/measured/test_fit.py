@@ -6,7 +6,7 @@ from scipy import stats
 from scipy.integrate import quad, solve_ivp
 
 import bouncing_ball_contacts
-from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.laws.hertzian import KuwabaraKono
 from bouncing_ball_contacts import Table, assess_contact, fit_contact, write_contact
 from bouncing_ball_contacts.contact.question import EngineSetup, Question

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 from bouncing_ball_contacts.measured.curves import curve_named
 from bouncing_ball_contacts.measured.fit import fit_contact

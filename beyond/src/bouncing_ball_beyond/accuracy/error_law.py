@@ -52,8 +52,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy import thresholds
-from bouncing_ball.accuracy.thresholds import RATIOS, quantity_names
-from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
+from bouncing_ball_beyond.drawing.result import Result
+from bouncing_ball_beyond.inherited.accuracy import thresholds
+from bouncing_ball_beyond.inherited.accuracy.thresholds import RATIOS, quantity_names
+from bouncing_ball_beyond.inherited.datasets import CASE
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     TOLERANCE,
@@ -21,11 +23,9 @@ from bouncing_ball.datasets.arguments import (
     checked,
     chosen,
 )
-from bouncing_ball.datasets.labelled import Grid
-from bouncing_ball.datasets.variables import described
-from bouncing_ball.errors import ParameterError, suggesting
-from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
-from bouncing_ball_beyond.drawing.result import Result
+from bouncing_ball_beyond.inherited.datasets.labelled import Grid
+from bouncing_ball_beyond.inherited.datasets.variables import described
+from bouncing_ball_beyond.inherited.errors import ParameterError, suggesting
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.docstrings import as_in
@@ -46,9 +46,9 @@ def error_thresholds(
 ) -> Result:
     """The ϖ above which the restitution model and the corrected model are accurate for a contact.
 
-    As :func:`bouncing_ball.error_thresholds`, for both simple models. An engineer's contact is
-    assessed by deviations, over the value on the contact instead, so that its thresholds are
-    others: an error e here is -e/(1 + e) there.
+    As :func:`bouncing_ball_beyond.inherited.error_thresholds`, for both simple models. An
+    engineer's contact is assessed by deviations, over the value on the contact instead, so that its
+    thresholds are others: an error e here is -e/(1 + e) there.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ def error_thresholds(
     Returns
     -------
     Result
-        The variables of :func:`bouncing_ball.error_thresholds`. The last axes are ``simple``, the
-        restitution model and the corrected one, and ``quantity``.
+        The variables of :func:`bouncing_ball_beyond.inherited.error_thresholds`. The last axes are
+        ``simple``, the restitution model and the corrected one, and ``quantity``.
 
     Examples
     --------

@@ -20,8 +20,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.one_impact import n_t
 
@@ -55,7 +55,7 @@ _BIFURCATIONS = {
 def values(
     model: Model, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
 ) -> np.ndarray:
-    """As :func:`bouncing_ball.accuracy.errors.values`, for any model.
+    """As :func:`bouncing_ball_beyond.inherited.accuracy.errors.values`, for any model.
 
     One search for the orbit serves all its quantities.
     """

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.thresholds import Numbered, thresholds
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, relative_errors
 from bouncing_ball_beyond.accuracy.thresholds import by_quantity, last_zero
+from bouncing_ball_beyond.inherited.accuracy.thresholds import Numbered, thresholds
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import Release

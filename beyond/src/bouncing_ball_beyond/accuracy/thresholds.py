@@ -1,16 +1,16 @@
 """Zeros of the errors along ϖ, and errors of several quantities as one set of functions.
 
-The thresholds of any errors are those of the root (:mod:`bouncing_ball.accuracy.thresholds`,
-Eqs. 37-38); :func:`~bouncing_ball_beyond.accuracy.simple_models.search` finds those of simple
-models.
+The thresholds of any errors are those of the root
+(:mod:`bouncing_ball_beyond.inherited.accuracy.thresholds`, Eqs. 37-38);
+:func:`~bouncing_ball_beyond.accuracy.simple_models.search` finds those of simple models.
 """
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bouncing_ball.accuracy.thresholds import Numbered, last_crossing
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS
+from bouncing_ball_beyond.inherited.accuracy.thresholds import Numbered, last_crossing
 
 ErrorsAtRatios = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
 """Signed errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""

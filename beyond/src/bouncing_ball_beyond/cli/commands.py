@@ -1,63 +1,57 @@
 """The subcommands that beyond adds to ``bouncing-ball``: an entry point of its package."""
 
-from bouncing_ball.cli.commands import Command, Program
 from bouncing_ball_beyond.cli.options import NAMES
+from bouncing_ball_beyond.inherited.cli.commands import Command, Program
 
 # What makes a single orbit cheaper.
 _SIMPLER = "a spring and a damper in place of a law"
 
 
 def _orbit() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import periodic
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(periodic.orbit_options, periodic.orbit, lines)
 
 
 def _limits() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import periodic
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(periodic.limits_options, periodic.limits, lines)
 
 
-def _certify() -> Program:
-    from bouncing_ball_beyond.cli import certify
-
-    return Program(certify.add_options, certify.certify, certify.certify_lines)
-
-
 def _error_law() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import periodic
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(periodic.error_law_options, periodic.error_law, lines)
 
 
 def _follow() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import followed
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(followed.follow_options, followed.follow, lines)
 
 
 def _curve() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import followed
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(followed.curve_options, followed.curve, lines)
 
 
 def _simulate() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import simulate
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(simulate.add_options, simulate.simulate, lines)
 
 
 def _motion() -> Program:
-    from bouncing_ball.cli.output import lines
     from bouncing_ball_beyond.cli import motion
+    from bouncing_ball_beyond.inherited.cli.output import lines
 
     return Program(motion.motion_options, motion.motion, lines)
 
@@ -96,17 +90,6 @@ COMMANDS = {
         program=_limits,
         names=NAMES,
         cheaper=_SIMPLER,
-    ),
-    "certify": Command(
-        purpose="saddle-node and period doubling on a spring and a damper, with a proof",
-        text=(
-            "Both limits of a family are proved by ball arithmetic: each printed number differs "
-            "from the exact one by no more than its radius. The contact ends where its "
-            "displacement vanishes. Numbers of up to 15 digits are taken as exact decimal numbers."
-        ),
-        examples=("certify --restitution 0.85 --frequency-ratio 10",),
-        program=_certify,
-        cheaper="fewer digits",
     ),
     "error-law": Command(
         purpose="the ϖ that the restitution model needs, by the error law",

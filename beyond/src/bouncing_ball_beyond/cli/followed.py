@@ -4,19 +4,25 @@ import math
 from pathlib import Path
 from typing import Any, get_args
 
-from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings, option
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.cli.impact import add_ball, ball_of
+from bouncing_ball_beyond.cli.options import add_file
+from bouncing_ball_beyond.cli.periodic import Answer
+from bouncing_ball_beyond.inherited.cli.options import (
+    Parser,
+    add_choice,
+    add_number,
+    meanings,
+    option,
+)
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     POINTS,
     START,
     SideName,
 )
-from bouncing_ball.datasets.files import PICTURES, require_writable
-from bouncing_ball.errors import ParameterError, Range
-from bouncing_ball_beyond.cli.impact import add_ball, ball_of
-from bouncing_ball_beyond.cli.options import add_file
-from bouncing_ball_beyond.cli.periodic import Answer
+from bouncing_ball_beyond.inherited.datasets.files import PICTURES, require_writable
+from bouncing_ball_beyond.inherited.errors import ParameterError, Range
 from bouncing_ball_beyond.motions.orbit_of_motion import orbit_of_motion
 from bouncing_ball_beyond.periodic import orbits_of_ball as periodic
 from bouncing_ball_beyond.periodic.branches import follow as library

@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from bouncing_ball.cli import balls
-from bouncing_ball.cli.balls import add_loss
-from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings
-from bouncing_ball.datasets.arguments import FREQUENCY_RATIO, POSITIVE, ReleaseName
-from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball.models.spring_damper import LOSSES, spring_damper, the_loss
 from bouncing_ball_beyond.cli.options import add_assignments, option
+from bouncing_ball_beyond.inherited.cli import balls
+from bouncing_ball_beyond.inherited.cli.balls import add_loss
+from bouncing_ball_beyond.inherited.cli.options import Parser, add_choice, add_number, meanings
+from bouncing_ball_beyond.inherited.datasets.arguments import FREQUENCY_RATIO, POSITIVE, ReleaseName
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError
+from bouncing_ball_beyond.inherited.models.spring_damper import LOSSES, spring_damper, the_loss
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.given_ball import a_ball

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.cli.balls import note_on
-from bouncing_ball.cli.options import Parser, add_number, meanings
-from bouncing_ball.datasets.arguments import AMPLITUDE, SAMPLES, START
-from bouncing_ball.datasets.files import PICTURES, require_writable
-from bouncing_ball.errors import ParameterError, count
 from bouncing_ball_beyond.cli.impact import add_ball, ball_of
 from bouncing_ball_beyond.cli.options import add_file, add_interval
 from bouncing_ball_beyond.cli.periodic import Answer
+from bouncing_ball_beyond.inherited.cli.balls import note_on
+from bouncing_ball_beyond.inherited.cli.options import Parser, add_number, meanings
+from bouncing_ball_beyond.inherited.datasets.arguments import AMPLITUDE, SAMPLES, START
+from bouncing_ball_beyond.inherited.datasets.files import PICTURES, require_writable
+from bouncing_ball_beyond.inherited.errors import ParameterError, count
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.motions import motion_of as library
 from bouncing_ball_beyond.motions.destination import FOLLOWED, IMPACTS

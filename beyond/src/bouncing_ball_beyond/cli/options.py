@@ -4,9 +4,9 @@ import argparse
 import math
 from typing import Any
 
-from bouncing_ball.cli import options
-from bouncing_ball.cli.options import Parser
-from bouncing_ball.errors import Range
+from bouncing_ball_beyond.inherited.cli import options
+from bouncing_ball_beyond.inherited.cli.options import Parser
+from bouncing_ball_beyond.inherited.errors import Range
 
 NAMES = {"parameters": "set", "amplitudes": "amplitude"}
 """The options that are not called as their parameters."""

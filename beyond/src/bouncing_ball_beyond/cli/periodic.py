@@ -5,14 +5,19 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.cli.balls import Answer, SideOrAll, add_contact, add_orbit
-from bouncing_ball.cli.options import Parser, add_number, meanings
-from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, TOLERANCE, ReleaseName
-from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation
 from bouncing_ball_beyond.accuracy import error_law as error_laws
 from bouncing_ball_beyond.cli.impact import add_ball, ball_of
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.cli.balls import Answer, SideOrAll, add_contact, add_orbit
+from bouncing_ball_beyond.inherited.cli.options import Parser, add_number, meanings
+from bouncing_ball_beyond.inherited.datasets.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    TOLERANCE,
+    ReleaseName,
+)
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError
+from bouncing_ball_beyond.inherited.periodic.orbit import OBSERVABLES, Bifurcation
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.signature import Signature

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.cli.balls import note_on
-from bouncing_ball.cli.options import Parser, add_number, meanings
-from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, START, Range
-from bouncing_ball.models.model import Status
 from bouncing_ball_beyond.cli.impact import add_ball, ball_of
 from bouncing_ball_beyond.cli.periodic import Answer, law_values
+from bouncing_ball_beyond.inherited.cli.balls import note_on
+from bouncing_ball_beyond.inherited.cli.options import Parser, add_number, meanings
+from bouncing_ball_beyond.inherited.datasets.arguments import AMPLITUDE, IMPACTS, START, Range
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.motions import over_time
 
 _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")

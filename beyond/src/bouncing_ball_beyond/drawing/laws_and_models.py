@@ -4,11 +4,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.drawing import style
-from bouncing_ball.drawing.canvas import WIDE, canvas
-from bouncing_ball.drawing.labels import QUANTITIES
-from bouncing_ball.drawing.style import COLOURS, Look
-from bouncing_ball.drawing.tables import Column, text
+from bouncing_ball_beyond.inherited.drawing import style
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas
+from bouncing_ball_beyond.inherited.drawing.labels import QUANTITIES
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, Look
+from bouncing_ball_beyond.inherited.drawing.tables import Column, text
 
 CORRECTED = "#AA3A00"
 MODELS: dict[str, Look] = {
@@ -39,7 +39,7 @@ def law_name(name: str) -> Column:
 
     Examples
     --------
-    >>> from bouncing_ball.drawing.tables import text_table
+    >>> from bouncing_ball_beyond.inherited.drawing.tables import text_table
     >>> text_table([xr.Dataset({"law": "hunt-crossley"})], {"law": law_name("law")})[1]
     [['Hunt and Crossley']]
     """

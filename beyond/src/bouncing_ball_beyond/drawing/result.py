@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from bouncing_ball.drawing import result
-from bouncing_ball.drawing.result import MADE_BY as MADE_BY
-from bouncing_ball.errors import did_you_mean
+from bouncing_ball_beyond.inherited.drawing import result
+from bouncing_ball_beyond.inherited.drawing.result import MADE_BY as MADE_BY
+from bouncing_ball_beyond.inherited.errors import did_you_mean
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,12 +11,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from bouncing_ball.datasets import CASE
-from bouncing_ball.drawing import result_figures as root
-from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
-from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
-from bouncing_ball.drawing.style import COLOURS, LINES, Look
 from bouncing_ball_beyond.drawing.kinds import Kind
+from bouncing_ball_beyond.inherited.datasets import CASE
+from bouncing_ball_beyond.inherited.drawing import result_figures as root
+from bouncing_ball_beyond.inherited.drawing.canvas import (
+    WIDE,
+    WIDTH,
+    canvas,
+    coloured,
+    legend_below,
+)
+from bouncing_ball_beyond.inherited.drawing.labels import QUANTITIES, in_a_row, symbol, title
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, LINES, Look
 
 # The colours of the kinds of motion, in the order of the legend. Motions that do not repeat have
 # pale colours, because they fill their bands.

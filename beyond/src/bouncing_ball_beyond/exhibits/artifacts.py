@@ -1,6 +1,6 @@
 """The figures and tables of beyond: the title of each, and the function that draws it."""
 
-from bouncing_ball.datasets.artifact import Artifact, by_name
+from bouncing_ball_beyond.inherited.datasets.artifact import Artifact, by_name
 
 _EXHIBITS = "bouncing_ball_beyond.exhibits"
 
@@ -42,13 +42,5 @@ ARTIFACTS = by_name(
     Artifact(
         "explorer",
         "A page to explore the models, and the orbits that it checks itself against",
-    ),
-    Artifact(
-        "ext_proofs",
-        "Printed numbers, certified by ball arithmetic",
-    ),
-    Artifact(
-        "ext_verdicts",
-        "Verdicts on the printed numbers by certified intervals",
     ),
 )

@@ -1,9 +1,9 @@
 """Budgets of the variables of single artifacts, beside those that the variables declare.
 
-They allow more where rounding decides; see :mod:`bouncing_ball.paper.exhibits.budgets`.
+They allow more where rounding decides.
 """
 
-from bouncing_ball.datasets.variables import Budget
+from bouncing_ball_beyond.inherited.datasets.variables import Budget
 
 BUDGETS: dict[str, dict[str, Budget]] = {
     # A hundred times the largest disagreement of the page with Python, over the size of the

@@ -28,9 +28,14 @@ import numpy as np
 import scipy
 import xarray as xr
 
-from bouncing_ball.datasets.parameters import LossyRestitution, Many, Parameters, number
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.errors import require
+from bouncing_ball_beyond.inherited.datasets.parameters import (
+    LossyRestitution,
+    Many,
+    Parameters,
+    number,
+)
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, described
+from bouncing_ball_beyond.inherited.errors import require
 from bouncing_ball_beyond.models.damping import damping_ratio
 
 VARIABLES = {

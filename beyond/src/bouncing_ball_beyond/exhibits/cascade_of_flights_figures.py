@@ -5,9 +5,9 @@ from itertools import cycle
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.drawing.canvas import WIDE, canvas, coloured
-from bouncing_ball.drawing.labels import number_label
-from bouncing_ball.drawing.style import GUIDE, Look
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas, coloured
+from bouncing_ball_beyond.inherited.drawing.labels import number_label
+from bouncing_ball_beyond.inherited.drawing.style import GUIDE, Look
 
 _MARKS = ("v", "o", "s", "D", "^")
 

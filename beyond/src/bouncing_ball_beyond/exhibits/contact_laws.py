@@ -28,14 +28,14 @@ import xarray as xr
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.datasets.parameters import Many, Tolerance, number
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.accuracy.errors import paper_error, values
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE
 from bouncing_ball_beyond.accuracy.thresholds import last_zero
 from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.datasets.parameters import Many, Tolerance, number
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, described
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import Release

@@ -3,10 +3,16 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.labels import parameters
-from bouncing_ball.drawing.style import GUIDE
-from bouncing_ball.drawing.tables import (
+from bouncing_ball_beyond.drawing.laws_and_models import (
+    LAW_NAMES,
+    LAWS,
+    law_name,
+    panels_by_quantity,
+)
+from bouncing_ball_beyond.inherited.datasets.selection import each
+from bouncing_ball_beyond.inherited.drawing.labels import parameters
+from bouncing_ball_beyond.inherited.drawing.style import GUIDE
+from bouncing_ball_beyond.inherited.drawing.tables import (
     Columns,
     TextTable,
     at,
@@ -15,13 +21,7 @@ from bouncing_ball.drawing.tables import (
     text_table,
     value,
 )
-from bouncing_ball.drawing.thresholds import with_zeros
-from bouncing_ball_beyond.drawing.laws_and_models import (
-    LAW_NAMES,
-    LAWS,
-    law_name,
-    panels_by_quantity,
-)
+from bouncing_ball_beyond.inherited.drawing.thresholds import with_zeros
 
 # The lowest error shown, as a share of the smallest at a sample.
 _BELOW = 0.3

@@ -14,15 +14,20 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.accuracy import error_law
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors, search
 from bouncing_ball_beyond.exhibits.orbit_parameters import OrbitErrors, OrbitOnContact
 from bouncing_ball_beyond.exhibits.random_orbits import half_next_to_saddle_node, random_orbits
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.datasets.parameters import (
+    LossyRestitution,
+    Samples,
+    Seed,
+    number,
+)
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, described
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature

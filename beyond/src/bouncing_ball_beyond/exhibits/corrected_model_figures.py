@@ -4,11 +4,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic
-from bouncing_ball.drawing.labels import note, parameters
-from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, TABLE, Look
-from bouncing_ball.drawing.tables import (
+from bouncing_ball_beyond.drawing.laws_and_models import MODELS, panels_by_quantity
+from bouncing_ball_beyond.inherited.datasets.selection import each
+from bouncing_ball_beyond.inherited.drawing.canvas import canvas, legend_below, logarithmic
+from bouncing_ball_beyond.inherited.drawing.labels import note, parameters
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, CONTACT, GUIDE, TABLE, Look
+from bouncing_ball_beyond.inherited.drawing.tables import (
     Columns,
     TextTable,
     at,
@@ -18,8 +19,7 @@ from bouncing_ball.drawing.tables import (
     threshold,
     value,
 )
-from bouncing_ball.drawing.thresholds import with_zeros
-from bouncing_ball_beyond.drawing.laws_and_models import MODELS, panels_by_quantity
+from bouncing_ball_beyond.inherited.drawing.thresholds import with_zeros
 
 # Errors are below 1 but next to a phase of 0; the orders have the room above.
 _ERRORS = (1e-11, 1e5)

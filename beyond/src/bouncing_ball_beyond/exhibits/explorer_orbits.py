@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.parameters import Parameters, Seed, Span
-from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.accuracy.simple_models import exact_and_simple_models
 from bouncing_ball_beyond.exhibits import corrected_model
 from bouncing_ball_beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball_beyond.inherited.datasets.parameters import Parameters, Seed, Span
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, describe
+from bouncing_ball_beyond.inherited.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball_beyond.models.model import Model

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Strict, ValidationInfo
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.datasets.parameters import (
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.datasets.parameters import (
     Amplitude,
     Family,
     FrequencyRatio,
@@ -19,7 +19,7 @@ from bouncing_ball.datasets.parameters import (
     Span,
     Tolerance,
 )
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.one_impact import n_t

@@ -15,7 +15,9 @@ physics engines need to know. Times are ωt, which are the times of a contact wi
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.parameters import (
+from bouncing_ball_beyond.accuracy.simple_models import Search, search
+from bouncing_ball_beyond.exhibits.orbit_parameters import ComparedQuantities
+from bouncing_ball_beyond.inherited.datasets.parameters import (
     Family,
     LossyRestitution,
     Many,
@@ -23,10 +25,8 @@ from bouncing_ball.datasets.parameters import (
     Samples,
     Span,
 )
-from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.periodic.orbit import Bifurcation
-from bouncing_ball_beyond.accuracy.simple_models import Search, search
-from bouncing_ball_beyond.exhibits.orbit_parameters import ComparedQuantities
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, describe, described
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import (
     LINEAR,

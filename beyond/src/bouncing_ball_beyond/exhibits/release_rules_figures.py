@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.labels import note
-from bouncing_ball.drawing.style import COLOURS, TABLE, Look
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball_beyond.inherited.drawing.labels import note
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, TABLE, Look
 
 _LOOKS: dict[str, Look] = {
     "displacement": {"color": COLOURS[0], "linestyle": "-", "linewidth": 1.4},

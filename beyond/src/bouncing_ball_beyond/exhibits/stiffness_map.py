@@ -27,9 +27,11 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus, thresholds
-from bouncing_ball.datasets.parameters import (
+from bouncing_ball_beyond.accuracy.error_law import law_thresholds
+from bouncing_ball_beyond.accuracy.errors import paper_error
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.accuracy.thresholds import ThresholdStatus, thresholds
+from bouncing_ball_beyond.inherited.datasets.parameters import (
     Family,
     Interval,
     LossyRestitution,
@@ -39,13 +41,11 @@ from bouncing_ball.datasets.parameters import (
     Span,
     Tolerance,
 )
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.periodic.restitution_branch import (
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, described
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball_beyond.accuracy.error_law import law_thresholds
-from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.models.damping import damping_ratio
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.labels import QUANTITIES
-from bouncing_ball.drawing.style import GUIDE, Look
+from bouncing_ball_beyond.inherited.datasets.selection import each
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball_beyond.inherited.drawing.labels import QUANTITIES
+from bouncing_ball_beyond.inherited.drawing.style import GUIDE, Look
 
 # Contours of ϖ where the model predicts a larger height than the contact has, and a smaller one.
 _LEVELS = {-1: (15, 20, 25, 30, 40, 50, 60, 70, 80, 90), 1: (200, 1000)}

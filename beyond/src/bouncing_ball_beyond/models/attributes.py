@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, ClassVar, NoReturn
 
-from bouncing_ball.errors import did_you_mean
+from bouncing_ball_beyond.inherited.errors import did_you_mean
 
 
 class Suggesting:

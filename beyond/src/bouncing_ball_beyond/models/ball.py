@@ -18,7 +18,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.arguments import is_array
+from bouncing_ball_beyond.inherited.datasets.arguments import is_array
 from bouncing_ball_beyond.models.attributes import Suggesting
 
 
@@ -88,8 +88,9 @@ class Ball(Suggesting):
         raise NotImplementedError
 
     def row(self, grid: Any) -> Any:
-        """The balls at the places of a :class:`~bouncing_ball.datasets.labelled.Grid` of which the
-        parameters are arguments, one after another.
+        """The balls at the places of a
+        :class:`~bouncing_ball_beyond.inherited.datasets.labelled.Grid` of which the parameters are
+        arguments, one after another.
         """
         return self.take(grid.numbers_of(self.parameters))
 

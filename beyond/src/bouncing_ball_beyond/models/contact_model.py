@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError, Range, shortened
+from bouncing_ball_beyond.inherited.errors import ParameterError, Range, shortened
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.analytic import require_analytic

@@ -12,10 +12,10 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.models.flight import land, table
-from bouncing_ball.numerics.arrays import Batch
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero
+from bouncing_ball_beyond.inherited.models.flight import land, table
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.first_zero import Zero
 from bouncing_ball_beyond.models.contact import FiniteContact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian
 from bouncing_ball_beyond.models.flight import Flight

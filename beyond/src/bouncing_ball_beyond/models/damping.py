@@ -1,5 +1,5 @@
-"""Contacts that the root's :mod:`bouncing_ball.models.damping` lacks: overdamped ones, and a damper
-that acts on approach only.
+"""Contacts that the root's :mod:`bouncing_ball_beyond.inherited.models.damping` lacks: overdamped
+ones, and a damper that acts on approach only.
 
 An overdamped ball does not come back to the table's level, but its force vanishes. A damper that
 acts on approach only is a linear contact up to the greatest penetration, at the angle arccos ζ, and
@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import one_of, require
-from bouncing_ball.models import damping as linear
-from bouncing_ball.models.damping import check_restitution, damped_frequency
-from bouncing_ball.numerics.arrays import as_numbers
-from bouncing_ball.numerics.elementary import logarithm
+from bouncing_ball_beyond.inherited.errors import one_of, require
+from bouncing_ball_beyond.inherited.models import damping as linear
+from bouncing_ball_beyond.inherited.models.damping import check_restitution, damped_frequency
+from bouncing_ball_beyond.inherited.numerics.arrays import as_numbers
+from bouncing_ball_beyond.inherited.numerics.elementary import logarithm
 
 
 class Release(StrEnum):
@@ -159,8 +159,9 @@ def check_damping(value: ArrayLike, name: str) -> np.ndarray:
 def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
-    It is that of :func:`bouncing_ball.models.damping.damping_ratio`; for a damper that acts on
-    approach only ζ = cos β with ``β cot β = -ln r``, that of the force release with r².
+    It is that of :func:`bouncing_ball_beyond.inherited.models.damping.damping_ratio`; for a damper
+    that acts on approach only ζ = cos β with ``β cot β = -ln r``, that of the force release with
+    r².
 
     Parameters
     ----------
@@ -192,9 +193,10 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Restitution coefficient of a free contact with a spring and a damper.
 
-    For ζ < 1 it is that of :func:`bouncing_ball.models.damping.restitution_coefficient`. An
-    overdamped contact, whose ζ = cosh β, has ``r = exp(-2ζβ/sinh β)`` with the force release. If
-    the damper acts on approach only, r is the root of that of the force release.
+    For ζ < 1 it is that of
+    :func:`bouncing_ball_beyond.inherited.models.damping.restitution_coefficient`. An overdamped
+    contact, whose ζ = cosh β, has ``r = exp(-2ζβ/sinh β)`` with the force release. If the damper
+    acts on approach only, r is the root of that of the force release.
 
     Parameters
     ----------

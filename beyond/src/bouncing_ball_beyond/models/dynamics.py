@@ -12,10 +12,10 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, require
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.model import Status
-from bouncing_ball.numerics.arrays import BLOCK, as_numbers, blocks, pick
+from bouncing_ball_beyond.inherited.errors import ModelError, require
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.numerics.arrays import BLOCK, as_numbers, blocks, pick
 from bouncing_ball_beyond.models.contacts_and_flights import ContactsAndFlights, Departure, Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.sequence import RECORDED, Cycle, ImpactSequence

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from bouncing_ball.datasets.arguments import is_array
-from bouncing_ball.errors import ParameterError, shortened
-from bouncing_ball.models import model as root
-from bouncing_ball.models import restitution, spring_damper
+from bouncing_ball_beyond.inherited.datasets.arguments import is_array
+from bouncing_ball_beyond.inherited.errors import ParameterError, shortened
+from bouncing_ball_beyond.inherited.models import model as root
+from bouncing_ball_beyond.inherited.models import restitution, spring_damper
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
@@ -22,13 +22,14 @@ def a_ball(ball: Any) -> Ball:
 
     Examples
     --------
-    >>> import bouncing_ball
-    >>> a_ball(bouncing_ball.spring_damper(frequency_ratio=10.0, damping_ratio=0.1))
+    >>> from bouncing_ball_beyond import inherited
+    >>> a_ball(inherited.spring_damper(frequency_ratio=10.0, damping_ratio=0.1))
     ContactModel(law=SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement'))
 
     >>> a_ball(0.85)
     Traceback (most recent call last):
-    bouncing_ball.errors.ParameterError: the ball = 0.85 is not a ball: it is not made by rigid, \
+    bouncing_ball_beyond.inherited.errors.ParameterError: the ball = 0.85 is not a ball: it is \
+not made by rigid, \
 spring_damper, contact_law, corrected or ContactModel(law)
     """
     if isinstance(ball, root.Model):

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.model import Status
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.sequence import ImpactSequence

@@ -25,15 +25,15 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.model import Status
-from bouncing_ball.models.spring_damper import flow as linear_flow
-from bouncing_ball.numerics.elementary import (
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.models.spring_damper import flow as linear_flow
+from bouncing_ball_beyond.inherited.numerics.elementary import (
     arctangent,
     exponential,
     sine_and_versine,
 )
-from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
+from bouncing_ball_beyond.inherited.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball_beyond.models.flight import Flight
@@ -45,7 +45,8 @@ from bouncing_ball_beyond.models.resumption import ResumingDynamics
 _PATIENCE = 12
 # A bound of the rounding errors of the three terms of the inequality above.
 _ROUNDING = np.array(8 * np.finfo(float).eps)
-# Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
+# Constants are arrays without an axis, as in
+# :mod:`bouncing_ball_beyond.inherited.numerics.elementary`.
 _ZERO = np.array(0.0)
 _ONE = np.array(1.0)
 _TWO = np.array(2.0)

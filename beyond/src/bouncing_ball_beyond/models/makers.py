@@ -11,10 +11,10 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any, ParamSpec
 
-from bouncing_ball.datasets.arguments import is_array
-from bouncing_ball.errors import ModelError, suggesting
-from bouncing_ball.models import model, restitution
-from bouncing_ball.models import spring_damper as linear
+from bouncing_ball_beyond.inherited.datasets.arguments import is_array
+from bouncing_ball_beyond.inherited.errors import ModelError, suggesting
+from bouncing_ball_beyond.inherited.models import model, restitution
+from bouncing_ball_beyond.inherited.models import spring_damper as linear
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.given_ball import a_ball
@@ -73,6 +73,6 @@ def flattened(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
         return parameters
     # Imported here, because a single ball needs no labels, and importing xarray takes longer than
     # computing its orbit.
-    from bouncing_ball.datasets.labelled import Grid
+    from bouncing_ball_beyond.inherited.datasets.labelled import Grid
 
     return Grid(**parameters).flat

@@ -26,10 +26,16 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.errors import DAMPING_RATIO, FREQUENCY_RATIO, RESTITUTION, ModelError, Range
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball_beyond.inherited.datasets.arguments import chosen
+from bouncing_ball_beyond.inherited.errors import (
+    DAMPING_RATIO,
+    FREQUENCY_RATIO,
+    RESTITUTION,
+    ModelError,
+    Range,
+)
+from bouncing_ball_beyond.inherited.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.instant import Instant

@@ -6,7 +6,7 @@ registry of both, by :func:`by_name`, and hands it to :func:`law_named`.
 
 from collections.abc import Mapping
 
-from bouncing_ball.errors import one_of
+from bouncing_ball_beyond.inherited.errors import one_of
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import (

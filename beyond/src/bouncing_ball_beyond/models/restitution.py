@@ -11,8 +11,8 @@ after the next impact is (Eq. 5) ::
 Here the map is composed of the impact (:meth:`RestitutionDynamics.depart`) and of the flight up to
 the landing (:meth:`.Dynamics.fly`), and a state is (τ, δ′) just before an impact.
 
-Balls chatter as in the root (:mod:`bouncing_ball.models.restitution`), and then rest on the table
-until they lift off (:mod:`bouncing_ball_beyond.models.sticking`).
+Balls chatter as in the root (:mod:`bouncing_ball_beyond.inherited.models.restitution`), and then
+rest on the table until they lift off (:mod:`bouncing_ball_beyond.models.sticking`).
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.restitution import chattering
+from bouncing_ball_beyond.inherited.models.restitution import chattering
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, DurationSlopes, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch
 from bouncing_ball_beyond.models.instant import Instant, rigid_instant
 from bouncing_ball_beyond.models.laws.analytic import compare
 from bouncing_ball_beyond.models.model import Model

@@ -9,7 +9,7 @@ Most balls leave fast. With G = 1 + Λ, the strongest relative gravity, the cond
     v² + 2Gδ_b > 0   and   √(v² + 2Gδ_b) ≥ κ G
 
 are sufficient for δ to reach 0 while y increases. The other balls are followed by the certified
-steps of :mod:`bouncing_ball.numerics.first_zero`.
+steps of :mod:`bouncing_ball_beyond.inherited.numerics.first_zero`.
 """
 
 from collections.abc import Callable
@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.models.flight import Unloaded, land
-from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import first_zero
+from bouncing_ball_beyond.inherited.models.flight import Unloaded, land
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.first_zero import first_zero
 from bouncing_ball_beyond.models.contact import FiniteContact
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import RIGID_RESTITUTION, Range
-from bouncing_ball.models.damping import check_restitution
+from bouncing_ball_beyond.inherited.errors import RIGID_RESTITUTION, Range
+from bouncing_ball_beyond.inherited.models.damping import check_restitution
 from bouncing_ball_beyond.models.instant import Instant, rigid_instant
 from bouncing_ball_beyond.models.laws.force_law import NUMBER, Unit
 from bouncing_ball_beyond.models.model import Model

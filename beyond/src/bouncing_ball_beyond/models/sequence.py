@@ -5,9 +5,9 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.models.model import Status
-from bouncing_ball.numerics.arrays import in_words
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.numerics.arrays import in_words
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contact import FiniteContact
 
 RECORDED = (

@@ -25,8 +25,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.damping import check_positive
-from bouncing_ball.models.spring_damper import ContactState
+from bouncing_ball_beyond.inherited.models.damping import check_positive
+from bouncing_ball_beyond.inherited.models.spring_damper import ContactState
 from bouncing_ball_beyond.models.approach_threshold import approach_threshold
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.damping import Release, damping_ratio, restitution_coefficient
@@ -274,9 +274,9 @@ class SpringDamper(OscillatorLaw):
             χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ,          β = -2ζϖ/γ
 
         Here τ = s and δ = z - Λ sin(s + φ); δ₀ and δ′₀ at s = 0 determine A and B, which do not
-        appear: as in :mod:`bouncing_ball.models.spring_damper` the flow is a sum of responses, here
-        those of every damping (:mod:`.oscillator`). The class ``ClosedFormMotion`` in
-        :mod:`bouncing_ball_beyond.models.linear_contact` has them.
+        appear: as in :mod:`bouncing_ball_beyond.inherited.models.spring_damper` the flow is a sum
+        of responses, here those of every damping (:mod:`.oscillator`). The class
+        ``ClosedFormMotion`` in :mod:`bouncing_ball_beyond.models.linear_contact` has them.
 
         Parameters
         ----------

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.model import Status
-from bouncing_ball.models.restitution import lift_off_phase
-from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.models.restitution import lift_off_phase
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contacts_and_flights import Departure
 from bouncing_ball_beyond.models.flight import Flight
 

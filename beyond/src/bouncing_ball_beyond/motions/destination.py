@@ -39,8 +39,8 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import count
-from bouncing_ball.models.model import Status
+from bouncing_ball_beyond.inherited.errors import count
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics, HasDynamics, Leg
 from bouncing_ball_beyond.motions.followed import (

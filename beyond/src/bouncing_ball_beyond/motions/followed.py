@@ -5,7 +5,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.flight import table
+from bouncing_ball_beyond.inherited.models.flight import table
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.motions.lyapunov import Stretching
 from bouncing_ball_beyond.motions.motions import Kind, Motions, Reason

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.arguments import require_memory
-from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.models.flight import table
+from bouncing_ball_beyond.inherited.datasets import CASE
+from bouncing_ball_beyond.inherited.datasets.arguments import require_memory
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, describe, described
+from bouncing_ball_beyond.inherited.models.flight import table
 from bouncing_ball_beyond.motions.basins import basins as basins_of
 from bouncing_ball_beyond.motions.basins import fastest
 from bouncing_ball_beyond.motions.contraction import exponent_sum

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.drawing.result import Result
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE,
     POSITIVE,
     SAMPLES,
@@ -16,10 +17,9 @@ from bouncing_ball.datasets.arguments import (
     checked,
     checked_number,
 )
-from bouncing_ball.datasets.labelled import Grid
-from bouncing_ball.errors import ParameterError, suggesting
-from bouncing_ball.models import history
-from bouncing_ball_beyond.drawing.result import Result
+from bouncing_ball_beyond.inherited.datasets.labelled import Grid
+from bouncing_ball_beyond.inherited.errors import ParameterError, suggesting
+from bouncing_ball_beyond.inherited.models import history
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_single_ball

@@ -7,8 +7,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball_beyond.drawing.kinds import Kind
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch
 
 
 class Reason(StrEnum):

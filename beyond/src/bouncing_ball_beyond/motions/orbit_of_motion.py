@@ -4,14 +4,14 @@ from typing import Annotated
 
 import numpy as np
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     START,
     AmplitudeOfOrbit,
     checked_number,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
-from bouncing_ball.models.flight import table
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError, suggesting
+from bouncing_ball_beyond.inherited.models.flight import table
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.model import Model

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE,
     IMPACTS,
     START,
@@ -25,10 +25,10 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
     require_memory,
 )
-from bouncing_ball.errors import ModelError, ParameterError, suggesting
-from bouncing_ball.models import history as root
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.model import Status
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError, suggesting
+from bouncing_ball_beyond.inherited.models import history as root
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball
@@ -38,8 +38,8 @@ from bouncing_ball_beyond.models.sequence import ImpactSequence
 # A single simulation of the command line needs no labels, and importing xarray takes longer: it is
 # imported where results are labelled.
 if TYPE_CHECKING:
-    from bouncing_ball.datasets.labelled import Grid
     from bouncing_ball_beyond.drawing.result import Result
+    from bouncing_ball_beyond.inherited.datasets.labelled import Grid
 
 # Number of impacts of a ball that are simulated at first, and the largest number allowed.
 _FIRST, _MOST = 4, 65_536
@@ -90,7 +90,7 @@ def first_impacts(
         return grid, FirstImpacts(*starts)
     if velocity is not VELOCITY:
         raise ParameterError("argument {relative_velocity}: not allowed with argument {velocity}")
-    from bouncing_ball.datasets.labelled import Grid
+    from bouncing_ball_beyond.inherited.datasets.labelled import Grid
 
     grid = Grid(
         amplitude=checked("amplitude", amplitude, AMPLITUDE),

@@ -17,8 +17,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.motions.lyapunov import FORGOTTEN, NEAR

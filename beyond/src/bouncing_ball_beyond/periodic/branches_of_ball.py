@@ -4,15 +4,15 @@ from functools import partial
 
 import xarray as xr
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     FamilyAxis,
     Points,
     Positive,
 )
-from bouncing_ball.datasets.variables import describe
-from bouncing_ball.errors import NoOrbitError, suggesting
-from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.periodic import branches
+from bouncing_ball_beyond.inherited.datasets.variables import describe
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, suggesting
+from bouncing_ball_beyond.inherited.numerics.branch import ContinuationError
+from bouncing_ball_beyond.inherited.periodic import branches
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball
@@ -47,8 +47,8 @@ def branch(
     Returns
     -------
     BranchDataset
-        The variables of :func:`bouncing_ball.branch`. A single branch has the orbits themselves as
-        well, as what :func:`bouncing_ball_beyond.follow` finds.
+        The variables of :func:`bouncing_ball_beyond.inherited.branch`. A single branch has the
+        orbits themselves as well, as what :func:`bouncing_ball_beyond.follow` finds.
 
     Examples
     --------

@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.flight import table
-from bouncing_ball.numerics.arrays import blocks
-from bouncing_ball.numerics.corrector import checked
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.numerics.arrays import blocks
+from bouncing_ball_beyond.inherited.numerics.corrector import checked
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit, orbit_of_point

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     FREQUENCY_RATIO,
     POSITIVE,
     RESTITUTION,
@@ -26,8 +26,8 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import ParameterError, Range, shortened, suggesting
-from bouncing_ball.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.errors import ParameterError, Range, shortened, suggesting
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release
@@ -39,7 +39,7 @@ from bouncing_ball_beyond.periodic.one_impact.law_at_orbit import orbit_of_law
 from bouncing_ball_beyond.periodic.one_impact.restitution_branch import rigid_speed
 
 if TYPE_CHECKING:
-    from bouncing_ball.datasets.labelled import Grid
+    from bouncing_ball_beyond.inherited.datasets.labelled import Grid
 
 # A Hertzian contact of stiffness K lasts as long as a spring with ϖ ~ K^(2/5), at speeds of order
 # one.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, ParamSpec, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     START,
@@ -25,10 +25,10 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError, count, suggesting
-from bouncing_ball.models import permanent_contact as underdamped
-from bouncing_ball.periodic import calls
-from bouncing_ball.periodic.orbit import OBSERVABLES, Bifurcation, Side
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError, count, suggesting
+from bouncing_ball_beyond.inherited.models import permanent_contact as underdamped
+from bouncing_ball_beyond.inherited.periodic import calls
+from bouncing_ball_beyond.inherited.periodic.orbit import OBSERVABLES, Bifurcation, Side
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.models.docstrings import as_in
 from bouncing_ball_beyond.models.given_ball import a_ball, a_known_ball, a_single_ball
@@ -49,7 +49,8 @@ IMPACTS = count(100)
 
 
 class TwoLimits(NamedTuple):
-    """The root's :class:`~bouncing_ball.periodic.calls.TwoLimits`, with orbits of this house."""
+    """The root's :class:`~bouncing_ball_beyond.inherited.periodic.calls.TwoLimits`, with orbits of
+    this house."""
 
     saddle_node: Orbit
     period_doubling: Orbit

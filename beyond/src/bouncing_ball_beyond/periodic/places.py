@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.arguments import require_memory
-from bouncing_ball.datasets.labelled import Grid
-from bouncing_ball.datasets.variables import describe
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.drawing.result import Result
+from bouncing_ball_beyond.inherited.datasets import CASE
+from bouncing_ball_beyond.inherited.datasets.arguments import require_memory
+from bouncing_ball_beyond.inherited.datasets.labelled import Grid
+from bouncing_ball_beyond.inherited.datasets.variables import describe
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 from bouncing_ball_beyond.models.ball import Ball
 from bouncing_ball_beyond.periodic.branches.observables import OF_BRANCHES
 

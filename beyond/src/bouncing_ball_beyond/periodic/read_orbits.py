@@ -4,10 +4,10 @@ from pathlib import Path
 
 import xarray as xr
 
-from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.drawing import result
-from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesting
 from bouncing_ball_beyond.drawing.result import MADE_BY, Result
+from bouncing_ball_beyond.inherited.datasets.files import read_dataset
+from bouncing_ball_beyond.inherited.drawing import result
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError, shortened, suggesting
 from bouncing_ball_beyond.periodic.branches.labelled import BranchDataset
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.saved import fields_in, has_orbits
@@ -17,7 +17,7 @@ _OF_ORBITS = ("follow", "branch", "curve")
 
 @suggesting
 def open(path: str | Path) -> Result:
-    """The dataset in a netCDF file, as :func:`bouncing_ball.open`.
+    """The dataset in a netCDF file, as :func:`bouncing_ball_beyond.inherited.open`.
 
     A branch or a curve has its orbits, as from :func:`bouncing_ball_beyond.read_orbits`.
     """

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import Quantity, modulus
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.accuracy.errors import relative_errors
 from bouncing_ball_beyond.accuracy.simple_models import (
     SIMPLE,
@@ -12,6 +10,8 @@ from bouncing_ball_beyond.accuracy.simple_models import (
     exact_and_simple_models,
     search,
 )
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity, modulus
+from bouncing_ball_beyond.inherited.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.models.damping import LINEAR, Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 

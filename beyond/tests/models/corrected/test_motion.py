@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from bouncing_ball.models.model import Status
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley

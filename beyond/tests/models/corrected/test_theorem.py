@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.damping import damping_ratio

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel

@@ -7,7 +7,7 @@ import pytest
 from loaded_laws import Sharing
 from scipy.special import beta
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.laws.collocation import contacts, path
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash

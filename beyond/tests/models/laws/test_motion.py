@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from loaded_laws import Sharing
 
-from bouncing_ball.models.flight import land, table
-from bouncing_ball.models.model import Status
-from bouncing_ball.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.models.flight import land, table
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
 from bouncing_ball_beyond.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.models.history import motion_at

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from loaded_laws import Sharing
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import (

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from side_by_side import VELOCITY, checked_deviations
 
 import bouncing_ball_beyond
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.laws.collocation import contacts
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.start_speed import Flores, LankaraniNikravesh

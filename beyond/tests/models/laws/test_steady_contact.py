@@ -7,7 +7,7 @@ import pytest
 from loaded_laws import Sharing
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball_beyond.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact

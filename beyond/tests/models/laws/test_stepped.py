@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.stepped import (

@@ -1,11 +1,12 @@
 """What was probably meant by an argument that ``design`` or ``fit`` does not know.
 
-What all commands have in common is in :mod:`bouncing_ball.cli.options`, which is asked next.
+What all commands have in common is in :mod:`bouncing_ball_beyond.inherited.cli.options`, which is
+asked next.
 """
 
 from collections.abc import Collection, Iterable, Sequence
 
-from bouncing_ball.cli.options import DASHES, NUMBER, is_option, preceding
+from bouncing_ball_beyond.inherited.cli.options import DASHES, NUMBER, is_option, preceding
 
 # Other words for options, and the symbols of textbooks.
 _WORDS = {
@@ -32,7 +33,7 @@ _WITHOUT_VALUE = ("--all", "--intervals")
 def advice_of_design(unknown: str, arguments: Sequence[str], known: Iterable[str]) -> str:
     """A clause on the first argument that ``design`` does not know; empty if nothing is known.
 
-    The parameters are those of :func:`bouncing_ball.cli.options.advice`.
+    The parameters are those of :func:`bouncing_ball_beyond.inherited.cli.options.advice`.
 
     Examples
     --------

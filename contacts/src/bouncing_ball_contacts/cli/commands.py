@@ -1,6 +1,6 @@
 """The subcommands that contacts adds to ``bouncing-ball``: an entry point of its package."""
 
-from bouncing_ball.cli.commands import Command, Program
+from bouncing_ball_beyond.inherited.cli.commands import Command, Program
 from bouncing_ball_contacts.cli.advice import advice_of_design, advice_of_fit
 from bouncing_ball_contacts.cli.options import NAMES
 
@@ -21,7 +21,7 @@ def _design() -> Program:
 
 
 def _fit() -> Program:
-    from bouncing_ball.cli.options import add_parameters
+    from bouncing_ball_beyond.inherited.cli.options import add_parameters
     from bouncing_ball_contacts.cli import fit
 
     return Program(

@@ -9,9 +9,9 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bouncing_ball.cli.options import Parser
-from bouncing_ball.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball_beyond.cli.options import add_file
+from bouncing_ball_beyond.inherited.cli.options import Parser
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball_contacts.cli.design_answer import KINDS, DesignAnswer
 from bouncing_ball_contacts.cli.engine_text import contact_numbers
 from bouncing_ball_contacts.cli.options import add_optional, option
@@ -84,7 +84,7 @@ def design(
     """
     if plot is not None:
         # Imported here, because it imports xarray, which takes longer than most recipes.
-        from bouncing_ball.datasets.files import PICTURES, require_writable
+        from bouncing_ball_beyond.inherited.datasets.files import PICTURES, require_writable
 
         require_writable(plot, PICTURES)
     found = answer_design(given, script)
@@ -129,7 +129,7 @@ def answer_design(given: Mapping[str, Any], script: Path | None = None) -> Desig
         if engine is None:
             raise ParameterError("{script} needs {engine}, such as mujoco")
         # Imported here, because it imports xarray, which takes longer than most recipes.
-        from bouncing_ball.datasets.files import require_writable
+        from bouncing_ball_beyond.inherited.datasets.files import require_writable
 
         require_writable(script, (".py",))
         text = drop_script(engine, contact.radius, found.case.table.gravity)
@@ -205,8 +205,8 @@ def _draw(given: DesignAnswer, path: Path) -> None:
     from bouncing_ball_contacts.contact.page_data import chart_and_motion
 
     with extra("plot"):
-        from bouncing_ball.drawing.files import write
-        from bouncing_ball.drawing.style import style
+        from bouncing_ball_beyond.inherited.drawing.files import write
+        from bouncing_ball_beyond.inherited.drawing.style import style
         from bouncing_ball_contacts.contact.page_figures import draw
     with style():
         listed = contact_numbers(given) + rows.texts(found.judged)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.cli.design import answer_design, design_document
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer

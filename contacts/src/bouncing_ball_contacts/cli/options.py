@@ -3,9 +3,9 @@
 import inspect
 from collections.abc import Callable, Iterable
 
-from bouncing_ball.cli import options
-from bouncing_ball.cli.options import Parser, add_parameters, meanings
 from bouncing_ball_beyond.cli.options import add_assignments
+from bouncing_ball_beyond.inherited.cli import options
+from bouncing_ball_beyond.inherited.cli.options import Parser, add_parameters, meanings
 
 NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
 """The options that are not called as their parameters."""

@@ -1,8 +1,8 @@
 """The numbers of a contact on a table and of its families, as they are printed."""
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.accuracy.thresholds import ThresholdStatus
 from bouncing_ball_contacts.cli.design_answer import DesignAnswer
 from bouncing_ball_contacts.cli.engine_text import contact_numbers, law_lines, line
 from bouncing_ball_contacts.cli.options import option

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, ClassVar
 
-from bouncing_ball.errors import ModelError, NoOrbitError, require, suggesting
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError, require, suggesting
 from bouncing_ball_beyond.models.damping import LINEAR
 from bouncing_ball_contacts.contact.choose import Choice
 from bouncing_ball_contacts.contact.contact import Contact

@@ -7,10 +7,10 @@ to the value on the contact (:func:`~bouncing_ball_beyond.accuracy.errors.deviat
 import math
 from dataclasses import dataclass, replace
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
-from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, QUANTITIES
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.accuracy.thresholds import RATIOS, ThresholdStatus
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from bouncing_ball.errors import ParameterError, shortened, suggesting
+from bouncing_ball_beyond.inherited.errors import ParameterError, shortened, suggesting
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from bouncing_ball.errors import ModelError, suggesting
+from bouncing_ball_beyond.inherited.errors import ModelError, suggesting
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.drops import deep
 from bouncing_ball_contacts.contact.numbers_of_contact import NumbersOfContact

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 import scipy
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.inherited.errors import ParameterError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.rebounds import rises

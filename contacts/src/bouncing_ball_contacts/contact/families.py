@@ -11,16 +11,16 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.periodic.orbit import Bifurcation
-from bouncing_ball.periodic.restitution_branch import (
+from bouncing_ball_beyond.accuracy import error_law, errors
+from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, deviation
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
     restitution_period_doubling,
     restitution_saddle_node,
 )
-from bouncing_ball_beyond.accuracy import error_law, errors
-from bouncing_ball_beyond.accuracy.errors import OF_IMPACTS, OF_ORBITS, deviation
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 from bouncing_ball_beyond.models.model import Model

@@ -9,7 +9,7 @@ elastic bodies, the ball and the table (Hertz), ::
 
 import math
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.inherited.errors import ParameterError
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import given

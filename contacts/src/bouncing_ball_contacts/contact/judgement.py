@@ -10,8 +10,8 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.accuracy.errors import deviation
+from bouncing_ball_beyond.inherited.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.motions.motions import Kind
 from bouncing_ball_contacts.contact.families import ComparedOrbit
 from bouncing_ball_contacts.contact.motion import FinalMotion

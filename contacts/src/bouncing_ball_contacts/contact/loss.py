@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import scipy
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.inherited.errors import ParameterError
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.contact import LOSSY, Contact

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import RATIOS
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball_beyond.accuracy.error_law import law_thresholds, permanent_contact_ratio
 from bouncing_ball_beyond.accuracy.errors import OF_ORBITS, as_deviation
 from bouncing_ball_beyond.accuracy.simple_models import search
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.accuracy.thresholds import RATIOS
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 
@@ -51,7 +51,8 @@ def _by_law(
 
 
 NO_ORBIT = "no orbit"
-"""A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
+"""A status in addition to
+:class:`~bouncing_ball_beyond.inherited.accuracy.thresholds.ThresholdStatus`."""
 
 
 def needed(
@@ -62,7 +63,7 @@ def needed(
     Parameters
     ----------
     quantity : str
-        One of :class:`~bouncing_ball.accuracy.errors.Quantity`.
+        One of :class:`~bouncing_ball_beyond.inherited.accuracy.errors.Quantity`.
     tolerance : float
         Largest modulus of the deviation from the contact that is allowed.
     contact : SpringDamper

@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball_beyond.accuracy.errors import as_deviation
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, search
+from bouncing_ball_beyond.inherited.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.periodic.one_impact import n_t
 from bouncing_ball_contacts.contact.assess import Assessment

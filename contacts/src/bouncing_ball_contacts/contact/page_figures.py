@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
-from bouncing_ball.drawing.labels import QUANTITIES
-from bouncing_ball.drawing.style import COLOURS, CONTACT, RESTITUTION, TABLE
 from bouncing_ball_beyond.drawing.laws_and_models import CORRECTED, MODELS
+from bouncing_ball_beyond.inherited.drawing.labels import QUANTITIES
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, CONTACT, RESTITUTION, TABLE
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Annotated, Any, get_args
 
-from bouncing_ball.errors import ParameterError, Range, shortened
+from bouncing_ball_beyond.inherited.errors import ParameterError, Range, shortened
 from bouncing_ball_contacts.contact.units import SIParameter, in_si
 
 # A longer value is named by its type in a message.
@@ -78,7 +78,7 @@ def check_kinds(call: str, **arguments: tuple[Any, type]) -> None:
     >>> from bouncing_ball_contacts.contact.question import Question
     >>> check_kinds("choose_contact", question=(0.05, Question))
     Traceback (most recent call last):
-    bouncing_ball.errors.ParameterError: question = 0.05 is not a Question
+    bouncing_ball_beyond.inherited.errors.ParameterError: question = 0.05 is not a Question
     """
     kinds = [kind for _, kind in arguments.values()]
     for name, (value, kind) in arguments.items():

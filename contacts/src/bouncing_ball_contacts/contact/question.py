@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal, get_args
 
-from bouncing_ball.errors import (
+from bouncing_ball_beyond.inherited.errors import (
     FAMILY,
     ModelError,
     one_of,

@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 import numpy as np
 import scipy
 
-from bouncing_ball.models.model import Status
+from bouncing_ball_beyond.inherited.models.model import Status
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import under

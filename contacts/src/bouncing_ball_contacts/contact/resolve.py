@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from bouncing_ball.errors import NoOrbitError, ParameterError, require, suggesting
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError, require, suggesting
 from bouncing_ball_contacts.contact.quantities import (
     Acceleration,
     Frequency,

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ParameterError, Range, shortened
+from bouncing_ball_beyond.inherited.errors import ParameterError, Range, shortened
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
@@ -146,7 +146,8 @@ def number_in_si(name: str, value: Any, kind: SIParameter) -> float:
     >>> number_in_si("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ParameterError: frequency = 20 ms is in millisecond, not in Hz: \
+    bouncing_ball_beyond.inherited.errors.ParameterError: frequency = 20 ms is in millisecond, \
+not in Hz: \
 write it as '50 Hz'
     """
     short = textwrap.shorten(

@@ -8,10 +8,10 @@ contact (:func:`~bouncing_ball_beyond.accuracy.errors.deviation`).
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.accuracy.errors import QUANTITIES
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.accuracy.thresholds import ThresholdStatus
+from bouncing_ball_beyond.inherited.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_beyond.motions.motions import Kind

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError, suggesting
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError, suggesting
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
 from bouncing_ball_contacts.contact.contact import Contact

@@ -6,7 +6,7 @@ different instants within a time step. Short scripts in docs/bounces, the driver
 each, beside numbers with certified digits.
 """
 
-from bouncing_ball.datasets.variables import Variable
+from bouncing_ball_beyond.inherited.datasets.variables import Variable
 from bouncing_ball_contacts.documents import engine_steps
 
 VARIABLES = {

@@ -7,9 +7,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.tables import Columns, TextTable, text, text_table, to_markdown, value
+from bouncing_ball_beyond.inherited.datasets.selection import each
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball_beyond.inherited.drawing.tables import (
+    Columns,
+    TextTable,
+    text,
+    text_table,
+    to_markdown,
+    value,
+)
 
 _MARKERS = "os^xD+v*<1"
 # Bars beyond this range are cut off; the table has them.

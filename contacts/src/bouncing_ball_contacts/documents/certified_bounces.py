@@ -19,9 +19,9 @@ from typing import Any
 
 import scipy
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release
-from bouncing_ball_beyond.proofs.installed import proofs_extra
+from bouncing_ball_contacts.documents.installed import proofs_extra
 
 with proofs_extra():
     from flint import arb, ctx

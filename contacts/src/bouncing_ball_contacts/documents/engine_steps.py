@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.errors import ModelError
 from bouncing_ball_beyond.accuracy.errors import paper_error
 from bouncing_ball_beyond.accuracy.simple_models import SIMPLE, errors
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, describe
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

@@ -5,12 +5,20 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.labels import number_label, parameters
-from bouncing_ball.drawing.style import COLOURS, Look
-from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, text, text_table, value
 from bouncing_ball_beyond.drawing.laws_and_models import MODELS
+from bouncing_ball_beyond.inherited.datasets.selection import each
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball_beyond.inherited.drawing.labels import number_label, parameters
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, Look
+from bouncing_ball_beyond.inherited.drawing.tables import (
+    Columns,
+    TextTable,
+    at,
+    entry_of,
+    text,
+    text_table,
+    value,
+)
 
 _IMPLICIT: Look = {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))}
 # Dashes distinguish the schemes of time stepping, and markers the engines.

@@ -33,9 +33,6 @@ from typing import Self
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.accuracy.error_law import (
     VALID_BELOW,
     curvature_of,
@@ -43,6 +40,9 @@ from bouncing_ball_beyond.accuracy.error_law import (
     law_errors,
     small_parameter,
 )
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.datasets.variables import Variable, described
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import restitution_saddle_node
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact
 from bouncing_ball_beyond.models.laws.signature import Signature
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

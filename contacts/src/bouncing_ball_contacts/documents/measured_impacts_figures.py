@@ -8,11 +8,12 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.style import COLOURS, Look
-from bouncing_ball.drawing.tables import (
+from bouncing_ball_beyond.drawing.laws_and_models import LAW_NAMES, LAWS, law_name
+from bouncing_ball_beyond.inherited.accuracy.errors import Quantity
+from bouncing_ball_beyond.inherited.datasets.selection import each
+from bouncing_ball_beyond.inherited.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball_beyond.inherited.drawing.style import COLOURS, Look
+from bouncing_ball_beyond.inherited.drawing.tables import (
     Column,
     Columns,
     TextTable,
@@ -22,7 +23,6 @@ from bouncing_ball.drawing.tables import (
     value,
     words,
 )
-from bouncing_ball_beyond.drawing.laws_and_models import LAW_NAMES, LAWS, law_name
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {

@@ -34,7 +34,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from bouncing_ball.errors import ModelError, one_of
+from bouncing_ball_beyond.inherited.errors import ModelError, one_of
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.drake import DRAKE
 from bouncing_ball_contacts.engines.engine import Engine, proportional

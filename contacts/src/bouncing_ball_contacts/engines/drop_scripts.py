@@ -2,7 +2,7 @@
 
 import math
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_contacts.engines.engine import filled, text_to_paste
 from bouncing_ball_contacts.engines.settings import EngineSettings
 

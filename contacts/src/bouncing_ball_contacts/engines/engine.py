@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, did_you_mean, require
+from bouncing_ball_beyond.inherited.errors import ModelError, did_you_mean, require
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley

@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 from bouncing_ball_contacts.engines.impacts import (
     FEWEST,

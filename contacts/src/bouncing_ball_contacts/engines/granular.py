@@ -23,7 +23,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball_beyond.inherited.errors import ParameterError
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.hertzian import Tsuji
 from bouncing_ball_contacts.engines.engine import (

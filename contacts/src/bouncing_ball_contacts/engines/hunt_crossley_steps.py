@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError
 from bouncing_ball_beyond.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball_contacts.engines.given_step import AtStep, Spread, spread
 from bouncing_ball_contacts.engines.steps import HuntCrossleyStep, patience, until_outside

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball_beyond.inherited.errors import ModelError, require
 from bouncing_ball_beyond.models.damping import Release, restitution_coefficient
 from bouncing_ball_contacts.engines.physical import free_duration
 from bouncing_ball_contacts.engines.scheme import Scheme

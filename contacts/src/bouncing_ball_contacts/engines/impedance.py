@@ -40,8 +40,8 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.errors import require
-from bouncing_ball.models.damping import check_positive
+from bouncing_ball_beyond.inherited.errors import require
+from bouncing_ball_beyond.inherited.models.damping import check_positive
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import OscillatorLaw

@@ -41,7 +41,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, shortened
+from bouncing_ball_beyond.inherited.errors import ModelError, shortened
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_contacts.engines.engine import (
     Engine,

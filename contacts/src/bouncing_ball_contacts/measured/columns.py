@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError, Range
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError, Range
 from bouncing_ball_contacts.contact.units import COMMON, SIParameter, number_in_si
 
 COLUMNS = {

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, one_of
+from bouncing_ball_beyond.inherited.errors import ModelError, one_of
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.elasto_backlash import ElastoBacklash

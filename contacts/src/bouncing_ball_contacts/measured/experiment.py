@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball_beyond.inherited.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY, SIParameter, in_si
 from bouncing_ball_contacts.measured.columns import (
     HIGHEST,

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import (
+from bouncing_ball_beyond.inherited.errors import (
     NoOrbitError,
     ParameterError,
     require,
     shortened,
     suggesting,
 )
-from bouncing_ball.numerics.arrays import as_numbers
+from bouncing_ball_beyond.inherited.numerics.arrays import as_numbers
 from bouncing_ball_contacts.contact.contact import Contact
 from bouncing_ball_contacts.contact.quantities import quantities
 from bouncing_ball_contacts.contact.texts import lines

@@ -27,7 +27,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball_beyond.inherited.errors import ModelError, require
 from bouncing_ball_contacts.contact.units import STANDARD_GRAVITY
 
 AIR_DENSITY = 1.2

@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import (
+from bouncing_ball_beyond.inherited.errors import (
     ModelError,
 )
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact

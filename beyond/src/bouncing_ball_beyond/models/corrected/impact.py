@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.elementary import sine_and_versine
+from bouncing_ball_beyond.inherited.numerics.elementary import sine_and_versine
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.signature import Signature
 

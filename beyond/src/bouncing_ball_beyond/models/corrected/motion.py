@@ -22,9 +22,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.flight import Unloaded, table
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero, first_zero
+from bouncing_ball_beyond.inherited.models.flight import Unloaded, table
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.first_zero import Zero, first_zero
 from bouncing_ball_beyond.models.contacts_and_flights import (
     NO_LAG,
     Departure,

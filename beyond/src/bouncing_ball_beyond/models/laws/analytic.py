@@ -11,7 +11,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import under
 
@@ -57,7 +57,8 @@ def compare(what: str, name: str, function: Callable[[Any], Any], at: np.ndarray
     >>> compare("r", "v", lambda v: v * np.abs(v), np.array([1.0, 2.0, 3.0]))
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ModelError: r is not analytic in v: at v = 1 its derivative is 1 by an \
+    bouncing_ball_beyond.inherited.errors.ModelError: r is not analytic in v: at v = 1 its \
+derivative is 1 by an \
 imaginary step and 2 by a difference; write it with analytic functions, such as np.sqrt(x * x) or \
 np.where(x > 0, x, -x)
     """

@@ -12,8 +12,8 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
-from bouncing_ball.models.damping import check_positive
+from bouncing_ball_beyond.inherited.errors import require
+from bouncing_ball_beyond.inherited.models.damping import check_positive
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.damping import check_damping
 from bouncing_ball_beyond.models.dynamics import Dynamics
@@ -172,7 +172,7 @@ class OscillatorLaw(ContactLaw):
         return self.frequency_ratio * np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
 
     def require_underdamped(self) -> None:
-        """Raise :class:`~bouncing_ball.errors.ModelError` unless all ζ < 1."""
+        """Raise :class:`~bouncing_ball_beyond.inherited.errors.ModelError` unless all ζ < 1."""
         zeta = np.asarray(self.damping_ratio, dtype=float)
         require(zeta < 1, zeta, "damping ratio ζ", "below 1: the contact does not oscillate")
 

@@ -22,8 +22,8 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.arrays import Batch, as_numbers
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch, as_numbers
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.instant import Instant
 
@@ -61,7 +61,7 @@ class ForceLaw(Batch, ABC):
     A subclass defines ``name`` and :meth:`force`; the other members have defaults.
     ``root`` is m, and ``release`` the rule that ends the contact. A subclass checks its parameters
     in ``__post_init__``, after that of this class, and raises
-    :class:`~bouncing_ball.errors.ModelError`.
+    :class:`~bouncing_ball_beyond.inherited.errors.ModelError`.
     """
 
     name: ClassVar[str]
@@ -206,7 +206,9 @@ class ForceLaw(Batch, ABC):
 
     @classmethod
     def require_units(cls) -> None:
-        """Raise :class:`~bouncing_ball.errors.ModelError` if a parameter has no declared unit."""
+        """Raise :class:`~bouncing_ball_beyond.inherited.errors.ModelError` if a parameter has no
+        declared unit.
+        """
         for name in cls.parameter_names():
             if name not in cls.units:
                 raise ModelError(f"{cls.name} declares no unit of its parameter {name}")

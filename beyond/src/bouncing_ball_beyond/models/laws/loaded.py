@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from bouncing_ball.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
 from bouncing_ball_beyond.models.damping import Release
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 

@@ -22,10 +22,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.model import Status
-from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.first_zero import first_zero
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.first_zero import first_zero
 from bouncing_ball_beyond.models.contact import ContactSpan
 from bouncing_ball_beyond.models.contacts_and_flights import Departure, Impact
 from bouncing_ball_beyond.models.deviations import Deviation, Jacobian

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import LoadedLaw
 

@@ -61,8 +61,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.laws.collocation import contacts
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw, Scaled

@@ -43,8 +43,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, require
-from bouncing_ball.models.damping import check_positive
+from bouncing_ball_beyond.inherited.errors import ModelError, require
+from bouncing_ball_beyond.inherited.models.damping import check_positive
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.force_law import NUMBER, ForceLaw, Scaled, Unit
 from bouncing_ball_beyond.models.laws.hertzian import Hertz, HuntCrossley

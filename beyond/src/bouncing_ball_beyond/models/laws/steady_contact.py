@@ -30,7 +30,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.models.laws.force_law import ForceLaw
 from bouncing_ball_beyond.models.laws.loaded import LoadedLaw, under
 from bouncing_ball_beyond.models.laws.scales import depth, rest

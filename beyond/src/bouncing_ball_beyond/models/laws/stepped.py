@@ -37,7 +37,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.damping import check_positive
+from bouncing_ball_beyond.inherited.models.damping import check_positive
 from bouncing_ball_beyond.models.damping import Release, check_damping
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.force_law import Unit

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from bouncing_ball.numerics.branch import Branch, End
-from bouncing_ball.numerics.corrector import plane
-from bouncing_ball.numerics.events import SpecialPoint
+from bouncing_ball_beyond.inherited.numerics.branch import Branch, End
+from bouncing_ball_beyond.inherited.numerics.corrector import plane
+from bouncing_ball_beyond.inherited.numerics.events import SpecialPoint
 from bouncing_ball_beyond.periodic.branches.following import Followed
 from bouncing_ball_beyond.periodic.orbits.impacts import point_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit

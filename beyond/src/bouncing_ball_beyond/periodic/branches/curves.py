@@ -26,13 +26,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
-from bouncing_ball.numerics.corrector import Condition, null_vector
-from bouncing_ball.numerics.events import Event, SpecialPoint, vanishing
-from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways
-from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError
+from bouncing_ball_beyond.inherited.numerics.branch import Branch, ContinuationError, End, EndKind
+from bouncing_ball_beyond.inherited.numerics.corrector import Condition, null_vector
+from bouncing_ball_beyond.inherited.numerics.events import Event, SpecialPoint, vanishing
+from bouncing_ball_beyond.inherited.numerics.pseudo_arclength import continue_all_both_ways
+from bouncing_ball_beyond.inherited.numerics.steps import StepControl, WithEvents
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import (
     Followed,
 )
@@ -87,7 +87,8 @@ def condition_of(equations: OrbitEquations, kind: Special) -> Condition:
 
 @dataclass(frozen=True)
 class CurveProblem:
-    """Special orbits in two parameters as a :class:`~bouncing_ball.numerics.corrector.Problem`.
+    """Special orbits in two parameters as a
+    :class:`~bouncing_ball_beyond.inherited.numerics.corrector.Problem`.
 
     ``equations`` has two parameters that vary, and ``condition`` is g with its gradient.
     """

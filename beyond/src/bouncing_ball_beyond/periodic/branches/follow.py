@@ -8,14 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.datasets.arguments import (
+from bouncing_ball_beyond.inherited.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     POINTS,
     Points,
     checked_number,
     chosen,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError, Range, shortened, suggesting
+from bouncing_ball_beyond.inherited.errors import (
+    NoOrbitError,
+    ParameterError,
+    Range,
+    shortened,
+    suggesting,
+)
 from bouncing_ball_beyond.periodic.branches import curves, following, grazing, switching
 from bouncing_ball_beyond.periodic.branches.closed import CLOSED, one_turn, without_start
 from bouncing_ball_beyond.periodic.branches.labelled import FollowedBranch

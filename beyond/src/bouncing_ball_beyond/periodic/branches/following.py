@@ -12,14 +12,17 @@ from typing import Any, Self
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.branch import Branch, ContinuationError, End, resample
-from bouncing_ball.numerics.corrector import is_exact, tangent
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.numerics.pseudo_arclength import continue_all_both_ways, continue_branches
-from bouncing_ball.numerics.steps import StepControl, WithEvents
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.branch import Branch, ContinuationError, End, resample
+from bouncing_ball_beyond.inherited.numerics.corrector import is_exact, tangent
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.events import Event, SpecialPoint
+from bouncing_ball_beyond.inherited.numerics.pseudo_arclength import (
+    continue_all_both_ways,
+    continue_branches,
+)
+from bouncing_ball_beyond.inherited.numerics.steps import StepControl, WithEvents
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
 from bouncing_ball_beyond.periodic.orbits.ends import (
     Window,

@@ -26,9 +26,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError, suggesting
-from bouncing_ball.numerics.corrector import plane
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, suggesting
+from bouncing_ball_beyond.inherited.numerics.corrector import plane
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import Path

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.datasets.variables import SHARED, Variable
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.drawing.result import MADE_BY, Result
+from bouncing_ball_beyond.inherited.datasets.arguments import chosen
+from bouncing_ball_beyond.inherited.datasets.variables import SHARED, Variable
+from bouncing_ball_beyond.inherited.errors import ModelError, NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.attributes import Suggesting
 from bouncing_ball_beyond.periodic.branches import observables
 from bouncing_ball_beyond.periodic.branches.following import Followed

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import Variable
-from bouncing_ball.periodic import branches
-from bouncing_ball.periodic.branches import OBSERVED
+from bouncing_ball_beyond.inherited.datasets.variables import Variable
+from bouncing_ball_beyond.inherited.periodic import branches
+from bouncing_ball_beyond.inherited.periodic.branches import OBSERVED
 from bouncing_ball_beyond.models.rigid import RestitutionModel
 from bouncing_ball_beyond.periodic.branches.following import Followed, places, unrolled
 from bouncing_ball_beyond.periodic.orbits import stability

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.numerics.branch import ContinuationError
+from bouncing_ball_beyond.inherited.numerics.branch import ContinuationError
 
 OTHER = {-1: -2, -2: -1}
 """The two coordinates as columns of the points, each with the other one."""

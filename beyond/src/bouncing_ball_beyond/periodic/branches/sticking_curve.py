@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.branch import Branch, ContinuationError, End
-from bouncing_ball.numerics.corrector import plane, tangent
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.branch import Branch, ContinuationError, End
+from bouncing_ball_beyond.inherited.numerics.corrector import plane, tangent
 from bouncing_ball_beyond.periodic.branches.point_by_point import (
     OTHER,
     AllPoints,

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.corrector import Correction, plane, tangent
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.corrector import Correction, plane, tangent
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.branches.following import point_near
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA, Path
 from bouncing_ball_beyond.periodic.orbits.halves import turns_of_half, twice

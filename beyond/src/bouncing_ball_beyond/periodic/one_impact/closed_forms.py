@@ -14,8 +14,8 @@ from typing import ClassVar, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.periodic.orbit import Side, check_index
-from bouncing_ball.periodic.restitution_branch import (
+from bouncing_ball_beyond.inherited.periodic.orbit import Side, check_index
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
     restitution_period_doubling,
     restitution_saddle_node,
 )

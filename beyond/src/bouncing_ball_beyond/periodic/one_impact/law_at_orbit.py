@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.corrector import checked, solve
-from bouncing_ball.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.corrector import checked, solve
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.laws.contact_law import ContactLaw
 from bouncing_ball_beyond.models.laws.law_of_impact import law_of_impact

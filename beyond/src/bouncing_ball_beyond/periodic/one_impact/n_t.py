@@ -12,8 +12,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.corrected.model import CorrectedModel
 from bouncing_ball_beyond.models.model import Model

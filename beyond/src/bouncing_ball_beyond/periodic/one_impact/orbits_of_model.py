@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 
 

@@ -13,8 +13,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from bouncing_ball.numerics.corrector import Condition
-from bouncing_ball.numerics.events import Event
+from bouncing_ball_beyond.inherited.numerics.corrector import Condition
+from bouncing_ball_beyond.inherited.numerics.events import Event
 from bouncing_ball_beyond.periodic.orbits.balls import LAMBDA
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of, point_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
@@ -23,10 +23,11 @@ from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations
 
 @dataclass(frozen=True)
 class PaperUnknowns:
-    """The equations as a :class:`~bouncing_ball.numerics.corrector.Problem`, with Λ as the last
-    entry of y.
+    """The equations as a :class:`~bouncing_ball_beyond.inherited.numerics.corrector.Problem`, with
+    Λ as the last entry of y.
 
-    They are those of :mod:`bouncing_ball.periodic.continuation`, here of an orbit of any model.
+    They are those of :mod:`bouncing_ball_beyond.inherited.periodic.continuation`, here of an orbit
+    of any model.
 
     Parameters
     ----------

@@ -1,16 +1,19 @@
 """Phase and speed of the impacts of the restitution model's n-T orbits.
 
 Its saddle-node and period doublings are the root's
-(:mod:`bouncing_ball.periodic.restitution_branch`).
+(:mod:`bouncing_ball_beyond.inherited.periodic.restitution_branch`).
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models import restitution as rigid
-from bouncing_ball.periodic.orbit import Side
-from bouncing_ball.periodic.restitution_branch import RestitutionBranch, restitution_saddle_node
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.models import restitution as rigid
+from bouncing_ball_beyond.inherited.periodic.orbit import Side
+from bouncing_ball_beyond.inherited.periodic.restitution_branch import (
+    RestitutionBranch,
+    restitution_saddle_node,
+)
 
 
 def rigid_speed(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.branch import ContinuationError
-from bouncing_ball.numerics.corrector import checked, newton, tangent
-from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
+from bouncing_ball_beyond.inherited.numerics.branch import ContinuationError
+from bouncing_ball_beyond.inherited.numerics.corrector import checked, newton, tangent
+from bouncing_ball_beyond.inherited.numerics.events import Event, SpecialPoint
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation, Side, check_index
 from bouncing_ball_beyond.models.instant import Instant
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import branches_through_points

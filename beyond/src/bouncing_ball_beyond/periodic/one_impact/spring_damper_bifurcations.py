@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.arrays import blocks
-from bouncing_ball.periodic.orbit import Bifurcation, Side, check_index
-from bouncing_ball.periodic.spring_damper_branch import (
+from bouncing_ball_beyond.inherited.numerics.arrays import blocks
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation, Side, check_index
+from bouncing_ball_beyond.inherited.periodic.spring_damper_branch import (
     SCAN,
     SCAN_START,
     first_change,

@@ -44,9 +44,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
-from bouncing_ball.models.damping import damped_frequency
-from bouncing_ball.numerics.arrays import blocks, pick
+from bouncing_ball_beyond.inherited.errors import require
+from bouncing_ball_beyond.inherited.models.damping import damped_frequency
+from bouncing_ball_beyond.inherited.numerics.arrays import blocks, pick
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.oscillator import gravity_response, table_response
 from bouncing_ball_beyond.models.spring_damper import SpringDamper
@@ -229,8 +229,8 @@ def _cramer(rows):
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
     """The points of the root's
-    :func:`bouncing_ball.periodic.spring_damper_branch.branch_point`, the solutions of Eqs. 23-26,
-    with their derivatives along ε.
+    :func:`bouncing_ball_beyond.inherited.periodic.spring_damper_branch.branch_point`, the solutions
+    of Eqs. 23-26, with their derivatives along ε.
 
     Returns
     -------

@@ -5,14 +5,14 @@ The branch is a solution curve of the equations of n-T orbits in the unknowns of
 followed to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
 Where an event cannot be located, for example next to permanent contact, the branch is kept up to
 there, and its end says which event it is; such an end is not finished
-(:class:`~bouncing_ball.numerics.branch.End`).
+(:class:`~bouncing_ball_beyond.inherited.numerics.branch.End`).
 """
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.branch import ContinuationError, EndKind
-from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.branch import ContinuationError, EndKind
+from bouncing_ball_beyond.inherited.numerics.steps import StepControl
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.branches.following import Followed, branches_through_points
 from bouncing_ball_beyond.periodic.one_impact import n_t

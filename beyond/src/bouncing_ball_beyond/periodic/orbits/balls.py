@@ -13,8 +13,14 @@ from typing import Any, Self
 
 import numpy as np
 
-from bouncing_ball.errors import AMPLITUDE, ModelError, ParameterError, Range, did_you_mean
-from bouncing_ball.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.errors import (
+    AMPLITUDE,
+    ModelError,
+    ParameterError,
+    Range,
+    did_you_mean,
+)
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.model import Model
 
@@ -150,7 +156,8 @@ class Balls:
         >>> from bouncing_ball_beyond.models.rigid import RestitutionModel
         >>> Balls(RestitutionModel(0.5), 1.0).range_of("loss")
         Traceback (most recent call last):
-        bouncing_ball.errors.ParameterError: these orbits have no 'loss': one of restitution, \
+        bouncing_ball_beyond.inherited.errors.ParameterError: these orbits have no 'loss': one of \
+restitution, \
 amplitude, frequency
         """
         if self.path is not None and name == self.path.name:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.numerics.corrector import Problem, newton, plane
-from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball_beyond.inherited.numerics.corrector import Problem, newton, plane
+from bouncing_ball_beyond.inherited.numerics.events import Event, SpecialPoint
 
 # A chord is divided at these shares, at points that are computed together, which costs hardly more
 # than one point does; and the largest number of such divisions.

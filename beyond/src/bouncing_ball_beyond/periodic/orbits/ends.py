@@ -18,10 +18,10 @@ from enum import StrEnum
 
 import numpy as np
 
-from bouncing_ball.models.flight import table
-from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.numerics.branch import Branch, End, EndKind
-from bouncing_ball.numerics.events import Event, SpecialPoint, limit
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball_beyond.inherited.numerics.branch import Branch, End, EndKind
+from bouncing_ball_beyond.inherited.numerics.events import Event, SpecialPoint, limit
 from bouncing_ball_beyond.periodic.orbits.domain_limits import DomainLimit
 from bouncing_ball_beyond.periodic.orbits.lost_release import lost_release
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations

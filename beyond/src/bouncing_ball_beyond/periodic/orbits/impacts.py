@@ -16,8 +16,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.arrays import Batch, blocks
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.numerics.arrays import Batch, blocks
 from bouncing_ball_beyond.models.attributes import Suggesting
 from bouncing_ball_beyond.models.contacts_and_flights import Impact
 from bouncing_ball_beyond.models.dynamics import Dynamics

@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.models.flight import table
-from bouncing_ball.numerics.corrector import checked
+from bouncing_ball_beyond.inherited.models.flight import table
+from bouncing_ball_beyond.inherited.numerics.corrector import checked
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.models.flight import Flight
 from bouncing_ball_beyond.periodic.orbits.legs import Legs

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.numerics.arrays import blocks
+from bouncing_ball_beyond.inherited.numerics.arrays import blocks
 from bouncing_ball_beyond.periodic.orbits.highest import about_highest
 from bouncing_ball_beyond.periodic.orbits.impacts import (
     OrbitImpacts,

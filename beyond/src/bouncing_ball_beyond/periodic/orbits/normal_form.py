@@ -29,9 +29,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError, suggesting
-from bouncing_ball.numerics.corrector import solve_linear
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, suggesting
+from bouncing_ball_beyond.inherited.numerics.corrector import solve_linear
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.impacts import equations_of
 from bouncing_ball_beyond.periodic.orbits.orbit import Orbit
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bouncing_ball.numerics.arrays import in_words
-from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball_beyond.inherited.numerics.arrays import in_words
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.periodic.orbit import OBSERVABLES
 from bouncing_ball_beyond.periodic.orbits import motion, stability
 from bouncing_ball_beyond.periodic.orbits.impacts import (
     OrbitImpacts,

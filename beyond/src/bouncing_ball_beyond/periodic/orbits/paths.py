@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bouncing_ball.datasets.arguments import checked_number
-from bouncing_ball.errors import NoOrbitError, ParameterError, Range, shortened
+from bouncing_ball_beyond.inherited.datasets.arguments import checked_number
+from bouncing_ball_beyond.inherited.errors import NoOrbitError, ParameterError, Range, shortened
 from bouncing_ball_beyond.models.model import Model
 from bouncing_ball_beyond.periodic.orbits.balls import FREQUENCY, LAMBDA, Balls, Path
 

@@ -51,9 +51,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from bouncing_ball.models.model import Status
-from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.models.model import Status
+from bouncing_ball_beyond.inherited.numerics.events import Event
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.contacts_and_flights import Impact, Section
 from bouncing_ball_beyond.models.deviations import Jacobian
 from bouncing_ball_beyond.models.dynamics import Dynamics
@@ -80,7 +80,7 @@ _KEPT = 8
 @dataclass(frozen=True)
 class OrbitEquations:
     """The equations of orbits with k impacts in m periods: a
-    :class:`~bouncing_ball.numerics.corrector.Problem`.
+    :class:`~bouncing_ball_beyond.inherited.numerics.corrector.Problem`.
 
     The last axis of y holds θ_1, v_1, θ_2, …, v_k, the durations D_1, …, D_k if they are unknowns,
     as arsinh ϖD_1, …, arsinh ϖD_k of linear contacts,

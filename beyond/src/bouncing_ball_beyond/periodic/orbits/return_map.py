@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
 from bouncing_ball_beyond.periodic.orbits.legs import arrived, lag_of, landed
 from bouncing_ball_beyond.periodic.orbits.problem import OrbitEquations

@@ -14,11 +14,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.arguments import SAMPLES, checked_number, require_memory
-from bouncing_ball.datasets.variables import SHARED, Variable, describe
-from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.drawing.result import Result
+from bouncing_ball_beyond.inherited.datasets.arguments import (
+    SAMPLES,
+    checked_number,
+    require_memory,
+)
+from bouncing_ball_beyond.inherited.datasets.variables import SHARED, Variable, describe
+from bouncing_ball_beyond.inherited.errors import ModelError
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.as_text import model_of, text_of
 from bouncing_ball_beyond.periodic.orbits.impacts import OrbitImpacts
 from bouncing_ball_beyond.periodic.orbits.motion import path, touches

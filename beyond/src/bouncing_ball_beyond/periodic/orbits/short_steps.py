@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.numerics.corrector import (
+from bouncing_ball_beyond.inherited.numerics.corrector import (
     Condition,
     Correction,
     Equations,
@@ -59,7 +59,7 @@ def shortened(equations: Equations, longest: float) -> Equations:
 
 
 def solve_short(equations: Equations, guess: np.ndarray, steps: ShortSteps) -> Correction:
-    """:func:`bouncing_ball.numerics.corrector.solve` in short steps."""
+    """:func:`bouncing_ball_beyond.inherited.numerics.corrector.solve` in short steps."""
     settings = NewtonSettings(max_iterations=steps.max_iterations)
     with np.errstate(all="ignore"):
         return solve(shortened(equations, steps.longest), guess, settings)
@@ -68,7 +68,7 @@ def solve_short(equations: Equations, guess: np.ndarray, steps: ShortSteps) -> C
 def newton_short(
     problem: Problem, guess: np.ndarray, condition: Condition, steps: ShortSteps
 ) -> Correction:
-    """:func:`bouncing_ball.numerics.corrector.newton` in short steps."""
+    """:func:`bouncing_ball_beyond.inherited.numerics.corrector.newton` in short steps."""
     equations = bordered(problem, condition)
     return checked(solve_short(equations, guess, steps), problem.residual)
 

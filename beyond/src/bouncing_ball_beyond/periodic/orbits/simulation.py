@@ -5,9 +5,9 @@ from itertools import islice
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball_beyond.inherited.errors import NoOrbitError
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.elementary import reduce_angle
 from bouncing_ball_beyond.models.dynamics import Dynamics
 from bouncing_ball_beyond.periodic.orbits.balls import Balls
 from bouncing_ball_beyond.periodic.orbits.legs import (
@@ -88,7 +88,8 @@ def _check_resumption(dynamics: Dynamics) -> None:
 def is_admissible(equations: OrbitEquations, y: np.ndarray) -> np.ndarray:
     """Whether a simulated ball follows the orbits, with the first releases and landings.
 
-    The events of the simulation are certified (:mod:`bouncing_ball.numerics.first_zero`).
+    The events of the simulation are certified
+    (:mod:`bouncing_ball_beyond.inherited.numerics.first_zero`).
     """
     dynamics, inside = equations.dynamics(y)
     shape = (*y.shape[:-1], equations.impacts)

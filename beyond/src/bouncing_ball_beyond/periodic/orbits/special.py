@@ -25,11 +25,11 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
-from bouncing_ball import datasets
-from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.corrector import Problem
-from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited import datasets
+from bouncing_ball_beyond.inherited.numerics.arrays import pick
+from bouncing_ball_beyond.inherited.numerics.corrector import Problem
+from bouncing_ball_beyond.inherited.numerics.events import Event
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.periodic.orbits.highest import heights_within
 from bouncing_ball_beyond.periodic.orbits.legs import rests_as_expected
 from bouncing_ball_beyond.periodic.orbits.lost_release import rise_of_release

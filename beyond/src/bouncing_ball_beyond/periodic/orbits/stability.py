@@ -13,7 +13,7 @@ a change dM_i of one leg contributes ``tr(W_i dM_i)`` with
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.periodic.orbit import Bifurcation
+from bouncing_ball_beyond.inherited.periodic.orbit import Bifurcation
 from bouncing_ball_beyond.models.deviations import Jacobian
 
 # The determinant of a contact that does not dissipate differs from 1 by rounding errors of its

@@ -7,8 +7,8 @@ those of the paper's figures, take theirs from the configuration
 
 from dataclasses import replace
 
-from bouncing_ball.numerics.corrector import NewtonSettings
-from bouncing_ball.numerics.steps import StepControl
+from bouncing_ball_beyond.inherited.numerics.corrector import NewtonSettings
+from bouncing_ball_beyond.inherited.numerics.steps import StepControl
 from bouncing_ball_beyond.periodic.orbits.short_steps import ShortSteps
 
 STEPS = StepControl(smallest=1e-9, largest=0.1, max_angle=0.15)

@@ -1,0 +1,179 @@
+"""One site for the three houses: READMEs, docs, articles, tables and docstrings, as they are in the
+repository.
+
+The repository is Sphinx's source folder, so that relative links and pictures are those of the
+files. Nothing is loaded from the network, neither when the site is built nor when it is read:
+formulas are MathML, and the explorer is a separate page.
+"""
+
+import os
+import re
+from pathlib import Path
+
+import xarray as xr
+from docutils.nodes import SkipNode
+from docutils.utils.math.latex2mathml import tex2mathml
+
+import bouncing_ball_beyond.inherited as bouncing_ball
+
+ROOT = Path(__file__).parents[1]
+EXPLORER = "beyond/figures/explorer.html"
+PACKAGES = {
+    "bouncing_ball": "src",
+    "bouncing_ball_beyond": "beyond/src",
+    "bouncing_ball_contacts": "contacts/src",
+}
+
+project = "Bouncing ball"
+author = "The bouncing-ball maintainers"
+version = release = bouncing_ball.__version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.apidoc"]
+root_doc = "README"
+include_patterns = [
+    "*.md",
+    "docs/*.md",
+    "config/README.md",
+    "figures/*.md",
+    "beyond/*.md",
+    "beyond/docs/*.md",
+    "beyond/figures/*.md",
+    "contacts/*.md",
+    "contacts/docs/*.md",
+    "contacts/docs/data/*.md",
+    "results/api/**.rst",
+]
+exclude_patterns = [".*", "results/[!a]*", "**/src", "**/tests", "**/workflow", "beyond/results"]
+apidoc_modules = [
+    {
+        "path": f"../{folder}/{package}",
+        "destination": f"results/api/{package}",
+        "separate_modules": True,
+        "module_first": True,
+    }
+    for package, folder in PACKAGES.items()
+]
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+myst_enable_extensions = ["dollarmath", "html_image"]
+myst_heading_anchors = 3
+html_theme = "furo"
+html_title = "A ball on a vibrating table"
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
+html_extra_path = [f"../{EXPLORER}"]
+html_show_sourcelink = False
+html_copy_source = False
+html_math_renderer = "mathml"
+# Public names are documented twice, at the top and in their modules.
+suppress_warnings = ["ref.python"]
+
+PARTS = {
+    "The replication": [
+        "paper",
+        "supplement",
+        "figures/*",
+        "config/README",
+        "docs/record",
+        "docs/datasets",
+        "docs/how-an-orbit-is-found",
+        "docs/closed-form",
+        "docs/python",
+        "docs/gallery",
+        "docs/lesson",
+    ],
+    "Beyond the paper": [
+        "beyond/README",
+        "beyond/article",
+        "beyond/docs/beyond",
+        "beyond/figures/*",
+        "beyond/docs/python",
+        "beyond/docs/gallery",
+        "beyond/docs/lesson",
+        "beyond/docs/contact-laws",
+        "beyond/docs/impact-as-an-instant",
+        "beyond/docs/error-law",
+        "beyond/docs/periodic-orbits",
+        "beyond/docs/thesis",
+        "beyond/docs/cascade-of-flights",
+        "beyond/docs/proofs",
+        "beyond/docs/speed",
+    ],
+    "Contacts with units": [
+        "contacts/README",
+        "contacts/docs/design",
+        "contacts/docs/engines",
+        "contacts/docs/bounces",
+        "contacts/docs/measured",
+        "contacts/docs/python",
+        "contacts/docs/gallery",
+        "contacts/docs/data/*",
+    ],
+    "Code": ["CONTRIBUTING", "CHANGELOG", *(f"results/api/{name}/modules" for name in PACKAGES)],
+}
+
+
+def title_of(table):
+    """The title of a table: that of the dataset beside it."""
+    with xr.open_dataset(ROOT / f"{table}.nc") as data:
+        return data.attrs["title"]
+
+
+def prepare(app, name, text):
+    """What the forge's pages have and a site has not: links to folders, tables without a title."""
+    folder = Path(name).parent
+
+    def link(found):
+        path, _, place = found[2].partition("#")
+        if not path:
+            return found[0]
+        target = Path(os.path.normpath(folder / path))
+        if str(target) == EXPLORER:
+            up = os.path.relpath("explorer.html", folder)
+            return f'<a href="{up}{"#" * bool(place)}{place}">{found[1]}</a>'
+        return found[1] if (ROOT / target).is_dir() else found[0]
+
+    text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])
+    if not text[0].lstrip().startswith("#") and "api" not in folder.parts:
+        text[0] = f"# {title_of(name)}\n\n{text[0]}"
+    if name == root_doc:
+        for caption, pages in PARTS.items():
+            glob = ":glob:\n" if any("*" in page for page in pages) else ""
+            listed = "\n".join(f"/{page}" for page in pages)
+            text[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n{glob}\n{listed}\n```\n"
+    # The scripts of the gallery in full, in place of links to them.
+    text[0] = re.sub(
+        r"^\[(\w+\.py)\]\((gallery/.*)\)$", r"```{literalinclude} \2\n```", text[0], flags=re.M
+    )
+
+
+def plain(app, what, name, of, options, lines):
+    """In docstrings |x| is a modulus, and to docutils it would be a substitution."""
+    lines[:] = [
+        x if x.lstrip().startswith((">>>", "...")) else x.replace("|", r"\|") for x in lines
+    ]
+
+
+def mathml(as_block):
+    """How a formula is written into a page."""
+
+    def write(writer, node):
+        writer.body.append(tex2mathml(node.astext(), as_block=as_block))
+        raise SkipNode
+
+    return write, None
+
+
+def home(app, failure):
+    """The site's folder opens with the page of README."""
+    page = (
+        '<!doctype html><title>Bouncing ball</title><meta http-equiv="refresh" content="0; url={}">'
+    )
+    Path(app.outdir, "index.html").write_text(page.format(f"{root_doc}.html"), encoding="utf-8")
+
+
+def setup(app):
+    """Called by Sphinx."""
+    app.connect("source-read", prepare)
+    app.connect("autodoc-process-docstring", plain)
+    app.connect("build-finished", home)
+    app.add_html_math_renderer("mathml", mathml(False), mathml(True))

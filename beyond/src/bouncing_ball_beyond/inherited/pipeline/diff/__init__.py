@@ -1,0 +1,1 @@
+"""The comparison of results with the accepted record, and their acceptance."""

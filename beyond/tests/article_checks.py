@@ -3,7 +3,6 @@
 import re
 
 import numpy as np
-from bouncing_ball_beyond.inherited.paper.claims.verdict import ROUNDING_SIZE
 
 from bouncing_ball_beyond.inherited.datasets.variables import ROUNDING
 from bouncing_ball_beyond.inherited.pipeline.yaml_files import read_yaml
@@ -12,6 +11,9 @@ JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)
 DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 INLINE = re.compile(r"\$[^$]+\$")
 CITATION = re.compile(r"\[@[^\]]+\]")
+# The rounding error of a finite difference, √ε. The digits of a number up to this size may come
+# from the processor and not from the model.
+ROUNDING_SIZE = float(np.sqrt(np.finfo(float).eps))
 CODE = re.compile(r"`[^`\n]*`")
 SPAN = r"R?\d+(?:[-–]\d+)?"
 NAMED = re.compile(rf"\b(?:Eq|Fig|Figure|Table|Eqs|Figs)s?\.? {SPAN}(?:(?:,| and|, and) {SPAN})*")

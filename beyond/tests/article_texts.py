@@ -1,35 +1,26 @@
-"""The tables and the article of the paper from the accepted datasets, for tests to change."""
+"""The tables and the article from datasets, for tests to change."""
 
 import functools
 from pathlib import Path
 
 import pytest
-from bouncing_ball_beyond.inherited.paper.artifacts import ARTIFACTS
-from bouncing_ball_beyond.inherited.paper.claims import claim_tables as rows
-from bouncing_ball_beyond.inherited.paper.claims.claims import claims
-from bouncing_ball_beyond.inherited.paper.exhibits import (
-    continuation_of_orbits_figures,
-    error_thresholds_figures,
-)
 from jinja2 import BytecodeCache, Environment
 
+from bouncing_ball_beyond.exhibits import contact_laws_figures, corrected_model_figures
+from bouncing_ball_beyond.exhibits.artifacts import ARTIFACTS
 from bouncing_ball_beyond.inherited.drawing.tables import to_csv, to_markdown
 from bouncing_ball_beyond.inherited.pipeline import article
-from bouncing_ball_beyond.inherited.pipeline.article import render_article, sections_of
+from bouncing_ball_beyond.inherited.pipeline.article import render_article
 from bouncing_ball_beyond.inherited.pipeline.yaml_files import read_yaml
 
-ROOT = Path(__file__).resolve().parents[1]
-TEMPLATES = ROOT / "workflow" / "report" / "paper"
-OF_PAPER = dict(ARTIFACTS)
+HOUSE = Path(__file__).resolve().parents[1]
+REPORT = HOUSE / "report"
+SHARED = REPORT / "shared"
+OF_ARTICLE = ("ext_instant", "ext_orders", "ext_map", "ext_laws")
 TABLES = {
-    "table1": continuation_of_orbits_figures.table1,
-    "thresholds": error_thresholds_figures.thresholds,
-    "formulas": rows.formulas,
-    "forensics": rows.forensics,
-    "witness": rows.witness,
-    "claims": rows.claims,
+    "ext_orders": corrected_model_figures.ext_orders,
+    "ext_laws": contact_laws_figures.ext_laws,
 }
-DERIVED = ("claims", "ext_verdicts")
 # All texts cite the same works in the same order, for which pandoc runs once.
 PANDOC = functools.cache(article.pandoc)
 
@@ -51,60 +42,36 @@ class Compiled(BytecodeCache):
 COMPILED = functools.partial(Environment, bytecode_cache=Compiled())
 
 
-# Those that were made, each with its dataset, so that no other one gets the same id.
-KNOWN: dict = {}
-
-
-def tables_of(table, data):
-    """The table of a dataset in all formats, made once of a dataset that several texts share."""
-    key = f"{table.__module__}:{table.__name__}", id(data)
-    if key not in KNOWN:
-        columns = table(data)
-        KNOWN[key] = data, {form.__name__: form(*columns) for form in (to_csv, to_markdown)}
-    return KNOWN[key][1]
-
-
-def rendered(templates, data, tables, artifacts, shared=None):
-    """The tables in all formats by name and format, and the texts of templates by name."""
-    made = {
-        (name, form): text
-        for name, table in tables.items()
-        for form, text in tables_of(table, data[name]).items()
-    }
-    texts = {name: made[name, "to_markdown"] for name in tables}
-    about = read_yaml(ROOT / "CITATION.cff")
-    decided = rows.Claims(data["claims"])
-    sections = {}
+def all_texts(data):
+    """The tables in all formats by name and format, and the article."""
+    made = {}
+    for name, table in TABLES.items():
+        columns = table(data[name])
+        made |= {(name, form.__name__): form(*columns) for form in (to_csv, to_markdown)}
+    replicated = read_yaml(HOUSE / "config" / "replicated.yaml")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(article, "pandoc", PANDOC)
         patch.setattr(article, "Environment", COMPILED)
-        for name, file in templates.items():
-            made[name] = render_article(
-                file, data, texts, decided, artifacts, about=about, sections=sections, shared=shared
-            )
-            sections = sections_of(made[name])
+        made["article"] = render_article(
+            REPORT / "article.md.j2",
+            {**data, "replicated": replicated},
+            {},
+            ARTIFACTS,
+            about=read_yaml(HOUSE / "CITATION.cff"),
+            shared=SHARED,
+        )
     return made
-
-
-def all_texts(data):
-    """All tables of the paper in all formats, the article and its supplement.
-
-    They are made from the artifacts of the paper alone, whatever else is given.
-    """
-    data = {name: data[name] for name in OF_PAPER if name in data}
-    templates = {name: TEMPLATES / f"{name}.md.j2" for name in ("supplement", "article")}
-    return rendered(templates, {**data, "claims": claims(data)}, TABLES, OF_PAPER)
 
 
 @pytest.fixture(scope="session")
 def record(recorded):
-    """The accepted datasets that are computed, not read off others."""
-    return {name: data for name, data in recorded.items() if name not in DERIVED}
+    """The accepted datasets of which the article has numbers."""
+    return {name: recorded[name] for name in OF_ARTICLE}
 
 
 @pytest.fixture(scope="session")
 def texts():
-    """Makes all tables in all formats, and the article, from datasets by name."""
+    """Makes the tables and the article from datasets by name."""
     return all_texts
 
 

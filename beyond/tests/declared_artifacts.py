@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from bouncing_ball_beyond.inherited.paper.exhibits.budgets import BUDGETS
 
+from bouncing_ball_beyond.exhibits.budgets import BUDGETS
 from bouncing_ball_beyond.inherited.datasets.variables import budgeted
 from bouncing_ball_beyond.inherited.pipeline.diff.datasets import compare_datasets
 from bouncing_ball_beyond.inherited.pipeline.diff.outcome import Row
@@ -45,7 +45,7 @@ def shown(name: str, scripts: Path = SCRIPTS) -> dict[str, Callable[..., Any]]:
     }
 
 
-def given_to(artifact: str, run: dict[str, Any], section: str = "paper") -> dict[str, Any]:
+def given_to(artifact: str, run: dict[str, Any], section: str = "beyond") -> dict[str, Any]:
     """What the job of an artifact is given: its parameters, and the settings of a configuration."""
     return {**run, "parameters": run[section].get(artifact)}
 

@@ -137,4 +137,3 @@ rule compute_explorer:
         "results/logs/compute_explorer.log",
     run:
         work("compute_explorer.py", rule, input, output, params, log)
-

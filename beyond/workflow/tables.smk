@@ -47,8 +47,6 @@ rule set_ext_laws:
         work("set_ext_laws.py", rule, input, output, params, log)
 
 
-
-
 # With reference orbits for the check of its results.
 rule draw_explorer:
     message:

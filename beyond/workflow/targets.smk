@@ -64,4 +64,3 @@ rule explorer:
     input:
         rules.compute_explorer.output,
         rules.draw_explorer.output,
-

@@ -7,7 +7,7 @@ from gallery_checks import ends_in_a_picture, every_script, the_page_shows_all
 
 import bouncing_ball_beyond.inherited
 
-GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
+GALLERY = Path(__file__).parents[2] / "docs" / "inherited" / "gallery"
 
 
 def test_there_are_five_and_the_page_shows_all():

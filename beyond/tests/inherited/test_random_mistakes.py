@@ -13,7 +13,6 @@ import typing
 from pathlib import Path
 
 import pytest
-from bouncing_ball_beyond.inherited.paper.configuration import Configuration
 from declared_arguments import arguments_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -27,12 +26,13 @@ from random_mistakes import (
 )
 
 import bouncing_ball_beyond.inherited as bb
+from bouncing_ball_beyond.exhibits.configuration import Configuration
 from bouncing_ball_beyond.inherited.cli.commands import COMMANDS
 from bouncing_ball_beyond.inherited.models.model import Model
 from bouncing_ball_beyond.inherited.pipeline.configuration_check import check_parameters, place
 from bouncing_ball_beyond.inherited.pipeline.yaml_files import ConfigurationError, read_yaml
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 # The command line.
 
@@ -83,7 +83,6 @@ def leaves(value: typing.Any, path: tuple = ()) -> typing.Iterator[tuple]:
     st.sampled_from([{}, [], None, math.nan, math.inf, -1e300, ""]) | WORDS,
 )
 @FEW
-@pytest.mark.usefixtures("searched_once")
 def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
     config = copy.deepcopy(CONFIG)
     section = config
@@ -99,7 +98,6 @@ def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
     st.text(string.ascii_lowercase, min_size=12),
 )
 @FEW
-@pytest.mark.usefixtures("searched_once")
 def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
     config = copy.deepcopy(CONFIG)
     section = config

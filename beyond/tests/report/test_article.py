@@ -12,16 +12,15 @@ from article_checks import (
     typed_numbers,
     works_of,
 )
-from article_texts import TEMPLATES as SHARED
-from beyond_texts import ARTIFACTS, OF_ARTICLE, REPORT
+from article_texts import ARTIFACTS, OF_ARTICLE, REPORT, SHARED
 from docutils.utils.math.latex2mathml import tex2mathml
 
 TEMPLATES = sorted(REPORT.glob("*.md.j2"))
 
 
 @pytest.fixture(scope="module")
-def article(beyond_accepted):
-    return beyond_accepted["article"]
+def article(accepted):
+    return accepted["article"]
 
 
 @pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: path.name)
@@ -66,5 +65,5 @@ def test_it_is_short(article):
     assert len(article.split()) <= 4500
 
 
-def test_rounding_changes_no_text(beyond_record, beyond_texts, beyond_accepted):
-    assert moved(beyond_texts, beyond_record, beyond_accepted) == []
+def test_rounding_changes_no_text(record, texts, accepted):
+    assert moved(texts, record, accepted) == []

@@ -1,8 +1,8 @@
 """An engineer's contact: units, physics engines, measured impacts.
 
-The house on the plot for engineers; it stands on ``bouncing_ball`` and ``bouncing_ball_beyond``.
-Whether a restitution coefficient is good enough for a contact, how stiff it must be, and what one
-writes into a physics engine are three questions::
+For engineers; it stands on ``bouncing_ball_beyond``. Whether a restitution coefficient is good
+enough for a contact, how stiff it must be, and what one writes into a physics engine are three
+questions::
 
     table = bouncing_ball_contacts.Table(frequency="50 Hz", acceleration="0.8 g")
     contact = bouncing_ball_contacts.Contact(

@@ -17,7 +17,7 @@ from bouncing_ball_beyond.inherited.cli.commands import COMMANDS
 from bouncing_ball_beyond.inherited.cli.options import meanings
 from bouncing_ball_beyond.inherited.models.spring_damper import spring_damper
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 ORBIT = ("orbit", "--restitution", "0.85", "--amplitude", "1")
 

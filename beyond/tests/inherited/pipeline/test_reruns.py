@@ -1,7 +1,4 @@
-"""The jobs that a change makes run again, as far as parameters and contents determine them.
-
-That Snakemake follows them is tested in tests/workflow/test_reruns.py.
-"""
+"""The jobs that a change makes run again, as far as parameters and contents determine them."""
 
 import copy
 import os
@@ -23,8 +20,8 @@ from bouncing_ball_beyond.inherited.pipeline.sources import (
 )
 from bouncing_ball_beyond.inherited.pipeline.yaml_files import read_yaml
 
-ROOT = Path(__file__).resolve().parents[2]
-PACKAGE = ROOT / "src" / "bouncing_ball"
+ROOT = Path(__file__).resolve().parents[3]
+PACKAGE = ROOT / "src" / "bouncing_ball_beyond"
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
@@ -35,13 +32,9 @@ def arguments_in(run):
 @pytest.mark.parametrize(
     ("keys", "value", "expected"),
     [
-        (("paper", "fig08", "points"), 101, {"fig08"}),
-        (("paper", "formulas", "seed"), 1, {"formulas"}),
-        (
-            ("continuation", "largest_step"),
-            0.1,
-            {"fig08", "fig09", "fig15", "table1"},
-        ),
+        (("beyond", "ext_map", "tolerance"), 0.02, {"ext_map"}),
+        (("beyond", "explorer", "seed"), 1, {"explorer"}),
+        (("release",), "force", {"ext_instant", "ext_orders"}),
     ],
 )
 def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expected):
@@ -58,14 +51,11 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
 @pytest.mark.parametrize(
     ("file", "expected"),
     [
-        ("paper/exhibits/restitution_model.py", {"fig02", "fig03"}),
-        ("paper/claims/verdict.py", {"claims"}),
-        ("paper/claims/witness.py", {"witness"}),
-        ("drawing/style.py", set()),
-        ("drawing/style.mplstyle", set()),
-        ("pipeline/configuration_docs.py", set()),
+        ("exhibits/release_rules.py", {"ext_impact", "ext_release"}),
+        ("exhibits/stiffness_map.py", {"ext_map"}),
+        ("inherited/pipeline/configuration_docs.py", set()),
         # A change of a budget is one of the parameters of its study.
-        ("paper/exhibits/budgets.py", set()),
+        ("exhibits/budgets.py", set()),
     ],
 )
 def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
@@ -77,11 +67,11 @@ def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
 
 
 def test_the_modules_of_a_stage_are_those_that_python_imports():
-    script = SCRIPTS / "compute_fig08.py"
+    script = SCRIPTS / "compute_ext_map.py"
     code = (
-        "import sys, bouncing_ball_beyond.inherited.paper.exhibits.continuation_of_orbits\n"
+        "import sys, bouncing_ball_beyond.exhibits.stiffness_map\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
-        " if n.split('.')[0] == 'bouncing_ball'), sep='\\n')"
+        " if n.split('.')[0] == 'bouncing_ball_beyond'), sep='\\n')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     # Also what functions import when they are called.
@@ -89,8 +79,9 @@ def test_the_modules_of_a_stage_are_those_that_python_imports():
 
 
 def test_the_modules_that_a_script_imports_and_their_data_belong_to_its_code():
-    script = SCRIPTS / "draw_fig02.py"
-    used = {script, PACKAGE / "drawing" / "style.py", PACKAGE / "drawing" / "style.mplstyle"}
+    script = SCRIPTS / "draw_ext_map.py"
+    drawing = PACKAGE / "inherited" / "drawing"
+    used = {script, drawing / "style.py", drawing / "style.mplstyle"}
     assert used <= {*sources([script])}
 
 
@@ -149,13 +140,16 @@ def test_a_text_that_is_a_value_is_code(code):
     assert without_remarks(code) == code.rstrip("\n")
 
 
-@pytest.mark.parametrize(
-    ("name", "counts"), [("paper/claims/both_models.py", True), ("models/damping.py", False)]
-)
-def test_the_docstrings_of_the_claims_are_code_and_those_of_models_are_not(digest, name, counts):
+@pytest.mark.parametrize("name", ["models/damping.py"])
+def test_the_docstrings_of_models_are_no_code(digest, name):
     text = (PACKAGE / name).read_text(encoding="utf-8")
     edited = text.replace('    """', '    """In other words, ', 1)
-    assert (digest(edited) != digest(text)) == counts
+    assert digest(edited) == digest(text)
+
+
+def test_where_docstrings_are_read_they_are_code(digest):
+    reader = "import inspect\n\nTEXT = inspect.getdoc(max)\n"
+    assert digest(CODE + reader) != digest(CODE.replace("Twice", "Two times") + reader)
 
 
 def test_a_line_follows_contents_and_names_and_not_times(tmp_path, monkeypatch):

@@ -9,7 +9,7 @@ import pytest
 from bouncing_ball_beyond.inherited.pipeline import provenance as module
 from bouncing_ball_beyond.inherited.pipeline.provenance import UNKNOWN, house_of, revision
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture

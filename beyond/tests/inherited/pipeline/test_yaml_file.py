@@ -6,14 +6,13 @@ from pathlib import Path
 import pytest
 import yaml
 
-import bouncing_ball_beyond.inherited
 from bouncing_ball_beyond.inherited.pipeline.yaml_files import (
     ConfigurationError,
     parse_yaml,
     read_yaml,
 )
 
-ROOT = Path(bouncing_ball_beyond.inherited.__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.mark.parametrize(

@@ -176,7 +176,7 @@ COMMANDS = {
             "Each figure, table and dataset contains the commit and the parameters from which it "
             "was made."
         ),
-        examples=("explain figures/fig14.png",),
+        examples=("explain figures/ext_map.png",),
         program=_explain,
         has_symbols=False,
     ),
@@ -188,7 +188,7 @@ COMMANDS = {
         ),
         examples=(
             "diff",
-            "diff . results fig08",
+            "diff . results ext_map",
             "diff --against runs/compliant",
         ),
         program=_diff,

@@ -2,11 +2,8 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 import xarray as xr
-from article_checks import works_of
-from bouncing_ball_beyond.inherited.paper.claims.claim_tables import Claims
 
 from bouncing_ball_beyond.inherited.errors import ModelError
 from bouncing_ball_beyond.inherited.pipeline.article import (
@@ -16,32 +13,14 @@ from bouncing_ball_beyond.inherited.pipeline.article import (
     with_citations,
 )
 
-ROOT = Path(__file__).resolve().parents[3]
-TEMPLATES = ROOT / "workflow" / "report" / "paper"
-
-
-def claims(**changes):
-    """Two claims, one reproduced and one contradicted."""
-    columns = {
-        "group": ["number", "number"],
-        "item": ["Fig. 14", "Eq. 38, Fig. 16"],
-        "printed_table": ["", ""],
-        "printed_text": ["82", "6"],
-        "verdict": ["reproduced", "contradicted"],
-        "reason": ["", ""],
-        "found": [82.177, 9.8118],
-        "limit": [np.nan, np.nan],
-    } | changes
-    data = {key: ("claim", values) for key, values in columns.items()}
-    return xr.Dataset(data, {"claim": ["heights", "contact"]})
+TEMPLATES = Path(__file__).resolve().parents[4] / "report" / "shared"
 
 
 @pytest.fixture
 def render(tmp_path):
-    def run(template, ledger=None, **data):
+    def run(template, **data):
         (tmp_path / "article.md.j2").write_text(template, encoding="utf-8")
-        shown = Claims(claims() if ledger is None else ledger)
-        return render_article(tmp_path / "article.md.j2", data, {}, shown, {})
+        return render_article(tmp_path / "article.md.j2", data, {}, {})
 
     return run
 
@@ -51,33 +30,6 @@ def test_a_printed_number_follows_its_dataset(render):
     assert render("{{ decimal(data.t.x.sel(n=2).item(), 2) }}", t=data) == "9.81"
     data["x"] = data.x + 1
     assert render("{{ decimal(data.t.x.sel(n=2).item(), 2) }}", t=data) == "10.81"
-
-
-def test_a_printed_verdict_follows_the_claims(render):
-    text = '{{ claims("contact").verdict }} {{ claims.count("reproduced") }}/{{ claims.count() }}'
-    assert render(text) == "contradicted 1/2"
-    assert render(text, ledger=claims(verdict=["undecidable"] * 2)) == "undecidable 0/2"
-
-
-def test_an_unknown_claim_is_an_error(render):
-    with pytest.raises(KeyError, match="height"):
-        render('{{ claims("height") }}')
-
-
-def test_claims_are_counted_by_verdict_group_and_table():
-    shown = Claims(claims(group=["number", "statement"], printed_table=["Table 1", ""]))
-    assert (shown.count(), shown.count("contradicted")) == (2, 1)
-    assert (shown.count(group="number"), shown.count("contradicted", group="number")) == (1, 0)
-    assert (shown.count(table="Table 1"), shown.count("contradicted", table="Table 1")) == (1, 0)
-
-
-def test_other_parameters_are_reported_once():
-    reason = "fig14 was computed with n = 2; the claim requires 1"
-    shown = Claims(claims(reason=[reason, reason], verdict=["not asked"] * 2))
-    assert shown.not_asked() == [reason]
-    assert not shown.asked("heights")
-    # The verdict says it, not the words.
-    assert Claims(claims(reason=[reason, reason])).not_asked() == []
 
 
 def test_pandoc_numbers_citations_and_lists_the_works(tmp_path):
@@ -101,16 +53,6 @@ def test_pandoc_numbers_citations_and_lists_the_works(tmp_path):
     assert found.startswith("[1, 2]\n") and "A title" in found and "P. J. Holmes" in found
     with pytest.raises(ModelError, match="nobody not found"):
         with_citations("[@nobody]\n", tmp_path)
-
-
-def test_every_reference_is_cited():
-    cited, known = works_of(TEMPLATES)
-    assert known == cited
-
-
-def test_nan_is_printed_as_a_dash():
-    shown = Claims(claims(found=[np.nan, 9.8118], verdict=["undecidable", "contradicted"]))
-    assert shown("heights").found == "–"
 
 
 def test_names_have_numbers_in_the_order_of_their_captions(render):

@@ -14,7 +14,8 @@ from bouncing_ball_beyond.inherited.pipeline.diff import compare as module
 from bouncing_ball_beyond.inherited.pipeline.diff.compare import compare_folders
 from bouncing_ball_beyond.inherited.pipeline.diff.outcome import Row, Whole
 
-ROOT = Path(__file__).resolve().parents[3]
+# Some accepted files of the replication, as they were at the commit bb943f6f.
+RECORD = Path(__file__).with_name("record")
 # A sweep with a picture, a schematic, a table, and what is made of others.
 NAMES = ("fig01", "fig05", "table1", "claims")
 
@@ -89,9 +90,9 @@ def _record(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("record")
     (folder / "figures").mkdir(parents=True)
     for name in NAMES:
-        for path in (ROOT / "figures").glob(f"{name}.*"):
+        for path in (RECORD / "figures").glob(f"{name}.*"):
             _put(path, folder / "figures" / path.name)
-    shutil.copyfile(ROOT / "paper.md", folder / "paper.md")
+    shutil.copyfile(RECORD / "paper.md", folder / "paper.md")
     return folder
 
 

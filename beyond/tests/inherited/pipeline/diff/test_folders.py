@@ -20,7 +20,7 @@ from bouncing_ball_beyond.inherited.pipeline.diff.outcome import Outcome
 from bouncing_ball_beyond.inherited.pipeline.diff.report import differences_html, to_terminal
 from bouncing_ball_beyond.inherited.pipeline.sources import REPOSITORY
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 PNG = "figures/fig05.png"
 
 
@@ -77,7 +77,7 @@ def test_another_word_or_number_in_a_text_has_drifted(pair, file, old, new):
 
 def test_a_page_is_compared_except_for_its_commit(pair):
     for file, folder in product(("explorer.nc", "explorer.html"), (pair.record, pair.new)):
-        shutil.copyfile(ROOT / "beyond" / "figures" / file, folder / "figures" / file)
+        shutil.copyfile(ROOT / "figures" / file, folder / "figures" / file)
     pair.rewrite("figures/explorer.html", '{"commit": "', '{"commit": "c0ffee')
     assert pair.file("figures/explorer.html").outcome is Outcome.IDENTICAL
     pair.rewrite("figures/explorer.html", '"spring-damper", 0.5, 80', '"spring-damper", 0.5, 81')
@@ -298,7 +298,7 @@ def test_where_code_has_changed_and_the_configuration_has_not_its_refusal_names_
     monkeypatch,
 ):
     files = [REPOSITORY / "config" / "config.yaml"]
-    code = "src/bouncing_ball/models/flight.py"
+    code = "beyond/src/bouncing_ball_beyond/models/flight.py"
     for touched, said in (
         ({code, "tests/x.py"}, f"The configuration has not changed, but code has: {code}\n"),
         ({code, "config/config.yaml"}, ""),

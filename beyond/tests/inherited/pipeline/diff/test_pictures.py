@@ -10,8 +10,7 @@ from bouncing_ball_beyond.inherited.pipeline.diff.outcome import Outcome
 from bouncing_ball_beyond.inherited.pipeline.diff.pictures import compare_drawings, compare_pixels
 from bouncing_ball_beyond.inherited.pipeline.diff.texts import compare_texts
 
-ROOT = Path(__file__).resolve().parents[3]
-SVG = (ROOT / "figures" / "fig05.svg").read_text(encoding="utf-8")
+SVG = (Path(__file__).with_name("record") / "figures" / "fig05.svg").read_text(encoding="utf-8")
 CURVE = re.search(r'    <path d="[^"]*" clip-path[^>]*/>\n', SVG)[0]
 COLOUR = re.search("stroke: (#[0-9a-f]{6})", CURVE)[1]
 NUMBER = re.search(r"L (\d+\.\d{6})", SVG)[1]

@@ -1,6 +1,6 @@
 # make            set up and make every figure, table and the paper in results/
 # make test       set up and run the tests
-# make everything the other houses too, beyond/ and contacts/; make test-everything tests all three
+# make everything beyond/ and contacts/, too, in an environment of their own; make test-everything
 # make quick      the tests of the computations, for use during development
 # The environment is .venv/, from the hashed lock files.
 
@@ -15,12 +15,10 @@ endif
 COMMA := ,
 # The target that every other target needs first; empty if another venv exists already.
 SETUP ?= setup
-SETUP_EVERYTHING ?= setup-everything
 # Print the files made, how many steps are done, and errors; the rest is in .snakemake/log.
 QUIETLY := --quiet host rules reason
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 PATHS := $(abspath $(BIN))
-HOUSES := beyond contacts
 # The only package of the locks without a wheel.
 SOURCES := connection-pool
 
@@ -46,7 +44,7 @@ setup: $(VENV)/.installed
 # After a copy or a move of the checkout, the programs in .venv are those of the other folder: it is
 # made anew, unless .installed names this folder.
 ifneq ($(filter-out $(CURDIR),$(shell cat $(VENV)/.installed 2>/dev/null)),)
-$(shell rm -f $(VENV)/.installed $(VENV)/.everything $(VENV)/.docs)
+$(shell rm -f $(VENV)/.installed)
 endif
 $(VENV)/.installed: requirements-build.lock requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python 3.11 or newer is needed, this is %d.%d: make PYTHON=python3.12" % sys.version_info[:2])'
@@ -60,7 +58,7 @@ $(VENV)/.installed: requirements-build.lock requirements.lock
 lint: $(SETUP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/snakefmt --check .
+	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo --no-cache
 	@# The linter ends with the status 0 also if the workflow is not read to its end.
@@ -79,26 +77,25 @@ test: $(SETUP)
 # The tests of the computations, without runs of the pipeline, pictures and tests that take seconds.
 # Some of them read the accepted record, so that a new artifact fails here until it is accepted.
 quick: $(SETUP)
-	$(PYTEST) $(addprefix --ignore=tests/,workflow drawing) -m "not long and not slow and not cluster and not docs"
+	$(PYTEST) $(addprefix --ignore=tests/,workflow drawing) -m "not long and not slow and not cluster"
 
 # Two stages with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
 test-cluster: $(SETUP)
 	$(BIN)/python -m pytest -m cluster tests/workflow
 
 # Long tests. They run on schedule in CI, and before a release.
-test-long: $(SETUP_EVERYTHING)
+test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
-	for house in $(HOUSES); do (cd $$house && $(PYTEST) -m long --durations 20) || exit; done
 
 # All tests again with the code of numpy, OpenBLAS and glibc for processors without AVX-512, and for
 # processors without AVX2, the latter with two threads. numpy may leave out only what this processor
 # has; X86_V3 is AVX2.
 PAST = import numpy._core._multiarray_umath as cpu; print(*(x for x in cpu.__cpu_dispatch__ if cpu.__cpu_features__[x] and x != "$(1)"))
 as_on = NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(call PAST,$(1))')" OPENBLAS_CORETYPE=$(2)
-test-processors: $(SETUP_EVERYTHING)
+test-processors: $(SETUP)
 	@failed=0; \
-	$(call as_on,X86_V3,Haswell) $(MAKE) test-everything SETUP= SETUP_EVERYTHING= || failed=1; \
-	$(call as_on,none,Nehalem) GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA $(MAKE) test-everything SETUP= SETUP_EVERYTHING= THREADS=2 || failed=1; \
+	$(call as_on,X86_V3,Haswell) $(MAKE) test SETUP= || failed=1; \
+	$(call as_on,none,Nehalem) GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA $(MAKE) test SETUP= THREADS=2 || failed=1; \
 	exit $$failed
 
 # Compare the results with the accepted record; the page is results/diff/index.html. With
@@ -126,95 +123,55 @@ report: all
 	$(BIN)/snakemake --report results/report.html
 
 clean:
-	rm -rf results .snakemake beyond/results beyond/.snakemake
+	rm -rf results .snakemake
+	$(MAKE) -C beyond clean
 
 # The steps of continuous integration.
 ci:
 	.ci/run
 
-# The other houses: beyond/, which makes its own results, and contacts/, which makes none.
+# The other two packages, beyond/ and contacts/: they need nothing of this one, and beyond/Makefile has
+# their environment and their targets.
 
-setup-everything: $(VENV)/.everything
+setup-everything:
+	$(MAKE) -C beyond setup
 
-$(VENV)/.everything: $(VENV)/.installed requirements-everything.lock
-	$(PIP) --require-hashes --only-binary :all: --no-binary $(SOURCES) --no-build-isolation --requirement requirements-everything.lock
-	$(PIP) --no-deps --no-build-isolation --editable ./beyond --editable ./contacts
-	@touch $@
+everything: all
+	$(MAKE) -C beyond all
 
-everything: all $(SETUP_EVERYTHING)
-	cd beyond && $(PATHS)/snakemake --cores 2 $(QUIETLY)
-	@echo "Results of what goes past the paper: beyond/results/"
+diff-everything: diff
+	$(MAKE) -C beyond diff
 
-diff-everything: $(SETUP_EVERYTHING) diff
-	cd beyond && $(PATHS)/snakemake --cores 2 diff $(QUIETLY)
+lint-everything: lint
+	$(MAKE) -C beyond lint lint-contacts
 
-lint-everything: $(SETUP_EVERYTHING) lint
-	$(BIN)/mypy --package bouncing_ball_beyond --package bouncing_ball_contacts
-	for house in $(HOUSES); do (cd $$house && $(PATHS)/lint-imports --no-logo --no-cache) || exit; done
-	@said="$$(cd beyond && $(PATHS)/snakemake --lint 2>&1)" && case "$$said" in *"in a good condition!"*) ;; \
-	    *) false;; esac || { echo "$$said"; echo "snakemake --lint did not end"; exit 1; }
+# The tests of all three packages, each whatever the others say.
+test-everything:
+	$(MAKE) --keep-going test test-beyond test-contacts
 
-# The tests of all three houses, each whatever the others say.
-test-everything: $(SETUP_EVERYTHING)
-	$(MAKE) --keep-going test test-beyond test-contacts SETUP= SETUP_EVERYTHING=
+test-beyond:
+	$(MAKE) -C beyond test
 
-test-beyond: $(SETUP_EVERYTHING)
-	cd beyond && $(PYTEST)
+test-contacts:
+	$(MAKE) -C beyond test-contacts
 
-test-contacts: $(SETUP_EVERYTHING)
-	cd contacts && $(PYTEST)
+setup-engines:
+	$(MAKE) -C beyond setup-engines
 
-# The physics engines of the contacts' extra that have a wheel for this machine; no lock has them.
-ENGINES = import tomllib; print(*tomllib.load(open("contacts/pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])
-setup-engines: $(SETUP_EVERYTHING)
-	@missing=""; \
-	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
-	    $(PIP) --only-binary :all: --no-binary pygltflib "$$engine" || missing="$$missing $$engine"; done; \
-	echo "Engines without a wheel for this machine:$${missing:- none}."; \
-	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt, physx; contacts/docs/bounces/javascript.mjs has the last two."; \
-	$(BIN)/python -c "import torch" 2> /dev/null || \
-	    echo "Genesis needs torch, of gigabytes, and is skipped without it: $(PIP) torch"
+test-engines:
+	$(MAKE) -C beyond engines
 
-# Run the snippets of `design --engine` in the installed engines: ten minutes of processor time.
-# The datasets are those in contacts/docs/data that only engines can make.
-test-engines: $(SETUP_EVERYTHING)
-	cd contacts && OMP_NUM_THREADS=1 $(PATHS)/python -m pytest -m engines tests/engines
-	$(BIN)/python contacts/docs/bounces/threads.py
-
-# One table of times against other programs: beyond/docs/speed.md. AUTO-07p is optional: `pip
-# install bifpy` in the environment, with gfortran.
-speed: $(SETUP_EVERYTHING)
-	OMP_NUM_THREADS=1 $(BIN)/python beyond/tests/speed/side_by_side.py $(COLD)
-
-# One site for all houses, from their docs, docstrings, articles and the explorer:
-# results/site/index.html.
-docs: $(SETUP_EVERYTHING) $(VENV)/.docs
-	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -c docs . results/site
-	@echo "The site: results/site/index.html"
-
-$(VENV)/.docs: requirements-docs.lock
-	$(PIP) --require-hashes --only-binary :all: --requirement requirements-docs.lock
-	@touch $@
-
-# Check links, pictures and errors of every page of the site in Chromium. It runs weekly in CI.
-test-docs: docs
-	$(BIN)/python -m pytest -m docs tests/test_site.py
-
-# The pictures of the galleries and of the lesson.
-gallery: $(SETUP_EVERYTHING)
-	for folder in docs beyond/docs contacts/docs; do \
-	    (cd $$folder/gallery && for script in *.py; do $(PATHS)/python $$script || exit; done) || exit; done
-	cd docs/lesson && $(PATHS)/python -m doctest -o ELLIPSIS ../lesson.md
+speed docs test-docs gallery:
+	$(MAKE) -C beyond $@
 
 # The newest versions that pyproject.toml allows, without the lock, in a separate venv. The
 # pipeline from clean, the diff and the tests run there, each even if another fails.
 setup-newest:
 	$(PYTHON) -m venv --clear $(NEWEST)
-	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]' \
-	    --editable './beyond[test]' --editable './contacts[test]'
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]'
 
 newest: setup-newest clean
-	$(MAKE) --keep-going all diff test-everything VENV=$(NEWEST) SETUP= SETUP_EVERYTHING=
+	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
 
 config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
@@ -223,11 +180,8 @@ config-docs: $(SETUP)
 readme: $(SETUP)
 	$(BIN)/snakemake --cores 1 readme $(QUIETLY)
 
-# Renew the lock files, for maintainers; this needs uv. The second has what the other houses need,
-# with the versions of the first.
+# Renew the lock files, for maintainers; this needs uv.
 LOCK := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade
 lock:
 	$(LOCK) pyproject.toml --extra test --extra pdf --extra lint --extra slurm --output-file requirements.lock
-	$(LOCK) beyond/pyproject.toml contacts/pyproject.toml --extra test --constraint requirements.lock --no-emit-package bouncing-ball --no-emit-package bouncing-ball-beyond --output-file requirements-everything.lock
-	$(LOCK) pyproject.toml --extra docs --constraint requirements-everything.lock --output-file requirements-docs.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | $(LOCK) - --constraint requirements.lock --output-file requirements-build.lock

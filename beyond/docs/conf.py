@@ -1,5 +1,5 @@
-"""One site for the three houses: READMEs, docs, articles, tables and docstrings, as they are in the
-repository.
+"""One site for all packages: READMEs, docs, articles, tables and docstrings, as they are in the
+repository. Of the replication it has the pages alone, whichever there are.
 
 The repository is Sphinx's source folder, so that relative links and pictures are those of the
 files. Nothing is loaded from the network, neither when the site is built nor when it is read:
@@ -14,19 +14,18 @@ import xarray as xr
 from docutils.nodes import SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 
-import bouncing_ball_beyond.inherited as bouncing_ball
+import bouncing_ball_beyond
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 EXPLORER = "beyond/figures/explorer.html"
 PACKAGES = {
-    "bouncing_ball": "src",
     "bouncing_ball_beyond": "beyond/src",
     "bouncing_ball_contacts": "contacts/src",
 }
 
 project = "Bouncing ball"
 author = "The bouncing-ball maintainers"
-version = release = bouncing_ball.__version__
+version = release = bouncing_ball_beyond.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.apidoc"]
 root_doc = "README"
 include_patterns = [
@@ -35,18 +34,20 @@ include_patterns = [
     "config/README.md",
     "figures/*.md",
     "beyond/*.md",
-    "beyond/docs/*.md",
+    "beyond/docs/**.md",
     "beyond/figures/*.md",
     "contacts/*.md",
     "contacts/docs/*.md",
     "contacts/docs/data/*.md",
-    "results/api/**.rst",
+    "beyond/results/api/**.rst",
 ]
-exclude_patterns = [".*", "results/[!a]*", "**/src", "**/tests", "**/workflow", "beyond/results"]
+exclude_patterns = [
+    *("**/.*", "results", "beyond/results/[!a]*", "**/src", "**/tests", "**/workflow"),
+]
 apidoc_modules = [
     {
-        "path": f"../{folder}/{package}",
-        "destination": f"results/api/{package}",
+        "path": f"../../{folder}/{package}",
+        "destination": f"beyond/results/api/{package}",
         "separate_modules": True,
         "module_first": True,
     }
@@ -60,7 +61,7 @@ html_theme = "furo"
 html_title = "A ball on a vibrating table"
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
-html_extra_path = [f"../{EXPLORER}"]
+html_extra_path = ["../figures/explorer.html"]
 html_show_sourcelink = False
 html_copy_source = False
 html_math_renderer = "mathml"
@@ -69,17 +70,10 @@ suppress_warnings = ["ref.python"]
 
 PARTS = {
     "The replication": [
-        "paper",
-        "supplement",
+        "[a-z]*",
+        "docs/*",
         "figures/*",
-        "config/README",
-        "docs/record",
-        "docs/datasets",
-        "docs/how-an-orbit-is-found",
-        "docs/closed-form",
-        "docs/python",
-        "docs/gallery",
-        "docs/lesson",
+        "config/*",
     ],
     "Beyond the paper": [
         "beyond/README",
@@ -95,8 +89,13 @@ PARTS = {
         "beyond/docs/periodic-orbits",
         "beyond/docs/thesis",
         "beyond/docs/cascade-of-flights",
-        "beyond/docs/proofs",
         "beyond/docs/speed",
+    ],
+    "The models of the paper": [
+        "beyond/docs/inherited/python",
+        "beyond/docs/inherited/gallery",
+        "beyond/docs/inherited/lesson",
+        "beyond/docs/inherited/closed-form",
     ],
     "Contacts with units": [
         "contacts/README",
@@ -108,7 +107,7 @@ PARTS = {
         "contacts/docs/gallery",
         "contacts/docs/data/*",
     ],
-    "Code": ["CONTRIBUTING", "CHANGELOG", *(f"results/api/{name}/modules" for name in PACKAGES)],
+    "Code": ["CONTRIBUTING", "CHANGELOG", *(f"beyond/results/api/{name}/modules" for name in PACKAGES)],
 }
 
 

@@ -9,7 +9,7 @@ import pytest
 
 pytestmark = pytest.mark.docs
 
-HOUSES = ("bouncing_ball", "bouncing_ball_beyond", "bouncing_ball_contacts")
+PACKAGES = ("bouncing_ball_beyond", "bouncing_ball_contacts")
 SITE = Path(__file__).parents[1] / "results" / "site"
 # Loads the pages one after another and writes down what the browser made of each.
 OBSERVER = Path(__file__).with_name("site_observer.html").read_text(encoding="utf-8")
@@ -19,7 +19,7 @@ OBSERVER = Path(__file__).with_name("site_observer.html").read_text(encoding="ut
 def seen(browse, tmp_path_factory):
     """What the browser makes of every page, by the page's path."""
     pages = sorted(str(page.relative_to(SITE)) for page in SITE.rglob("*.html"))
-    assert "paper.html" in pages, "make docs has not been run"
+    assert "beyond/article.html" in pages, "make docs has not been run"
     pages = [page for page in pages if "_" not in page[:1] and page != "index.html"]
     folder = tmp_path_factory.mktemp("site")
     observer = folder / "observer.html"
@@ -65,12 +65,9 @@ def test_it_opens_with_the_page_of_readme_and_has_all_parts(seen):
     assert "README.html" in (SITE / "index.html").read_text(encoding="utf-8")
     links = links_of(seen, "README")
     wanted = [
-        "paper",
-        "docs/gallery",
-        "figures/claims",
-        *("beyond/README", "beyond/article", "beyond/docs/lesson", "beyond/figures/ext_laws"),
+        *("beyond/README", "beyond/docs/inherited/gallery", "beyond/article", "beyond/docs/lesson", "beyond/figures/ext_laws"),
         *("contacts/README", "contacts/docs/design", "contacts/docs/data/measured"),
-        *(f"results/api/{name}/modules" for name in HOUSES),
+        *(f"beyond/results/api/{name}/modules" for name in PACKAGES),
     ]
     assert {SITE / f"{name}.html" for name in wanted} <= links
     assert SITE / "explorer.html" in links_of(seen, "beyond/figures/README")

@@ -107,7 +107,10 @@ PARTS = {
         "contacts/docs/gallery",
         "contacts/docs/data/*",
     ],
-    "Code": ["CONTRIBUTING", "CHANGELOG", *(f"beyond/results/api/{name}/modules" for name in PACKAGES)],
+    "Code": [
+        *("CONTRIBUTING", "CHANGELOG"),
+        *(f"beyond/results/api/{name}/modules" for name in PACKAGES),
+    ],
 }
 
 

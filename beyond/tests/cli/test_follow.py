@@ -89,7 +89,7 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
 def test_mistakes_in_python_are_one_line(refusal):
     one = bouncing_ball_beyond.orbit(RIGID, amplitude=1.4)
     found = bouncing_ball_beyond.follow(one, to=1.5)
-    with refusal(ModelError, "follow needs an orbit of bouncing_ball, not float"):
+    with refusal(ModelError, "follow needs an orbit of bouncing_ball_beyond, not float"):
         bouncing_ball_beyond.follow(1.4)
     with refusal(ModelError, "kind = 'fold' is not one of saddle-node"):
         found.first("fold")

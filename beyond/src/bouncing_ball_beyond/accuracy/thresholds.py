@@ -1,6 +1,6 @@
 """Zeros of the errors along ϖ, and errors of several quantities as one set of functions.
 
-The thresholds of any errors are those of the root
+The thresholds of any errors are those of the inherited library
 (:mod:`bouncing_ball_beyond.inherited.accuracy.thresholds`, Eqs. 37-38);
 :func:`~bouncing_ball_beyond.accuracy.simple_models.search` finds those of simple models.
 """

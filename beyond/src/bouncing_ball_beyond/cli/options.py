@@ -1,4 +1,4 @@
-"""The options of subcommands that the root's commands do not have."""
+"""The options of subcommands that the inherited commands do not have."""
 
 import argparse
 import math

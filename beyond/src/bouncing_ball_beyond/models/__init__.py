@@ -18,7 +18,7 @@ The modules in reading order:
 ``spring_damper``             the paper's contact
 ``named_laws``                the contact laws by their names
 ``contact_model``             balls on a contact of any law
-``given_ball``                the ball that a user gives, also one of the root
+``given_ball``                the ball that a user gives, also one of the inherited library
 ``makers``                    balls by their parameters, which a user calls
 ``history``                   the motion of a ball over time
 ``as_text``                   models as text, from which they come back exactly

@@ -1,5 +1,5 @@
-"""Contacts that the root's :mod:`bouncing_ball_beyond.inherited.models.damping` lacks: overdamped
-ones, and a damper that acts on approach only.
+"""Contacts that the inherited :mod:`bouncing_ball_beyond.inherited.models.damping` lacks:
+overdamped ones, and a damper that acts on approach only.
 
 An overdamped ball does not come back to the table's level, but its force vanishes. A damper that
 acts on approach only is a linear contact up to the greatest penetration, at the angle arccos ζ, and
@@ -23,7 +23,7 @@ from bouncing_ball_beyond.inherited.numerics.elementary import logarithm
 
 
 class Release(StrEnum):
-    """The condition that ends a contact: those of the root, and one more."""
+    """The condition that ends a contact: those of the inherited library, and one more."""
 
     DISPLACEMENT = linear.Release.DISPLACEMENT
     FORCE = linear.Release.FORCE

@@ -1,8 +1,8 @@
 """Free flight of balls on a table whose state at the release is known.
 
-A flight is that of the root (:mod:`bouncing_ball_beyond.inherited.models.flight`, Eqs. 3-4, 14-15).
-The models of this house know X = Λ cos φ_b and Y = Λ sin φ_b at the release, and balls may start
-below the table's level.
+A flight is that of the inherited library (:mod:`bouncing_ball_beyond.inherited.models.flight`, Eqs.
+3-4, 14-15). The models of this house know X = Λ cos φ_b and Y = Λ sin φ_b at the release, and balls
+may start below the table's level.
 """
 
 import numpy as np

@@ -1,4 +1,5 @@
-"""The first argument of a call: a ball of beyond, or a ball of the root that becomes one."""
+"""The first argument of a call: a ball of beyond, or a ball of the inherited library that becomes
+one."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from bouncing_ball_beyond.models.spring_damper import SpringDamper
 def a_ball(ball: Any) -> Ball:
     """A ball that is given to a call, or a :exc:`.ParameterError` if it is none.
 
-    A ball of the root becomes one of beyond, with the same parameters.
+    A ball of the inherited library becomes one of beyond, with the same parameters.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """Balls by their parameters: models of the impact, whose parameters are checked and are labels.
 
-:func:`rigid` and :func:`spring_damper` are the functions of the root, whose balls become models of
-this house, and :func:`corrected` makes a ball of the corrected restitution model of a contact.
-Parameters that are arrays make several balls.
+:func:`rigid` and :func:`spring_damper` are the functions of the inherited library, whose balls
+become models of this house, and :func:`corrected` makes a ball of the corrected restitution model
+of a contact. Parameters that are arrays make several balls.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ P = ParamSpec("P")
 
 
 def _of_this_house(make: Callable[P, model.Model]) -> Callable[P, Any]:
-    """The call that makes a ball of the root and turns it into the model of this house."""
+    """The call that makes a ball of the inherited library and turns it into the model of this
+    house."""
 
     @wraps(make)
     def made(*args: P.args, **kwargs: P.kwargs) -> Any:

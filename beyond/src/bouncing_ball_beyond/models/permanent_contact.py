@@ -1,8 +1,8 @@
 """The threshold of permanent contact of a spring and a damper, also of overdamped ones.
 
-The root has Eqs. 28-36 for ζ < 1 (:mod:`bouncing_ball_beyond.inherited.models.permanent_contact`).
-The steady motion has the same amplitude for every ζ, so that ``Λ_SD² = (1 - 1/ϖ²)² + (2ζ/ϖ)²`` also
-holds for overdamped contacts.
+The inherited library has Eqs. 28-36 for ζ < 1
+(:mod:`bouncing_ball_beyond.inherited.models.permanent_contact`). The steady motion has the same
+amplitude for every ζ, so that ``Λ_SD² = (1 - 1/ϖ²)² + (2ζ/ϖ)²`` also holds for overdamped contacts.
 """
 
 import numpy as np

@@ -11,8 +11,9 @@ after the next impact is (Eq. 5) ::
 Here the map is composed of the impact (:meth:`RestitutionDynamics.depart`) and of the flight up to
 the landing (:meth:`.Dynamics.fly`), and a state is (τ, δ′) just before an impact.
 
-Balls chatter as in the root (:mod:`bouncing_ball_beyond.inherited.models.restitution`), and then
-rest on the table until they lift off (:mod:`bouncing_ball_beyond.models.sticking`).
+Balls chatter as in the inherited library
+(:mod:`bouncing_ball_beyond.inherited.models.restitution`), and then rest on the table until they
+lift off (:mod:`bouncing_ball_beyond.models.sticking`).
 """
 
 from dataclasses import dataclass

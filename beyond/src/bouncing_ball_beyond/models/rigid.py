@@ -18,7 +18,7 @@ from bouncing_ball_beyond.models.restitution import RestitutionDynamics
 
 @dataclass(frozen=True, repr=False)
 class RestitutionModel(Model):
-    """The root's ball of the same name, with simulations and orbits of this house.
+    """The inherited ball of the same name, with simulations and orbits of this house.
 
     Examples
     --------

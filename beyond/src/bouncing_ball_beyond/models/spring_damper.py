@@ -40,7 +40,7 @@ from bouncing_ball_beyond.models.permanent_contact import permanent_contact_thre
 
 @dataclass(frozen=True, repr=False)
 class SpringDamper(OscillatorLaw):
-    """The root's contact of the same name as a law, for every ζ ≥ 0 and every :class:`.Release`.
+    """The inherited contact of the same name as a law, for every ζ ≥ 0 and every :class:`.Release`.
 
     Examples
     --------
@@ -127,7 +127,7 @@ class SpringDamper(OscillatorLaw):
         frequency_ratio: ArrayLike,
         release: str = Release.DISPLACEMENT,
     ) -> SpringDamper:
-        """The contact of the root's method of the same name."""
+        """The contact of the inherited method of the same name."""
         omega = check_positive(frequency_ratio, "frequency ratio ϖ")
         return cls(omega, damping_ratio(restitution), Release.of(release))
 

@@ -49,8 +49,8 @@ IMPACTS = count(100)
 
 
 class TwoLimits(NamedTuple):
-    """The root's :class:`~bouncing_ball_beyond.inherited.periodic.calls.TwoLimits`, with orbits of
-    this house."""
+    """The inherited :class:`~bouncing_ball_beyond.inherited.periodic.calls.TwoLimits`, with orbits
+    of this house."""
 
     saddle_node: Orbit
     period_doubling: Orbit

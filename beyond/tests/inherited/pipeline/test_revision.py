@@ -2,14 +2,11 @@
 
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 
 from bouncing_ball_beyond.inherited.pipeline import provenance as module
 from bouncing_ball_beyond.inherited.pipeline.provenance import UNKNOWN, house_of, revision
-
-ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture
@@ -96,8 +93,8 @@ def test_the_commit_is_unknown_without_a_repository_at_this_folder(
 
 
 def test_an_archive_of_a_commit_names_it(repository, tmp_path):
-    (repository / ".gitattributes").write_bytes((ROOT / ".gitattributes").read_bytes())
-    shutil.copy(ROOT / ".git_archival.txt", repository)
+    (repository / ".gitattributes").write_text(".git_archival.txt export-subst\n", "utf-8")
+    (repository / ".git_archival.txt").write_text("node: $Format:%H$\n", "utf-8")
     subprocess.run(["git", "add", "."], cwd=repository, check=True)
     subprocess.run(["git", "commit", "--quiet", "-m", "second"], cwd=repository, check=True)
     unpacked = tmp_path / "unpacked"

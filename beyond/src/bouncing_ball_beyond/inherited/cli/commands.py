@@ -203,7 +203,7 @@ _OF_CONTACTS = ("design", "fit")
 
 
 def commands() -> dict[str, Command]:
-    """All subcommands that are installed, those of the root first."""
+    """All subcommands that are installed, those of the inherited library first."""
     found = dict(COMMANDS)
     for point in sorted(entry_points(group=_GROUP), key=lambda each: each.name):
         found |= point.load()

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 MADE_BY = "made_by"
 """The attribute with the name of the command or the call that made a result."""
 # A file may name any function, and only one that draws is called.
-_FUNCTION = re.compile(r"(bouncing_ball\w*(?:\.[a-z]\w*)*[._]figures):([a-z]\w*)")
+_FUNCTION = re.compile(r"(bouncing_ball_\w+(?:\.[a-z]\w*)*[._]figures):([a-z]\w*)")
 
 
 class Result(xr.Dataset):
@@ -174,7 +174,7 @@ def _function(name: str) -> Callable[..., Any]:
     except (ModuleNotFoundError, AttributeError):
         raise ModelError(f"this version of the package has no {name}, which draws it") from None
     returned = getattr(function, "__annotations__", {}).get("return")
-    ours = getattr(function, "__module__", "").startswith("bouncing_ball")
+    ours = getattr(function, "__module__", "").startswith("bouncing_ball_")
     if not ours or getattr(returned, "__name__", "") != "Figure":
         raise ModelError(f"drawing = {shortened(name)} is no function of this package that draws")
     return function

@@ -30,8 +30,8 @@ REPOSITORY = Path(__file__).resolve().parents[5]
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 """The libraries that affect the artifacts."""
 
-# The packages of all houses begin with it.
-_OURS = "bouncing_ball"
+# The names of our packages begin with it.
+_OURS = "bouncing_ball_"
 # The package imports its public functions only when a user asks for them, and a result imports what
 # draws it only when it is drawn, which no study does: what their functions import does not count.
 _ON_DEMAND = ("inherited/__init__.py", "inherited/drawing/result.py")

@@ -236,7 +236,7 @@ def _check_orbit(orbit: Any) -> None:
     if not isinstance(orbit, Orbit):
         kind = type(orbit).__name__
         hint = ": give one of them" if kind == "list" else ""
-        raise ParameterError(f"follow needs an orbit of bouncing_ball, not {{}}{hint}", kind)
+        raise ParameterError(f"follow needs an orbit of bouncing_ball_beyond, not {{}}{hint}", kind)
     if orbit.shape:
         raise ParameterError("follow needs a single orbit, not {}", str(orbit.size))
     if not orbit.exists:

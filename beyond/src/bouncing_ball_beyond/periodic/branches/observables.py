@@ -30,7 +30,7 @@ VARIABLES = {
     ),
 }
 OF_BRANCHES = branches.VARIABLES | VARIABLES
-"""The variables of branches: those of the root, and these."""
+"""The variables of branches: those of the inherited library, and these."""
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:

@@ -1,6 +1,6 @@
 """Phase and speed of the impacts of the restitution model's n-T orbits.
 
-Its saddle-node and period doublings are the root's
+Its saddle-node and period doublings are the inherited
 (:mod:`bouncing_ball_beyond.inherited.periodic.restitution_branch`).
 """
 
@@ -30,7 +30,7 @@ def rigid_speed(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
 def phase(
     n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
 ) -> np.ndarray:
-    """Phase φ of the impact, in [-π/2, π/2]: that of the root's :class:`.RestitutionBranch`.
+    """Phase φ of the impact, in [-π/2, π/2]: that of the inherited :class:`.RestitutionBranch`.
 
     Raises
     ------

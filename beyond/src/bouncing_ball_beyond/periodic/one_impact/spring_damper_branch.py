@@ -228,7 +228,7 @@ def _cramer(rows):
 
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
-    """The points of the root's
+    """The points of the inherited
     :func:`bouncing_ball_beyond.inherited.periodic.spring_damper_branch.branch_point`, the solutions
     of Eqs. 23-26, with their derivatives along ε.
 

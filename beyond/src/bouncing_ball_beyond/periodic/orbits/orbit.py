@@ -96,7 +96,7 @@ class Orbit(OrbitImpacts):
     def max_height(self) -> Any:
         """Greatest absolute height z over the orbit: max z of Eq. 37.
 
-        As that of the root's orbit it is the apex of a flight, here of the highest, unless the
+        As that of the inherited orbit it is the apex of a flight, here of the highest, unless the
         table lifts the ball higher during a long contact.
         """
         return motion.max_height(self)

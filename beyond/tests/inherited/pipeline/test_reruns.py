@@ -53,7 +53,6 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
     [
         ("exhibits/release_rules.py", {"ext_impact", "ext_release"}),
         ("exhibits/stiffness_map.py", {"ext_map"}),
-        ("inherited/pipeline/configuration_docs.py", set()),
         # A change of a budget is one of the parameters of its study.
         ("exhibits/budgets.py", set()),
     ],

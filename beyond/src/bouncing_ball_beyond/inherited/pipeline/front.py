@@ -1,23 +1,6 @@
-"""The generated parts of README, and the links to accepted files.
+"""The generated parts of a page, which stand between comments; the rest is written by hand."""
 
-README holds its generated parts between comments; the rest of it is written by hand. Everything is
-read from the accepted datasets, so that ``make readme`` follows ``make accept``.
-"""
-
-from collections.abc import Iterable, Mapping
-from pathlib import Path
-
-from bouncing_ball_beyond.inherited.datasets.artifact import Artifact
-
-KINDS = {
-    ".nc": "dataset",
-    ".csv": "CSV",
-    ".png": "PNG",
-    ".svg": "SVG",
-    ".md": "table",
-    ".html": "page",
-}
-"""How a page names a file, by its suffix."""
+from collections.abc import Mapping
 
 
 def with_parts(page: str, parts: Mapping[str, str]) -> str:
@@ -43,28 +26,3 @@ def with_parts(page: str, parts: Mapping[str, str]) -> str:
             raise KeyError(name)
         page = f"{before}{begin}\n{text}\n{end}{after}"
     return page
-
-
-def links(folder: Path, artifact: Artifact) -> str:
-    """Links to the accepted files of an artifact, from the page of their folder."""
-    return ", ".join(
-        f"[{kind}]({artifact.name}{suffix})"
-        for suffix, kind in KINDS.items()
-        if (folder / f"{artifact.name}{suffix}").exists()
-    )
-
-
-_IN_A_ROW = 4
-
-
-def thumbnails(artifacts: Iterable[Artifact]) -> str:
-    """A table of small pictures with their names below; a forge links each to the whole."""
-    shown = [each for each in artifacts if each.name.startswith("fig")]
-    names = [each.name.replace("fig", "Fig. ").replace(". 0", ". ") for each in shown]
-    pictures = [f'<img src="{each.place}.png" alt="{each.title}" width="200">' for each in shown]
-    lines = []
-    for first in range(0, len(shown), _IN_A_ROW):
-        row = slice(first, first + _IN_A_ROW)
-        lines += [pictures[row], names[row]]
-    lines.insert(1, ["---"] * _IN_A_ROW)
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)

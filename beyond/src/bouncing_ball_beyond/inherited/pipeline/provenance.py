@@ -302,7 +302,7 @@ def explain(file: Path, /, *, house: Path | None = None) -> dict[str, Any]:
         If the file is not one of this workflow, or carries no provenance.
     """
     made = read_provenance(carrier_of(file))
-    house = house or house_of(file.absolute(), Path.cwd(), REPOSITORY)
+    house = house or house_of(file.absolute(), Path.cwd(), REPOSITORY / "beyond")
     now = revision(house.absolute()) if house else UNKNOWN
     unknown = "unknown" in (made["commit"], now.commit)
     checked_out = None if unknown else made["commit"] == now.commit

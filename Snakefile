@@ -1,0 +1,33 @@
+# Carbonelli, Perret-Liaudet, Rigaud and Feki (2011): a ball that bounces on a vibrating table.
+#
+#     snakemake --cores 2                      everything, below results/
+#     snakemake --cores 2 permanent_contact    the figures of one stage
+#     snakemake --cores 2 fig14 table1         a figure and a table
+#     snakemake --cores 2 diff                 compares the results with the reference
+#     snakemake --cores 2 fig14 diff           makes and compares Figure 14 only
+#     snakemake --cores 2 accept               makes the results the new reference
+
+from snakemake.utils import min_version
+
+min_version("9.5")
+
+
+report: "workflow/report/workflow.rst"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/configuration.smk"
+include: "workflow/rules/stages.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/texts.smk"
+include: "workflow/rules/reference.smk"
+include: "workflow/rules/targets.smk"
+
+
+rule all:
+    """Figures 1 to 16, the tables, the claims and the article"""
+    default_target: True
+    localrule: True
+    input:
+        [files(name) for name in ARTIFACTS],
+        rules.article.output,

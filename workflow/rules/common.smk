@@ -1,0 +1,100 @@
+# Names and paths that the rules share.
+
+import os
+import sys
+from pathlib import Path
+
+# The checkout. Runs in another folder (--directory), or as a module of another workflow, read its
+# configuration, code and reference, and write their results below the folder of the run.
+CHECKOUT = Path(workflow.current_basedir).parents[1].resolve()
+# Scripts import the package of this checkout, whatever else is installed.
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, [str(CHECKOUT / "src"), os.environ.get("PYTHONPATH")])
+)
+
+# The datasets of each stage.
+STAGES = {
+    "restitution_model": ["fig02", "fig03", "three_balls"],
+    "apparent_restitution": ["fig05", "fig06", "fig10", "fig13"],
+    "continuation": ["fig08", "fig09", "fig15", "table1", "lowest_doubling", "table1_readings"],
+    "permanent_contact": ["fig11", "fig16"],
+    "error_thresholds": ["fig14", "thresholds"],
+    "time_histories": ["fig07", "fig12"],
+}
+DATASETS = [name for names in STAGES.values() for name in names]
+# Figures of the models, which show no data.
+SCHEMATICS = ["fig01", "fig04"]
+FIGURES = sorted(name for name in DATASETS + SCHEMATICS if name.startswith("fig"))
+TABLES = ["table1", "thresholds", "table1_readings"]
+ARTIFACTS = sorted([*DATASETS, *SCHEMATICS, "claims"])
+
+# Settings of the whole run on which the datasets of a stage depend.
+SETTINGS = {
+    "restitution_model": [],
+    "apparent_restitution": ["release"],
+    "continuation": ["release", "largest_step"],
+    "permanent_contact": ["release"],
+    "error_thresholds": ["release"],
+    "time_histories": ["release"],
+}
+
+# The modules of the package that each script imports, directly or by another module. A change of
+# one of them runs the script again. A test compares these lists with the imports.
+ORBITS = ["restitution", "spring_damper", "orbits", "continuation", "datasets"]
+MODULES = {
+    "restitution_model": ["restitution", "datasets"],
+    "apparent_restitution": ORBITS,
+    "continuation": ORBITS,
+    "permanent_contact": ["restitution", "spring_damper", "datasets"],
+    "error_thresholds": [*ORBITS, "errors"],
+    "time_histories": ORBITS,
+    "draw": ["drawing", "figures", "datasets"],
+    "tables": ["tables", "datasets"],
+    "claims": ["claims", "datasets"],
+    "article": ["article", "datasets"],
+    "compare": ["compare", "datasets"],
+    "accept": ["compare", "datasets"],
+}
+
+
+def checkout(path):
+    """A file of the checkout, as a path from the working directory.
+
+    The mark `local` keeps it as it is if this workflow is a module with a prefix.
+    """
+    return local(os.path.relpath(CHECKOUT / path))
+
+
+def code(script):
+    """The files of code that decide what a script makes: itself and what it imports."""
+    modules = [f"src/bouncing_ball/{module}.py" for module in ["__init__", *MODULES[script]]]
+    return [checkout(path) for path in [f"workflow/scripts/{script}.py", *modules]]
+
+
+def datasets(stage):
+    """The files of the datasets of a stage, by name."""
+    return {name: f"results/figures/{name}.nc" for name in STAGES[stage]}
+
+
+def files(name):
+    """All files of a figure, a table or a dataset."""
+    kinds = ["nc"] if name in [*DATASETS, "claims"] else []
+    if name in FIGURES:
+        kinds += ["png", "svg"]
+    if name in [*TABLES, "claims"]:
+        kinds += ["md", "csv"]
+    return [f"results/figures/{name}.{kind}" for kind in kinds]
+
+
+# Results must not be written over the reference, for example through a link.
+for folder in (Path("results"), Path("results/figures")):
+    place = folder.resolve()
+    linked = place != folder.absolute() and place.is_relative_to(CHECKOUT)
+    if linked or place.is_relative_to(CHECKOUT / "figures"):
+        sys.exit(f"{folder} is {place}: results must not be written over the checkout")
+    if place.exists() and not place.is_dir():
+        sys.exit(f"{folder} is no folder, but results are written there")
+
+
+wildcard_constraints:
+    figure="|".join(FIGURES),

@@ -1,0 +1,60 @@
+# Tables, claims and the article are written from the datasets.
+
+
+rule tables:
+    """Table 1, the thresholds, and Table 1 under other readings, as text"""
+    input:
+        data=expand("results/figures/{table}.nc", table=TABLES),
+        printed=checkout("config/table1_printed.csv"),
+        code=code("tables"),
+    output:
+        md=expand("results/figures/{table}.md", table=TABLES),
+        csv=report(
+            expand("results/figures/{table}.csv", table=TABLES),
+            category="Tables",
+        ),
+    log:
+        "results/logs/tables.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/tables.py"
+
+
+rule claims:
+    """The claims of the paper and their verdicts"""
+    input:
+        data=expand("results/figures/{name}.nc", name=DATASETS),
+        printed=checkout("config/table1_printed.csv"),
+        code=code("claims"),
+    output:
+        nc="results/figures/claims.nc",
+        md="results/figures/claims.md",
+        csv=report("results/figures/claims.csv", category="Tables"),
+    log:
+        "results/logs/claims.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/claims.py"
+
+
+rule article:
+    """The article, its supplement and the list of figures"""
+    input:
+        data=expand("results/figures/{name}.nc", name=[*DATASETS, "claims"]),
+        templates=[
+            checkout(f"workflow/templates/{name}.md.j2")
+            for name in ("paper", "supplement", "figures")
+        ],
+        code=code("article"),
+    output:
+        paper="results/paper.md",
+        supplement="results/supplement.md",
+        figures="results/figures/README.md",
+    log:
+        "results/logs/article.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/article.py"

@@ -1,0 +1,435 @@
+"""What the figures share: style, labels, branches of orbits with their stability, picture files.
+
+A figure is one column of a journal wide, with texts of 8 points. Colours differ in lightness too,
+and curves also differ in dashes, width or marks, so that nothing depends on colour vision or on a
+printer of colours. Line styles tell the kind of an orbit: solid for stable, dashed for unstable,
+dotted for inadmissible. In pictures with both phases of a contact, a wide pale line is the phase φ
+at its start and a narrow line the phase φ + τ_b at its end: where the two coincide one sees the
+narrow line within the wide one.
+
+Nothing here is drawn by pyplot, and nothing depends on the settings of the user: `style` starts
+from matplotlib's defaults.
+"""
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter
+
+Look = dict[str, Any]
+"""Keywords of a line, a mark or a text."""
+
+WIDTH = 3.5
+"""Width of a figure in inches."""
+
+SETTINGS: Look = {
+    "font.size": 8,
+    "axes.titlesize": "medium",
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "legend.handlelength": 2.6,
+    "legend.columnspacing": 1.4,
+    "lines.linewidth": 1.2,
+    # The dashes of wide and narrow lines are equally long, so that they coincide too.
+    "lines.scale_dashes": False,
+    "hatch.linewidth": 0.6,
+    "figure.constrained_layout.use": True,
+    "figure.dpi": 300,
+    # Identifiers do not depend on the run. Letters are paths, with their text in comments: their
+    # places are computed for one font, which the reader of an SVG need not have.
+    "svg.hashsalt": "bouncing-ball",
+    "svg.fonttype": "path",
+}
+
+# Neighbours differ in grey too; each has a contrast of at least 3:1 with white.
+COLOURS = ("#000000", "#0072b2", "#c77c00", "#8a2f62", "#3f96cc")
+TABLE = "#8c8c8c"
+DASHES = ("-", (0, (7, 2)), (0, (7, 1.5, 1.2, 1.5)), (0, (2, 1.2)), (0, (7, 1.2, 1.2, 1.2) * 2))
+GUIDE: Look = {"color": "#777777", "linewidth": 0.8, "linestyle": (0, (1, 1.6))}
+KINDS: Mapping[str, Any] = {
+    "stable": "-",
+    "unstable": (0, (4, 2)),
+    "inadmissible": (0, (1, 2)),
+}
+"""Line style of each kind of orbit."""
+
+MARKS: Mapping[str, Look] = {
+    "saddle-node": {"marker": "o", "markersize": 5},
+    "period doubling": {"marker": "s", "markersize": 5.5},
+    "grazing of a flight": {"marker": "^", "markersize": 5},
+    "grazing of a release": {"marker": "v", "markersize": 5},
+    "period doubling, Eq. 8": {"marker": "x", "markersize": 3.5},
+    "joins permanent contact": {"marker": "D", "markersize": 4.5, "fillstyle": "full"},
+    "ends": {"marker": "h", "markersize": 5, "fillstyle": "full"},
+}
+"""Mark of each special orbit; hollow marks that coincide can all be seen."""
+
+PHASES: Mapping[str, tuple[str, float]] = {
+    "phase": (r"start of contact, $\varphi$", 3.4),
+    "release_phase": (r"end of contact, $\varphi+\tau_b$", 1.1),
+}
+"""Words and line width of both phases of a contact."""
+
+
+def style() -> AbstractContextManager:
+    """Context in which figures are drawn and saved: matplotlib's defaults and `SETTINGS`."""
+    return matplotlib.rc_context(matplotlib.rcParamsDefault | SETTINGS)
+
+
+# Labels and parameters
+
+SYMBOLS = {
+    "n": "n",
+    "restitution": "r",
+    "amplitude": r"\Lambda",
+    "frequency_ratio": r"\varpi",
+    "damping_ratio": r"\zeta",
+}
+
+
+def parameters(data: xr.Dataset) -> dict[str, Any]:
+    """The parameters with which a dataset was computed, from its attribute of that name."""
+    return json.loads(data.attrs["parameters"])
+
+
+def number(value: float) -> str:
+    r"""A number for a label in LaTeX, with four digits, and as a power of ten from 10⁴ on.
+
+    Examples
+    --------
+    >>> number(0.85), number(0.135851), number(10000.0), number(250000.0)
+    ('0.85', '0.1359', '10^{4}', '2.5\\times10^{5}')
+    """
+    if abs(value) < 1e4:
+        return f"{value:.4g}"
+    mantissa, exponent = f"{value:.3e}".split("e")
+    factor = f"{float(mantissa):g}"
+    return f"10^{{{int(exponent)}}}" if factor == "1" else rf"{factor}\times10^{{{int(exponent)}}}"
+
+
+def label(**values: float) -> str:
+    r"""Parameters with their symbols and values.
+
+    Examples
+    --------
+    >>> label(n=1, restitution=0.85, frequency_ratio=2.0)
+    '$n=1$, $r=0.85$, $\\varpi=2$'
+    """
+    return ", ".join(f"${SYMBOLS[name]}={number(value)}$" for name, value in values.items())
+
+
+def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
+    r"""Label of the parameters that are equal in all curves, and label of the others for each.
+
+    A single curve has no label of its own.
+
+    Examples
+    --------
+    >>> parted({"restitution": [0.85, 0.85], "amplitude": [1.1, 0.6]})
+    ('$r=0.85$', ['$\\Lambda=1.1$', '$\\Lambda=0.6$'])
+    """
+    lists = {name: [float(value) for value in column] for name, column in values.items()}
+    common = {name: column[0] for name, column in lists.items() if len(set(column)) == 1}
+    rest = {name: column for name, column in lists.items() if name not in common}
+    count = max(len(column) for column in lists.values())
+    each = [label(**{name: column[k] for name, column in rest.items()}) for k in range(count)]
+    return label(**common), each
+
+
+def colours(count: int) -> Sequence[str]:
+    """Colours for curves; more than `COLOURS` has are steps from dark to light."""
+    if count <= len(COLOURS):
+        return COLOURS[:count]
+    # The upper part of the map has too little contrast with white.
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.6, count))
+    return [to_hex(shade) for shade in shades]
+
+
+def pale(colour: str) -> str:
+    """A colour mixed with white, for the wide lines."""
+    return to_hex(0.45 * np.array(to_rgb(colour)) + 0.55)
+
+
+# Panels
+
+
+def panels(height: float, rows: int = 1, **options: Any) -> tuple[Figure, Any]:
+    """A figure of one column's width, and its panel or array of panels, one above the other."""
+    figure = Figure(figsize=(WIDTH, height))
+    return figure, figure.subplots(rows, **options)
+
+
+def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
+    """A logarithmic axis of ϖ from the least to the greatest, with plain numbers."""
+    axes.set_xscale("log")
+    axes.set_xlim(float(ratio.min()), float(ratio.max()))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
+    if axes.get_subplotspec().is_last_row():
+        axes.set_xlabel(r"frequency ratio $\varpi$")
+
+
+def legend_below(figure: Figure, handles: Sequence[Line2D] = (), columns: int = 2) -> None:
+    """A legend below the panels of the given lines, or of all labelled ones, each label once."""
+    labelled = handles or [
+        line for axes in figure.axes for line in axes.get_legend_handles_labels()[0]
+    ]
+    once = {str(line.get_label()): line for line in reversed(labelled)}
+    entries = list(reversed(once.values()))
+    figure.legend(handles=entries, loc="outside lower center", ncols=min(columns, len(entries)))
+
+
+def sample(name: str, **look: Any) -> Line2D:
+    """A line or a mark of a legend."""
+    return Line2D([], [], label=name, **{"color": "black"} | look)
+
+
+def mark_look(kind: str) -> Look:
+    """The look of a mark of `MARKS`, without a line."""
+    return {"fillstyle": "none", "linestyle": "none", "markeredgewidth": 1.0} | MARKS[kind]
+
+
+# Curves
+
+
+def pieces(kinds: np.ndarray) -> list[slice]:
+    """Parts of a line of one kind each; a part ends at the first point of the next one.
+
+    Examples
+    --------
+    >>> pieces(np.array(["stable", "stable", "unstable"]))
+    [slice(0, 3, None), slice(2, 4, None)]
+    """
+    edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
+    return [slice(int(start), int(stop) + 1) for start, stop in pairwise(edges)]
+
+
+def curve(
+    axes: Axes, x: xr.DataArray, y: xr.DataArray, admissible: xr.DataArray, **look: Any
+) -> None:
+    """A line whose inadmissible parts are dotted; only its first part has a label."""
+    inadmissible = look | {"linestyle": KINDS["inadmissible"], "linewidth": 0.9}
+    for part in pieces(admissible.values):
+        chosen = look if admissible.values[part.start] else inadmissible
+        axes.plot(x.values[part], y.values[part], **chosen)
+        look.pop("label", None)
+        inadmissible.pop("label", None)
+
+
+# Branches of orbits. A branch is a dataset over `point` with amplitude, phase, release_phase,
+# stable, admissible and along, which increases along it, and over `special` with special_kind,
+# special_along, special_amplitude, special_phase and special_release_phase.
+
+
+def spring_damper_branch(data: xr.Dataset) -> xr.Dataset:
+    """The branch of one ϖ, whose points are at equal steps of arclength."""
+    return data.assign(
+        along=("point", np.linspace(0.0, 1.0, data.sizes["point"])),
+        special_along=data.special_arclength,
+        special_release_phase=data.special_phase + data.special_contact_duration,
+    )
+
+
+def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Dataset:
+    """The branch of the restitution model, along which φ increases; its contact ends as it starts.
+
+    `bifurcations` has Λ and φ of the saddle-node and the period doubling, and may have those of
+    the grazing orbit.
+    """
+    kinds = {
+        "saddle-node": "saddle_node",
+        "period doubling": "period_doubling",
+        "grazing of a flight": "grazing",
+    }
+    known = {kind: name for kind, name in kinds.items() if f"{name}_phase" in bifurcations}
+    phases = [float(bifurcations[f"{name}_phase"]) for name in known.values()]
+    amplitudes = [float(bifurcations[f"{name}_amplitude"]) for name in known.values()]
+    return curve.assign(
+        release_phase=curve.phase,
+        along=curve.phase,
+        special_kind=("special", list(known)),
+        special_along=("special", phases),
+        special_amplitude=("special", amplitudes),
+        special_phase=("special", phases),
+        special_release_phase=("special", phases),
+    )
+
+
+def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: float) -> None:
+    """One phase of a branch over Λ, in parts of one kind of orbit that meet in special points.
+
+    `phase` is "phase" or "release_phase".
+    """
+    special = branch.where(branch.special_amplitude.notnull(), drop=True).sortby("special_along")
+    place = np.searchsorted(branch.along, special.special_along)
+    stability = np.where(branch.stable, "stable", "unstable")
+    kinds = np.where(branch.admissible, stability, "inadmissible")
+    # A special point has the kind of the orbits beyond it, where there are any.
+    kinds = np.insert(kinds, place, kinds[np.minimum(place, kinds.size - 1)])
+    amplitude = np.insert(branch.amplitude.values, place, special.special_amplitude)
+    angle = np.insert(branch[phase].values, place, special[f"special_{phase}"]) / np.pi
+    for part in pieces(kinds):
+        kind = kinds[part.start]
+        look: Look = {"linestyle": KINDS[kind], "linewidth": width, "color": colour}
+        axes.plot(amplitude[part], angle[part], label=kind, dash_capstyle="butt", **look)
+
+
+def mark(axes: Axes, kind: str, amplitude: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
+    """The marks of special orbits of one kind; nothing where there are none."""
+    if phase.notnull().any():
+        look = mark_look(kind)
+        axes.plot(amplitude, phase / np.pi, color=colour, zorder=4, label=kind, **look)
+
+
+def mark_special(axes: Axes, branch: xr.Dataset, phase: str, colour: str) -> None:
+    """The special points of a branch, and its ends inside the range of Λ."""
+    for kind in MARKS:
+        there = branch[f"special_{phase}"].where(branch.special_kind == kind)
+        mark(axes, kind, branch.special_amplitude, there, colour)
+    for kind, point in inner_ends(branch):
+        end = branch.isel(point=point)
+        mark(axes, kind, end.amplitude, end[phase], colour)
+
+
+def inner_ends(branch: xr.Dataset) -> list[tuple[str, int]]:
+    """Kind and point of each end of a branch that is not an end of the range of Λ."""
+    known = np.flatnonzero(branch.amplitude.notnull())
+    if "end_reason" not in branch or not known.size:
+        return []
+    ends = zip(branch.end_reason.values, (known[0], known[-1]), strict=True)
+    inner = [(reason, int(point)) for reason, point in ends if "is reached" not in reason]
+    joins = "joins permanent contact"
+    return [(joins if "permanent contact" in reason else "ends", point) for reason, point in inner]
+
+
+def right_end(branch: xr.Dataset, phase: str) -> float:
+    """A phase over π where a branch has its greatest Λ; of two such ends, the later one.
+
+    Both ends of a branch are often at the same Λ, but for rounding.
+    """
+    far = branch.amplitude >= branch.amplitude.max() * (1 - 1e-9)
+    return float(branch[phase][np.flatnonzero(far)[-1]]) / np.pi
+
+
+def branch_legend(figure: Figure, both_phases: bool) -> None:
+    """What the line styles, widths and marks mean that occur in a figure."""
+    drawn = {line.get_label() for axes in figure.axes for line in axes.lines}
+    handles = [sample(kind, linestyle=look) for kind, look in KINDS.items() if kind in drawn]
+    if both_phases:
+        (start, wide), (end, narrow) = PHASES.values()
+        handles.append(sample(start, linewidth=wide, color=pale("#000000")))
+        handles.append(sample(end, linewidth=narrow))
+    handles += [sample(kind, **mark_look(kind)) for kind in MARKS if kind in drawn]
+    legend_below(figure, handles)
+
+
+# Labels beside curves. Their places depend on the size of the panels, so that they come last.
+
+LINE_HEIGHT = 11.0
+"""Distance of labels one above the other, in points."""
+
+
+def ascending(values: np.ndarray) -> np.ndarray:
+    """The ascending numbers nearest to some values by least squares, by the min-max formula.
+
+    Examples
+    --------
+    >>> ascending(np.array([3.0, 1.0, 4.0])).tolist()
+    [2.0, 2.0, 4.0]
+    """
+    count = range(len(values))
+    means = [[values[j : k + 1].mean() for k in count[j:]] for j in count]
+    return np.array([max(min(means[j][i - j :]) for j in count[: i + 1]) for i in count])
+
+
+def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
+    """Labels at the right edge of a panel: text, height in data and colour of each.
+
+    Each is as near to its height as the others allow.
+    """
+    axes.figure.draw_without_rendering()
+    order = sorted(names, key=lambda name: name[1])
+    ends = [(0.0, height) for _, height, _ in order]
+    wanted = axes.transData.transform(ends)[:, 1] * 72 / axes.figure.dpi
+    steps = LINE_HEIGHT * np.arange(len(order))
+    placed = ascending(wanted - steps) + steps
+    for (text, height, colour), offset in zip(order, placed - wanted, strict=True):
+        axes.annotate(
+            text,
+            (1.0, height),
+            (4, offset),
+            xycoords=axes.get_yaxis_transform(),
+            textcoords="offset points",
+            color=colour,
+            va="center",
+            annotation_clip=False,
+        )
+
+
+def name_beside(axes: Axes, text: str, point: tuple[float, float], **look: Any) -> None:
+    """A label beside a point of the data, at the place where it hides the fewest curves and labels.
+
+    The nearer of two equally good places is taken.
+    """
+    axes.figure.draw_without_rendering()
+    others = [other.get_window_extent() for other in axes.texts if other.get_text()]
+    curves = [line.get_transform().transform_path(line.get_path()) for line in axes.lines]
+    note = axes.annotate(text, point, (0, 0), textcoords="offset points", **look)
+
+    def move(x: float, y: float) -> None:
+        horizontal = {0: "center", 1: "left", -1: "right"}[int(np.sign(x))]
+        vertical = {0: "center", 1: "bottom", -1: "top"}[int(np.sign(y))]
+        note.set(position=(x, y), ha=horizontal, va=vertical)
+
+    def hidden(place: tuple[float, float]) -> float:
+        move(*place)
+        box = note.get_window_extent().padded(4.0)
+        inside = axes.get_window_extent()
+        outside = not (inside.contains(*box.min) and inside.contains(*box.max))
+        labels = sum(box.overlaps(other) for other in others)
+        return 3 * outside + 3 * labels + sum(path.intersects_bbox(box, False) for path in curves)
+
+    sides = [(x, y) for x in (1, -1, 0) for y in (1, -1, 0) if x or y]
+    move(*min(((far * x, far * y) for far in (5, 10, 16, 24) for x, y in sides), key=hidden))
+
+
+# Files
+
+
+def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) -> None:
+    """Save a figure as PNG and SVG, whose description names the commit that drew it.
+
+    The same figure gives the same bytes, and the file appears whole or not at all. Raises OSError
+    if a file cannot be written.
+    """
+    named = {"Description": f"drawn at commit {commit}"}
+    metadata = {
+        "png": named | {"Software": None},
+        "svg": named | {"Date": None, "Creator": None},
+    }
+    with style():
+        figure.draw_without_rendering()
+        # Both pictures have the layout that was found now.
+        figure.set_layout_engine("none")
+        for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            unfinished = path.with_name(f".{path.name}.part.{os.getpid()}")
+            try:
+                figure.savefig(unfinished, format=kind, metadata=metadata[kind])
+                os.replace(unfinished, path)
+            finally:
+                unfinished.unlink(missing_ok=True)

@@ -230,6 +230,15 @@ class Family:
         )
         return height, velocity, touching
 
+    def bounce_velocity(self, y: NDArray) -> NDArray:
+        """Velocity z′_b of the ball at the end of the contact (Eq. 24)."""
+        return self.release(y).velocity
+
+    def apparent_restitution(self, y: NDArray) -> NDArray:
+        """The apparent restitution coefficient r_a = -δ′_b/δ′_i (Eq. 17)."""
+        _, _, u = self.start(y)
+        return -self.release(y).gap_velocity / u
+
     def max_height(self, y: NDArray) -> NDArray:
         """Greatest height of the ball over a cycle.
 
@@ -281,16 +290,15 @@ class Family:
 
     def observables(self, y: NDArray) -> dict[str, NDArray]:
         """The quantities of orbits by the names that they have in datasets."""
-        _, _, u = self.start(y)
-        end = self.release(y)
+        duration = y[3] / self.contact.frequency_ratio
         return {
             "amplitude": y[0],
             "phase": y[1],
-            "contact_duration": end.duration,
-            "release_phase": y[1] + end.duration,
+            "contact_duration": duration,
+            "release_phase": y[1] + duration,
             "impact_velocity": y[2],
-            "bounce_velocity": end.velocity,
-            "apparent_restitution": -end.gap_velocity / u,
+            "bounce_velocity": self.bounce_velocity(y),
+            "apparent_restitution": self.apparent_restitution(y),
             "max_height": self.max_height(y),
             "stable": is_stable(*self.trace_and_determinant(y)),
             "admissible": self.clearance(y) > 0,

@@ -1,0 +1,192 @@
+"""How wrong the restitution model is, and from which stiffness on it is right (Eqs. 37 and 38).
+
+The relative error of a quantity is |spring-damper - restitution| / |restitution|, as the paper has
+it. The threshold of a tolerance is the frequency ratio ϖ from which on the error stays within it.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import (
+    Condition,
+    at_amplitude,
+    at_bifurcation,
+    bifurcations,
+    correct,
+    stable_orbits,
+)
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
+
+
+class Error(NamedTuple):
+    """The relative error of one quantity along ϖ.
+
+    ``values`` are those at the ratios of a scan, and ``between(ratio, i)`` computes one between
+    the ratios i and i + 1.
+    """
+
+    values: NDArray
+    between: Callable[[float, int], float]
+
+
+class Threshold(NamedTuple):
+    """A frequency ratio, and how it was found.
+
+    The status is ``found``; ``within`` if the error is within the tolerance at every ratio of the
+    scan, and ``outside`` if it is not at the largest: the ratio then is NaN.
+    """
+
+    ratio: float
+    status: str
+
+
+def relative_error(value: ArrayLike, reference: ArrayLike) -> NDArray:
+    """Relative error of the restitution model, whose value is the reference (Eqs. 37 and 38).
+
+    >>> float(relative_error(0.99, 1.0).round(12))
+    0.01
+    """
+    return np.abs(np.asarray(value) - reference) / np.abs(reference)
+
+
+def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
+    """The frequency ratio from which on an error stays within a tolerance.
+
+    The last ratio of the scan whose error exceeds the tolerance, or is not known because there is
+    no orbit, begins the interval in which the threshold is located. Two crossings between two
+    neighbours are not noticed.
+
+    >>> grid = np.geomspace(1, 1000, 7)
+    >>> found = threshold(grid, Error(1 / grid, lambda ratio, i: 1 / ratio), 0.02)
+    >>> round(found.ratio, 9), found.status
+    (50.0, 'found')
+    """
+    outside = np.flatnonzero(~(error.values <= tolerance))
+    if outside.size == 0:
+        return Threshold(np.nan, "within")
+    last = int(outside[-1])
+    if last + 1 == ratios.size or np.isnan(error.values[last]):
+        return Threshold(np.nan, "outside")
+    place = brentq(
+        lambda logarithm: error.between(np.exp(logarithm), last) - tolerance,
+        np.log(ratios[last]),
+        np.log(ratios[last + 1]),
+        xtol=1e-14,
+    )
+    return Threshold(float(np.exp(place)), "found")
+
+
+def permanent_contact_error(ratios: NDArray, zeta: float, release: str) -> Error:
+    """The error of the threshold of permanent contact (Eq. 38)."""
+
+    def error(ratio):
+        found = permanent_contact(ratio, zeta, release)
+        return relative_error(found, restitution.PERMANENT_CONTACT)
+
+    return Error(error(ratios), lambda ratio, i: float(error(ratio)))
+
+
+def orbit_errors(
+    n: int, r: float, amplitude: float, ratios: NDArray, release: str
+) -> dict[str, Error]:
+    """The errors of quantities of the stable n-T orbit at an amplitude (Eq. 37), by their names."""
+    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+    phase = restitution.impact_phase(n, r, amplitude)
+    quantities = {
+        "max_height": (Family.max_height, restitution.max_height(n, r, amplitude)),
+        "bounce_velocity": (Family.bounce_velocity, restitution.bounce_velocity(n)),
+        "phase": (lambda family, y: y[1], phase),
+        "apparent_restitution": (Family.apparent_restitution, r),
+    }
+    return {
+        name: _along(n, r, ratios, release, orbits, at_amplitude(amplitude), value, reference)
+        for name, (value, reference) in quantities.items()
+    }
+
+
+def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
+    """The errors of the amplitudes of both bifurcations, by their names."""
+    kinds = {
+        "saddle_node": ("saddle-node", Family.saddle_node, restitution.saddle_node(n, r)),
+        "period_doubling": (
+            "period doubling",
+            Family.period_doubling,
+            restitution.period_doubling(n, r),
+        ),
+    }
+    found = {}
+    for name, (kind, test, reference) in kinds.items():
+        orbits = bifurcations(n, r, kind, ratios, release)[:, 0]
+        condition = at_bifurcation(test)
+        found[name] = _along(
+            n, r, ratios, release, orbits, condition, lambda family, y: y[0], reference
+        )
+    return found
+
+
+def _along(
+    n: int,
+    r: float,
+    ratios: NDArray,
+    release: str,
+    orbits: NDArray,
+    condition: Condition,
+    value: Callable[[Family, NDArray], NDArray],
+    reference: float,
+) -> Error:
+    """The error of a quantity of orbits that are known at the ratios of a scan, shape (4, ratios)."""
+    zeta = damping_ratio(r)
+
+    def error(ratio, y):
+        return relative_error(value(Family(n, Contact(ratio, zeta, release)), y), reference)
+
+    def between(ratio, i):
+        family = Family(n, Contact(ratio, zeta, release))
+        part = np.log(ratio / ratios[i]) / np.log(ratios[i + 1] / ratios[i])
+        guess = orbits[:, i] + part * (orbits[:, i + 1] - orbits[:, i])
+        return float(error(ratio, correct(family, guess, condition)))
+
+    return Error(error(ratios, orbits), between)
+
+
+def errors(
+    quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
+) -> dict[str, Error]:
+    """The errors of the quantities with these names, of all that can be compared."""
+    known = orbit_errors(n, r, amplitude, ratios, release)
+    if {"saddle_node", "period_doubling"} & set(quantities):
+        known |= bifurcation_errors(n, r, ratios, release)
+    known["permanent_contact"] = permanent_contact_error(ratios, damping_ratio(r), release)
+    return {name: known[name] for name in quantities}
+
+
+def lowest_period_doubling(
+    n: int, r: float, ratios: NDArray, release: str
+) -> tuple[float, float]:
+    """The frequency ratio at which the period doubling of a family is lowest, and its amplitude.
+
+    Both are NaN if it is lowest at an end of the ratios. The place of a minimum has half of the
+    digits of its value.
+    """
+    orbits = bifurcations(n, r, "period doubling", ratios, release)[:, 0]
+    lowest = int(np.nanargmin(orbits[0]))
+    if lowest in (0, ratios.size - 1):
+        return np.nan, np.nan
+    zeta = damping_ratio(r)
+
+    def amplitude(logarithm):
+        family = Family(n, Contact(np.exp(logarithm), zeta, release))
+        found = correct(family, orbits[:, lowest], at_bifurcation(Family.period_doubling))
+        return float(found[0])
+
+    around = np.log(ratios[[lowest - 1, lowest + 1]])
+    found = minimize_scalar(
+        amplitude, bounds=tuple(around), method="bounded", options={"xatol": 1e-9}
+    )
+    return float(np.exp(found.x)), float(found.fun)

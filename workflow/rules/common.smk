@@ -8,9 +8,8 @@ from pathlib import Path
 # configuration, code and reference, and write their results below the folder of the run.
 CHECKOUT = Path(workflow.current_basedir).parents[1].resolve()
 # Scripts import the package of this checkout, whatever else is installed.
-os.environ["PYTHONPATH"] = os.pathsep.join(
-    filter(None, [str(CHECKOUT / "src"), os.environ.get("PYTHONPATH")])
-)
+paths = [str(CHECKOUT / "src"), os.environ.get("PYTHONPATH", "")]
+os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, paths)))
 
 # The datasets of each stage.
 STAGES = {
@@ -84,6 +83,30 @@ def files(name):
     if name in [*TABLES, "claims"]:
         kinds += ["md", "csv"]
     return [f"results/figures/{name}.{kind}" for kind in kinds]
+
+
+def requested(wildcards):
+    """The figures and tables that the command line names together with `diff` or `accept`."""
+    targets = workflow.dag_settings.targets
+    names = [name for stage in STAGES if stage in targets for name in STAGES[stage]]
+    return sorted({*names, *(name for name in ARTIFACTS if name in targets)}) or ARTIFACTS
+
+
+def requested_files(wildcards):
+    """The files to compare: those of the figures and tables named, or everything."""
+    if requested(wildcards) == ARTIFACTS:
+        return rules.all.input
+    return [file for name in requested(wildcards) for file in files(name)]
+
+
+def description(name):
+    """The parameters and the code from which a figure or table is made."""
+    stage = next((stage for stage in STAGES if name in STAGES[stage]), None)
+    parameters = {}
+    if stage:
+        settings = {key: config[key] for key in SETTINGS[stage]}
+        parameters = {**config[stage].get(name, {}), **settings}
+    return {"parameters": parameters, "code": code(stage or "draw")}
 
 
 # Results must not be written over the reference, for example through a link.

@@ -1,0 +1,92 @@
+# make              sets up .venv from the lock file, and makes everything in results/
+# make test         the tests
+# make replication  everything from nothing, and its comparison with the reference: results/diff/index.html
+# make diff         the comparison; snakemake --cores 2 fig14 diff makes and compares one figure
+
+PYTHON ?= python3
+VENV ?= .venv
+RUN := $(VENV)/bin/python -m
+SNAKEMAKE := $(RUN) snakemake --cores 2 --quiet host rules reason
+PIP := $(RUN) pip install --quiet --disable-pip-version-check
+LOCKED := $(PIP) --require-hashes --only-binary :all: --no-binary connection-pool --no-build-isolation
+UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade
+VERSION := $(shell sed -n 's/^version: //p' CITATION.cff)
+# Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
+FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
+
+# Targets run one after another, because they share results/.
+.NOTPARALLEL:
+.PHONY: all setup test test-cluster test-processors lint diff replication accept report release newest lock clean ci everything test-everything
+
+all: setup
+	$(SNAKEMAKE)
+
+setup: $(VENV)/.installed
+$(VENV)/.installed: requirements-build.lock requirements.lock
+	$(PYTHON) -m venv --clear $(VENV)
+	$(PIP) --require-hashes --only-binary :all: --requirement requirements-build.lock
+	$(LOCKED) --requirement requirements.lock
+	$(PIP) --no-deps --no-build-isolation --editable .
+	@touch $@
+
+test: setup
+	OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2 --dist worksteal
+
+# A stage on a Slurm that the test starts; it is skipped where there is none.
+test-cluster: setup
+	$(RUN) pytest -m cluster tests
+
+# From nothing, with the code of numpy and OpenBLAS for another processor, one without AVX-512.
+test-processors: setup
+	features="$$($(VENV)/bin/python -c '$(FOUND)' | sed 's/X86_V3//')" && \
+	OPENBLAS_CORETYPE=Haswell NPY_DISABLE_CPU_FEATURES="$$features" $(MAKE) --keep-going replication test
+
+lint: setup
+	$(RUN) ruff check .
+	$(RUN) ruff format --check .
+	$(VENV)/bin/snakefmt --check Snakefile workflow
+	$(RUN) mypy
+	$(RUN) snakemake --lint
+
+diff: setup
+	$(SNAKEMAKE) diff
+
+replication: clean diff
+
+accept: setup
+	$(SNAKEMAKE) accept
+
+report: all
+	$(RUN) snakemake --report results/report.html
+
+# A file to cite, and to run without git. Only what gives the results of the reference is released.
+release: setup
+	@test -z "$$(git status --porcelain)" || { echo "A release is a commit: there are changes."; exit 1; }
+	$(MAKE) replication
+	mkdir -p dist
+	git archive --prefix=bouncing-ball-$(VERSION)/ --output=dist/bouncing-ball-$(VERSION).tar.gz HEAD
+
+# The newest versions that pyproject.toml allows, instead of those of the lock file.
+newest:
+	$(PYTHON) -m venv --clear .venv-newest
+	.venv-newest/bin/python -m pip install --quiet --editable '.[test]'
+	touch .venv-newest/.installed
+	$(MAKE) --keep-going replication test VENV=.venv-newest
+
+# For maintainers, with uv.
+lock:
+	$(UV) pyproject.toml --all-extras --output-file requirements.lock
+	printf 'flit_core\nsetuptools\nwheel\n' | $(UV) - --constraint requirements.lock --output-file requirements-build.lock
+
+clean:
+	rm -rf results .snakemake
+
+# What continuous integration does.
+ci:
+	.ci/run
+
+# The other packages have a Makefile of their own, in beyond/.
+everything: all
+	$(MAKE) -C beyond setup all
+test-everything: test
+	$(MAKE) -C beyond test test-contacts

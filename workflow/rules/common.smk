@@ -43,8 +43,8 @@ ORBITS = ["restitution", "spring_damper", "orbits", "continuation", "datasets"]
 MODULES = {
     "restitution_model": ["restitution", "datasets"],
     "apparent_restitution": ORBITS,
-    "continuation": ORBITS,
-    "permanent_contact": ["restitution", "spring_damper", "datasets"],
+    "continuation": [*ORBITS, "errors"],
+    "permanent_contact": [*ORBITS, "errors"],
     "error_thresholds": [*ORBITS, "errors"],
     "time_histories": ORBITS,
     "draw": ["drawing", "figures", "datasets"],

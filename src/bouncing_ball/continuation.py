@@ -6,7 +6,7 @@ predicted point, or a bifurcation. Newton's method is the corrector for all of t
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,10 +20,10 @@ from bouncing_ball.spring_damper import Contact, damping_ratio
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
 """A function of orbits y, shape (4, ...), whose zero is wanted, and its derivative by y."""
 
-STIFF = 1e4
+STIFF = 1e3
 """The frequency ratio at which walks start, from the orbit of the restitution model."""
 
-STEPS_PER_DECADE = 24
+STEPS_PER_DECADE = 16
 """Steps of a walk per decade of ϖ: the prediction error is then a percent of the orbit's change."""
 
 SMALLEST_STEP = 1e-6
@@ -78,13 +78,12 @@ def at_bifurcation(test: Callable[[Family, NDArray], NDArray]) -> Condition:
     Newton's method down a little, and do not change the orbit to which it converges.
     """
     step = 1e-6
+    shifts = step * np.hstack([np.eye(4), -np.eye(4)])
 
     def condition(family, y):
-        gradient = []
-        for k in range(4):
-            shift = step * _unit(k, y)
-            gradient.append((test(family, y + shift) - test(family, y - shift)) / (2 * step))
-        return test(family, y), np.stack(gradient)
+        around = y[:, np.newaxis] + shifts.reshape(4, 8, *np.ones(y.ndim - 1, dtype=int))
+        values = test(family, around)
+        return test(family, y), (values[:4] - values[4:]) / (2 * step)
 
     return condition
 
@@ -161,27 +160,21 @@ def stiff_guess(family: Family, x: ArrayLike, lift: ArrayLike) -> NDArray:
     return np.stack(numbers).astype(float)
 
 
-def _walk(
-    n: int | NDArray,
-    zeta: NDArray,
-    release: str,
-    ratios: NDArray,
-    condition: Condition,
-    x: NDArray,
-    lift: NDArray,
+def walk(
+    family: Family, ratios: NDArray, condition: Condition, x: NDArray, lift: NDArray
 ) -> NDArray:
     """Orbits under a condition along ϖ, shape (4, cases, ratios), NaN where they are not reached.
 
-    The walk starts at STIFF, or at twice the largest ratio, with the orbit of the restitution model,
-    and goes in equal steps of log ϖ to the most compliant one; each orbit is predicted from the two
-    before it. The orbits at the given ratios are then corrected side by side, from predictions of
-    the same kind.
+    The walk starts at STIFF, or at twice the largest ratio, with the orbit of the restitution
+    model, and goes in equal steps of log ϖ to the most compliant contact; each orbit is predicted
+    from the two before it. The orbits at the given ratios are then corrected side by side, from
+    predictions of the same kind.
 
     Parameters
     ----------
-    n : int, or ndarray of the shape (cases, 1)
-    zeta : ndarray, shape (cases, 1)
-    release : str
+    family : Family
+        With n, ζ and the release of the cases, numbers or of the shape (cases, 1); its frequency
+        ratio is replaced by those of the walk.
     ratios : ndarray, shape (ratios,)
     condition : Condition
         For orbits of the shapes (4, cases, 1) and (4, cases, ratios).
@@ -191,20 +184,23 @@ def _walk(
     stiffest = max(STIFF, 2 * ratios.max())
     count = 3 + int(STEPS_PER_DECADE * np.log10(stiffest / ratios.min()))
     nodes = np.geomspace(stiffest, ratios.min(), count)
-    family = Family(n, Contact(nodes[0], zeta, release))
-    y = correct(family, stiff_guess(family, x, lift), condition)
-    path = [y, y]
+    stiff = _at_ratio(family, nodes[0])
+    start = correct(stiff, stiff_guess(stiff, x, lift), condition)
+    path = [start, start]
     for node in nodes[1:]:
-        family = Family(n, Contact(node, zeta, release))
-        path.append(correct(family, 2 * path[-1] - path[-2], condition))
+        path.append(correct(_at_ratio(family, node), 2 * path[-1] - path[-2], condition))
     orbits = np.stack(path[1:])
     # The node before each ratio, and the one before that.
     before = np.clip(np.searchsorted(-nodes, -ratios, side="right") - 1, 1, count - 2)
     part = np.log(ratios / nodes[before]) / np.log(nodes[1] / nodes[0])
     latest = orbits[before, ..., 0]
     guess = latest + part[:, np.newaxis, np.newaxis] * (latest - orbits[before - 1, ..., 0])
-    family = Family(n, Contact(ratios, zeta, release))
-    return correct(family, np.moveaxis(guess, 0, -1), condition)
+    return correct(_at_ratio(family, ratios), np.moveaxis(guess, 0, -1), condition)
+
+
+def _at_ratio(family: Family, ratio: ArrayLike) -> Family:
+    """The same family on contacts of another frequency ratio."""
+    return replace(family, contact=replace(family.contact, frequency_ratio=ratio))
 
 
 def stable_orbits(
@@ -235,36 +231,33 @@ def stable_orbits(
     NoOrbit
         If Λ lies below the saddle-node of the restitution model (Eq. 7).
     """
-    r, amplitude = (np.atleast_1d(each)[:, np.newaxis] for each in np.broadcast_arrays(r, amplitude))
+    r, amplitude = (
+        np.atleast_1d(each)[:, np.newaxis] for each in np.broadcast_arrays(r, amplitude)
+    )
     x = restitution.saddle_node(n, r)
     for one, lowest in zip(amplitude.flat, x.flat, strict=True):
         if one < lowest:
-            raise NoOrbit(f"Λ = {one:g} is below the {n}-T orbits, from Λ = {lowest:.6g} on (Eq. 7)")
+            raise NoOrbit(
+                f"Λ = {one:g} is below the {n}-T orbits, from Λ = {lowest:.6g} on (Eq. 7)"
+            )
     lift = np.sqrt(amplitude**2 - x**2)
-    zeta = damping_ratio(r)
-    return _walk(n, zeta, release, np.atleast_1d(ratios), at_amplitude(amplitude), x, lift)
+    family = Family(n, Contact(STIFF, damping_ratio(r), release))
+    return walk(family, np.atleast_1d(ratios), at_amplitude(amplitude), x, lift)
 
 
-def bifurcations(
-    n: ArrayLike,
-    r: float,
-    kind: str,
-    ratios: ArrayLike,
-    release: str = "displacement",
-    zeta: float | None = None,
-) -> NDArray:
+def bifurcations(n: ArrayLike, r: float, kind: str, ratios: ArrayLike, contact: Contact) -> NDArray:
     """The saddle-nodes, or the period doublings, that bound the stable orbits, along ϖ.
 
     Parameters
     ----------
     n : array_like, shape (families,)
     r : float
+        The restitution coefficient of the stiff limit.
     kind : str
         ``saddle-node`` or ``period doubling``.
     ratios : array_like, shape (ratios,)
-    release : str
-    zeta : float, optional
-        The damping ratio of the contact, if it is not that of Eq. 16.
+    contact : Contact
+        The damping ratio and the release; its frequency ratio is replaced by the ratios.
 
     Returns
     -------
@@ -278,8 +271,7 @@ def bifurcations(
     if kind == "period doubling":
         lift = lift + restitution.period_doubling_lift(r)
         test = Family.period_doubling
-    zeta = np.full_like(x, damping_ratio(r) if zeta is None else zeta)
-    return _walk(n, zeta, release, np.atleast_1d(ratios), at_bifurcation(test), x, lift)
+    return walk(Family(n, contact), np.atleast_1d(ratios), at_bifurcation(test), x, lift)
 
 
 @dataclass(frozen=True)

@@ -222,6 +222,15 @@ VARIABLES = {
 }
 
 
+def grid(limits: Mapping) -> np.ndarray:
+    """The values of a range of the configuration, at equal steps of their logarithm.
+
+    >>> grid({"min": 1.0, "max": 100.0, "samples": 3}).tolist()
+    [1.0, 10.0, 100.0]
+    """
+    return np.geomspace(limits["min"], limits["max"], limits["samples"])
+
+
 def save(
     dataset: xr.Dataset,
     path: str | Path,

@@ -5,6 +5,7 @@ it. The threshold of a tolerance is the frequency ratio ϖ from which on the err
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -71,7 +72,7 @@ def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
     if outside.size == 0:
         return Threshold(np.nan, "within")
     last = int(outside[-1])
-    if last + 1 == ratios.size or np.isnan(error.values[last]):
+    if last + 1 == ratios.size or np.isinf(error.values[last]):
         return Threshold(np.nan, "outside")
     place = brentq(
         lambda logarithm: error.between(np.exp(logarithm), last) - tolerance,
@@ -120,9 +121,10 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
             restitution.period_doubling(n, r),
         ),
     }
+    contact = Contact(ratios, damping_ratio(r), release)
     found = {}
     for name, (kind, test, reference) in kinds.items():
-        orbits = bifurcations(n, r, kind, ratios, release)[:, 0]
+        orbits = bifurcations(n, r, kind, ratios, contact)[:, 0]
         condition = at_bifurcation(test)
         found[name] = _along(
             n, r, ratios, release, orbits, condition, lambda family, y: y[0], reference
@@ -152,7 +154,9 @@ def _along(
         guess = orbits[:, i] + part * (orbits[:, i + 1] - orbits[:, i])
         return float(error(ratio, correct(family, guess, condition)))
 
-    return Error(error(ratios, orbits), between)
+    # Where there is no orbit, the restitution model is as wrong as can be.
+    values = error(ratios, orbits)
+    return Error(np.where(np.isnan(values), np.inf, values), between)
 
 
 def errors(
@@ -166,27 +170,30 @@ def errors(
     return {name: known[name] for name in quantities}
 
 
-def lowest_period_doubling(
-    n: int, r: float, ratios: NDArray, release: str
-) -> tuple[float, float]:
-    """The frequency ratio at which the period doubling of a family is lowest, and its amplitude.
+def lowest_period_doublings(
+    n: ArrayLike, r: float, ratios: NDArray, release: str
+) -> tuple[NDArray, NDArray]:
+    """The frequency ratio at which the period doubling of each family is lowest, and its amplitude.
 
     Both are NaN if it is lowest at an end of the ratios. The place of a minimum has half of the
     digits of its value.
     """
-    orbits = bifurcations(n, r, "period doubling", ratios, release)[:, 0]
-    lowest = int(np.nanargmin(orbits[0]))
-    if lowest in (0, ratios.size - 1):
-        return np.nan, np.nan
-    zeta = damping_ratio(r)
+    contact = Contact(ratios, damping_ratio(r), release)
+    orbits = bifurcations(n, r, "period doubling", ratios, contact)
+    turns = np.full(len(orbits[0]), np.nan)
+    amplitudes = np.full_like(turns, np.nan)
+    for k, lowest in enumerate(np.nanargmin(orbits[0], axis=1)):
+        if lowest in (0, ratios.size - 1):
+            continue
 
-    def amplitude(logarithm):
-        family = Family(n, Contact(np.exp(logarithm), zeta, release))
-        found = correct(family, orbits[:, lowest], at_bifurcation(Family.period_doubling))
-        return float(found[0])
+        def amplitude(logarithm, n=np.atleast_1d(n)[k], guess=orbits[:, k, lowest]):
+            family = Family(n, replace(contact, frequency_ratio=np.exp(logarithm)))
+            return float(correct(family, guess, at_bifurcation(Family.period_doubling))[0])
 
-    around = np.log(ratios[[lowest - 1, lowest + 1]])
-    found = minimize_scalar(
-        amplitude, bounds=tuple(around), method="bounded", options={"xatol": 1e-9}
-    )
-    return float(np.exp(found.x)), float(found.fun)
+        around = np.log(ratios[[lowest - 1, lowest + 1]])
+        found = minimize_scalar(
+            amplitude, bounds=tuple(around), method="bounded", options={"xatol": 1e-9}
+        )
+        turns[k] = np.exp(found.x)
+        amplitudes[k] = found.fun
+    return turns, amplitudes

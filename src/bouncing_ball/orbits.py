@@ -211,12 +211,11 @@ class Family:
         return np.stack([larger, determinant / larger])
 
     def motion(self, y: NDArray, s: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """Height and velocity of the ball at times s since the start of contact, and whether it is
-        in contact (Eqs. 12-15). The times are taken modulo the period.
+        """Height and velocity of the ball at times s since the start of contact, from 0 to the
+        period, and whether it is in contact (Eqs. 12-15).
         """
         x, lift, u = self.start(y)
         end = self.release(y)
-        s = np.mod(s, self.period)
         touching = s <= end.duration
         gap, gap_velocity, _ = self.contact.motion(np.minimum(s, end.duration), u, x, lift)
         since = s - end.duration

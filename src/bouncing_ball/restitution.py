@@ -204,7 +204,10 @@ def impact_map(
     derivative = np.array(
         [
             [by_time, by_velocity],
-            [r * (by_time - 1) - table_turn * by_time, r * (by_velocity - 1) - table_turn * by_velocity],
+            [
+                r * (by_time - 1) - table_turn * by_time,
+                r * (by_velocity - 1) - table_turn * by_velocity,
+            ],
         ]
     )
     return following, bounce, derivative

@@ -72,14 +72,14 @@ class Contact:
     release : str
         The condition that ends a contact: ``displacement`` for δ = 0 (Eq. 23), or ``force`` for a
         vanishing force of the contact, δ + (2ζ/ϖ) δ′ = 0.
-    weight : float
-        The weight in contact, 1 but for the reading of the paper without gravity in contact.
+    weight : array_like
+        The weight in contact, 1 but for the reading of Table 1 without gravity in contact.
     """
 
     frequency_ratio: ArrayLike
     damping_ratio: ArrayLike
     release: str = "displacement"
-    weight: float = 1.0
+    weight: ArrayLike = 1.0
 
     def __post_init__(self):
         if self.release not in RELEASES:

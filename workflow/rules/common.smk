@@ -15,7 +15,8 @@ os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, paths)))
 STAGES = {
     "restitution_model": ["fig02", "fig03", "three_balls"],
     "apparent_restitution": ["fig05", "fig06", "fig10", "fig13"],
-    "continuation": ["fig08", "fig09", "fig15", "table1", "lowest_doubling", "table1_readings"],
+    "continuation": ["fig08", "fig09", "fig15", "table1", "lowest_doubling"],
+    "table1_readings": ["table1_readings"],
     "permanent_contact": ["fig11", "fig16"],
     "error_thresholds": ["fig14", "thresholds"],
     "time_histories": ["fig07", "fig12"],
@@ -32,6 +33,7 @@ SETTINGS = {
     "restitution_model": [],
     "apparent_restitution": ["release"],
     "continuation": ["release", "largest_step"],
+    "table1_readings": [],
     "permanent_contact": ["release"],
     "error_thresholds": ["release"],
     "time_histories": ["release"],
@@ -39,18 +41,19 @@ SETTINGS = {
 
 # The modules of the package that each script imports, directly or by another module. A change of
 # one of them runs the script again. A test compares these lists with the imports.
-ORBITS = ["restitution", "spring_damper", "orbits", "continuation", "datasets"]
+ORBITS = ["restitution", "spring_damper", "orbits", "continuation"]
 MODULES = {
     "restitution_model": ["restitution", "datasets"],
-    "apparent_restitution": ORBITS,
-    "continuation": [*ORBITS, "errors"],
-    "permanent_contact": [*ORBITS, "errors"],
-    "error_thresholds": [*ORBITS, "errors"],
-    "time_histories": ORBITS,
+    "apparent_restitution": [*ORBITS, "datasets"],
+    "continuation": [*ORBITS, "errors", "datasets"],
+    "table1_readings": [*ORBITS, "errors", "datasets"],
+    "permanent_contact": [*ORBITS, "errors", "datasets"],
+    "error_thresholds": [*ORBITS, "errors", "datasets"],
+    "time_histories": [*ORBITS, "datasets"],
     "draw": ["drawing", "figures", "datasets"],
-    "tables": ["tables", "datasets"],
-    "claims": ["claims", "datasets"],
-    "article": ["article", "datasets"],
+    "tables": ["restitution", "spring_damper", "claims", "tables", "datasets"],
+    "claims": ["restitution", "spring_damper", "claims", "datasets"],
+    "article": ["restitution", "spring_damper", "claims", "article", "datasets"],
     "compare": ["compare", "datasets"],
     "accept": ["compare", "datasets"],
 }
@@ -101,12 +104,13 @@ def requested_files(wildcards):
 
 def description(name):
     """The parameters and the code from which a figure or table is made."""
-    stage = next((stage for stage in STAGES if name in STAGES[stage]), None)
-    parameters = {}
-    if stage:
-        settings = {key: config[key] for key in SETTINGS[stage]}
-        parameters = {**config[stage].get(name, {}), **settings}
-    return {"parameters": parameters, "code": code(stage or "draw")}
+    for stage, names in STAGES.items():
+        if name in names:
+            given = config.get(stage, {}).get(name, {})
+            settings = {key: config[key] for key in SETTINGS[stage]}
+            return {"parameters": {**given, **settings}, "code": code(stage)}
+    script = "draw" if name in SCHEMATICS else name
+    return {"parameters": {}, "code": code(script)}
 
 
 # Results must not be written over the reference, for example through a link.
@@ -121,3 +125,4 @@ for folder in (Path("results"), Path("results/figures")):
 
 wildcard_constraints:
     figure="|".join(FIGURES),
+    table="|".join(TABLES),

@@ -41,6 +41,7 @@ rule compute_apparent_restitution:
 rule compute_continuation:
     """Branches of n-T orbits along the amplitude, with their bifurcations"""
     input:
+        printed=checkout("config/table1_printed.csv"),
         code=code("continuation"),
     output:
         **datasets("continuation"),
@@ -56,6 +57,23 @@ rule compute_continuation:
         "../envs/environment.yaml"
     script:
         "../scripts/continuation.py"
+
+
+rule compute_table1_readings:
+    """Table 1 under hypotheses about what the authors may have computed"""
+    input:
+        printed=checkout("config/table1_printed.csv"),
+        code=code("table1_readings"),
+    output:
+        **datasets("table1_readings"),
+    log:
+        "results/logs/compute_table1_readings.log",
+    benchmark:
+        "results/benchmarks/compute_table1_readings.tsv"
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/table1_readings.py"
 
 
 rule compute_permanent_contact:

@@ -1,20 +1,16 @@
 # Tables, claims and the article are written from the datasets.
 
 
-rule tables:
-    """Table 1, the thresholds, and Table 1 under other readings, as text"""
+rule table:
+    """Writes Table 1, the thresholds, or Table 1 under other readings as text"""
     input:
-        data=expand("results/figures/{table}.nc", table=TABLES),
-        printed=checkout("config/table1_printed.csv"),
+        data="results/figures/{table}.nc",
         code=code("tables"),
     output:
-        md=expand("results/figures/{table}.md", table=TABLES),
-        csv=report(
-            expand("results/figures/{table}.csv", table=TABLES),
-            category="Tables",
-        ),
+        markdown="results/figures/{table}.md",
+        csv=report("results/figures/{table}.csv", category="Tables", labels={"table": "{table}"}),
     log:
-        "results/logs/tables.log",
+        "results/logs/{table}.log",
     conda:
         "../envs/environment.yaml"
     script:
@@ -30,7 +26,7 @@ rule claims:
     output:
         nc="results/figures/claims.nc",
         md="results/figures/claims.md",
-        csv=report("results/figures/claims.csv", category="Tables"),
+        csv=report("results/figures/claims.csv", category="Tables", labels={"table": "claims"}),
     log:
         "results/logs/claims.log",
     conda:

@@ -1,0 +1,98 @@
+"""Copies of the workflow, in which a script only writes its outputs: a whole run takes seconds."""
+
+import contextlib
+import io
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from snakemake import cli
+
+ROOT = Path(__file__).resolve().parents[1]
+STUB = """from pathlib import Path
+for file in snakemake.output:
+    Path(file).write_text("made by a stub")
+"""
+
+
+@dataclass(frozen=True)
+class Checkout:
+    """A copy of the workflow, with shortcuts to run and to change it."""
+
+    path: Path
+
+    def run(self, *arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess:
+        """Snakemake as a user calls it, by default in the copy."""
+        return subprocess.run(
+            [sys.executable, "-m", "snakemake", *arguments],
+            cwd=folder or self.path,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+
+    def plan(self, *arguments: str) -> str:
+        """What a dry run prints, or the line with which it is refused. It runs in this process."""
+        printed = io.StringIO()
+        variables = dict(os.environ)
+        with contextlib.chdir(self.path), contextlib.redirect_stdout(printed):
+            with contextlib.redirect_stderr(printed), pytest.raises(SystemExit) as ended:
+                cli.main(["--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments])
+        os.environ.clear()
+        os.environ.update(variables)
+        if isinstance(ended.value.code, str):
+            return ended.value.code
+        assert ended.value.code == 0, printed.getvalue()
+        return printed.getvalue()
+
+    def planned(self, *arguments: str) -> set[str]:
+        """The rules whose jobs a run would execute."""
+        jobs = re.findall(r"^(\w+) +\d+$", self.plan(*arguments), re.MULTILINE)
+        return {*jobs} - {"total"}
+
+    def append(self, file: str, line: str) -> None:
+        """Add a line to a file."""
+        with (self.path / file).open("a", encoding="utf-8") as opened:
+            opened.write(f"{line}\n")
+
+
+@pytest.fixture(scope="session")
+def stubs(tmp_path_factory) -> Checkout:
+    """The workflow with scripts that only write their outputs, not run yet."""
+    folder = tmp_path_factory.mktemp("stubs") / "checkout"
+    without = shutil.ignore_patterns("__pycache__")
+    for name in ("config", "profiles", "src", "workflow"):
+        shutil.copytree(ROOT / name, folder / name, ignore=without)
+    shutil.copyfile(ROOT / "Snakefile", folder / "Snakefile")
+    for script in (folder / "workflow/scripts").glob("*.py"):
+        script.write_text(STUB, encoding="utf-8")
+    return Checkout(folder)
+
+
+@pytest.fixture(scope="session")
+def complete(stubs, tmp_path_factory) -> Checkout:
+    """The same after a whole run. Tests may plan further runs here, and change nothing."""
+    folder = tmp_path_factory.mktemp("complete") / "checkout"
+    shutil.copytree(stubs.path, folder)
+    done = Checkout(folder).run("--cores", "2")
+    assert done.returncode == 0, done.stderr
+    return Checkout(folder)
+
+
+@pytest.fixture
+def fresh(stubs, tmp_path) -> Checkout:
+    """A copy for one test, not run yet."""
+    shutil.copytree(stubs.path, tmp_path / "checkout")
+    return Checkout(tmp_path / "checkout")
+
+
+@pytest.fixture
+def used(complete, tmp_path) -> Checkout:
+    """A copy for one test, after a whole run."""
+    shutil.copytree(complete.path, tmp_path / "checkout")
+    return Checkout(tmp_path / "checkout")

@@ -1,10 +1,12 @@
-"""The text of one table, as Markdown and as CSV."""
+"""The tables as texts, each as Markdown and as CSV."""
 
 from pathlib import Path
 
-from bouncing_ball import datasets, tables
+from bouncing_ball.datasets import read
+from bouncing_ball.tables import TABLES, comma_separated, markdown
 
-rows = tables.TABLES[snakemake.wildcards.table](datasets.read(snakemake.input.data))  # noqa: F821
-texts = {"markdown": tables.markdown(rows), "csv": tables.comma_separated(rows)}
-for name, text in texts.items():
-    Path(snakemake.output[name]).write_text(text, encoding="utf-8", newline="\n")  # noqa: F821
+files = zip(snakemake.input.data, snakemake.output.md, snakemake.output.csv, strict=True)
+for path, *outputs in files:
+    rows = TABLES[Path(path).stem](read(path))
+    for output, text in zip(outputs, (markdown(rows), comma_separated(rows)), strict=True):
+        Path(output).write_text(text, encoding="utf-8", newline="\n")

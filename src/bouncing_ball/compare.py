@@ -1,0 +1,949 @@
+"""The comparison of results with the reference, and how results become the reference.
+
+The reference is kept in git: the folder `figures` with datasets, pictures and tables, and the texts
+`paper.md` and `supplement.md`. A run writes the same files into a folder of its own, `results`.
+Three comparisons are made:
+
+1. Each dataset of the results with that of the reference: names, dimensions, types, attributes,
+   texts and places of NaN exactly, numbers within the tolerance that the reference declares beside
+   the variable (`datasets` says what it means). A result that records other parameters than those
+   of the configuration, or other code than today's, is stale, whatever else it says. Commit, code
+   and versions of the reference are shown and not judged.
+2. Pictures, tables and texts are functions of datasets. Today's code makes them again from the
+   datasets of the *reference*, and they must equal the files of the reference: texts exactly, SVG
+   byte for byte but for its description, PNG pixel for pixel. The datasets being the same, there
+   is no rounding to forgive.
+3. Made from the datasets of the *results*, they must equal the files of the results in the same
+   way. Otherwise a picture is older than its dataset, or was edited.
+
+Another version of matplotlib places texts, and with them everything else, a little differently.
+Then SVG files are compared by what they draw: strokes, fills, words and curves. PNG files are not
+compared, and the report says so.
+"""
+
+import base64
+import difflib
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise, zip_longest
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import jinja2
+import matplotlib
+import netCDF4
+import numpy as np
+import xarray as xr
+from PIL import Image, ImageChops
+
+from bouncing_ball import article, claims, datasets, drawing, figures, tables
+
+Datasets = Mapping[str, xr.Dataset]
+"""Datasets by the names of their artifacts."""
+
+
+# Files, and the datasets that they follow from
+
+
+@dataclass(frozen=True)
+class Product:
+    """Files that follow from the datasets `needs`; `make` writes them into a folder."""
+
+    files: tuple[str, ...]
+    needs: tuple[str, ...]
+    make: Callable[[Datasets, Path], None]
+
+    @property
+    def artifact(self) -> str:
+        """The name of the figure, table or text."""
+        return Path(self.files[0]).stem
+
+
+def picture(name: str, *needs: str) -> Product:
+    """A figure, drawn from its dataset as PNG and as SVG."""
+    files = (f"figures/{name}.png", f"figures/{name}.svg")
+
+    def make(data: Datasets, folder: Path) -> None:
+        figure = figures.draw(name, *(data[need] for need in needs))
+        png, svg = (folder / file for file in files)
+        drawing.save_picture(figure, png, svg, datasets.commit())
+
+    return Product(files, needs, make)
+
+
+def text(file: str, needs: tuple[str, ...], write: Callable[[Datasets], str]) -> Product:
+    """A file of text."""
+
+    def make(data: Datasets, folder: Path) -> None:
+        (folder / file).write_text(write(data), encoding="utf-8", newline="\n")
+
+    return Product((file,), needs, make)
+
+
+def judge(data: Datasets, folder: Path) -> None:
+    """Write the verdicts on the claims, with what the dataset of claims records of itself."""
+    verdicts = claims.judge({name: data[name] for name in STUDIES}, claims.printed_table(PRINTED))
+    kept = data["claims"]
+    path = folder / "figures" / "claims.nc"
+    datasets.save(verdicts, path, kept.attrs["title"], record(kept, "parameters"), code=[])
+
+
+def table(name: str, rows: Callable[[xr.Dataset], list[list[str]]]) -> list[Product]:
+    """A table of a dataset as Markdown and as CSV."""
+    return [
+        text(f"figures/{name}.md", (name,), lambda data: tables.markdown(rows(data[name]))),
+        text(f"figures/{name}.csv", (name,), lambda data: tables.comma_separated(rows(data[name]))),
+    ]
+
+
+PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
+FIGURES = [f"fig{number:02}" for number in range(1, 17)]
+SCHEMATICS = ["fig01", "fig04"]
+STUDIES = [name for name in FIGURES if name not in SCHEMATICS]
+STUDIES += ["table1", "thresholds", "three_balls", "lowest_doubling", "table1_readings"]
+ALL = (*STUDIES, "claims")
+"""All datasets. The claims follow from the others, which are computed from the model."""
+
+PRODUCTS = [
+    *(picture(name) for name in SCHEMATICS),
+    *(picture(name, name) for name in FIGURES if name not in SCHEMATICS),
+    *(product for name, rows in tables.TABLES.items() for product in table(name, rows)),
+    Product(("figures/claims.nc",), ALL, judge),
+    text("paper.md", ALL, article.paper),
+    text("supplement.md", ALL, article.supplement),
+    text("figures/README.md", ALL, article.figure_list),
+]
+"""All files that follow from datasets, and how."""
+
+
+# Differences
+
+KINDS = {
+    "stale": "Results of other parameters or of other code",
+    "file": "Files that are missing, unexpected or unreadable",
+    "verdict": "Verdicts that changed",
+    "number": "Numbers beyond their tolerance",
+    "content": "Names, types, texts and attributes of variables",
+    "text": "Texts",
+    "picture": "Pictures",
+}
+"""Kinds of differences with their headings on the page, the most telling first."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A difference in a line; within a kind, a smaller `order` tells more."""
+
+    kind: str
+    text: str
+    order: tuple[float, ...] = (0.0,)
+    lines: str = ""
+    images: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A difference of an artifact, with the cause that the parameters or git know.
+
+    `of_results` tells that the result is wrong in itself, whatever the reference is.
+    """
+
+    artifact: str
+    difference: Difference
+    cause: str
+    of_results: bool = False
+
+    @property
+    def order(self) -> tuple:
+        """What findings are sorted by."""
+        kind = list(KINDS).index(self.difference.kind)
+        return kind, self.difference.order, self.artifact
+
+    @property
+    def line(self) -> str:
+        """The finding in a sentence."""
+        return f"{self.artifact}: {self.difference.text}{'; ' if self.cause else ''}{self.cause}"
+
+
+# Datasets
+
+PROVENANCE = ("commit", "code", "versions")
+"""Attributes of the reference that are shown and not judged."""
+
+STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value", "_Unsigned")
+"""How a file packs a variable; other encodings, such as compression, do not change values."""
+
+
+def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference]:
+    """Differences of a dataset from the reference `old`, whose tolerances apply."""
+    added = [str(name) for name in new.variables if name not in old.variables]
+    for name in old.variables:
+        if name in new.variables:
+            yield from variable_differences(str(name), new, old)
+        else:
+            twins = [other for other in added if new[other].variable.equals(old[name].variable)]
+            renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
+            yield Difference("content", f"{name} is missing{renamed}")
+    for name in added:
+        yield Difference("content", f"{name} is not in the reference")
+    for change in changes(record(old, "parameters"), record(new, "parameters")):
+        yield Difference("content", f"parameter {change}", (1.0,))
+    judged = [
+        {key: value for key, value in data.attrs.items() if key not in (*PROVENANCE, "parameters")}
+        for data in (new, old)
+    ]
+    yield from attribute_differences("the dataset", *judged)
+
+
+def variable_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference]:
+    """Differences of one variable in attributes, form and values."""
+    yield from attribute_differences(name, new[name].attrs, old[name].attrs)
+    forms = form(name, new), form(name, old)
+    for what, found in forms[0].items():
+        if found != forms[1][what]:
+            text = f"{name} has {what} {found}, in the reference {forms[1][what]}"
+            yield Difference("content", text)
+    if all(forms[0][what] == forms[1][what] for what in ("dimensions", "type")):
+        yield from value_differences(name, new, old)
+
+
+def form(name: str, data: xr.Dataset) -> dict[str, str]:
+    """What a variable is apart from its values: dimensions, type, role and storage."""
+    variable = data[name]
+    text = variable.dtype.kind in "UO"
+    packed = {key: str(variable.encoding[key]) for key in STORAGE if key in variable.encoding}
+    return {
+        "dimensions": str(dict(variable.sizes)),
+        "type": "text" if text else str(variable.dtype),
+        "role": "coordinate" if name in data.coords else "variable",
+        # The storage of a text names its length.
+        "storage": "" if text else str(packed),
+    }
+
+
+def attribute_differences(where: str, new: Mapping, old: Mapping) -> Iterator[Difference]:
+    """Attributes that are absent on one side, or have another value or type."""
+    for key in sorted({*new, *old}):
+        found, expected = (repr(attributes.get(key, "absent")) for attributes in (new, old))
+        if found != expected:
+            text = f"attribute {key} of {where} is {found}, in the reference {expected}"
+            yield Difference("content", text, (2.0,))
+
+
+def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference]:
+    """The place where a variable is furthest from the reference, if beyond the tolerance."""
+    x = new[name].values
+    y = old[name].values
+    numbers = y.dtype.kind == "f"
+    allowed = tolerance(name, old)
+    multiple = multiples(x, y, allowed) if numbers else np.where(x != y, np.inf, 0.0)
+    count = np.count_nonzero(multiple > 1)
+    if count == 0:
+        return
+    worst = np.unravel_index(np.argmax(multiple), y.shape)
+    places = [
+        f"{dim} = {old[dim].values[index] if dim in old.coords else index}"
+        for dim, index in zip(old[name].dims, worst, strict=True)
+    ]
+    found, expected = legible(x[worst], y[worst])
+    text = f"{name} is {found}, the reference has {expected}"
+    if places:
+        text += f" at {', '.join(places)}"
+    if np.isfinite(multiple[worst]):
+        text += f" (tolerance {allowed[worst]:.1e}, exceeded {multiple[worst]:.2g} times)"
+    if count > 1:
+        text += f", and {count - 1} more of {y.size} values"
+    kind = "verdict" if name == "verdict" else "number" if numbers else "content"
+    yield Difference(kind, text, (y.size, -multiple[worst]))
+
+
+def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
+    """The differences allowed from the numbers of a variable; zero if none is declared."""
+    attributes = old[name].attrs
+    if "tolerance_scale" in attributes:
+        scale = abs(old[attributes["tolerance_scale"]].values)
+    elif "tolerance" in attributes:
+        scale = np.maximum(abs(old[name].values), attributes["floor"])
+    else:
+        scale = np.zeros(old[name].shape)
+    return attributes.get("tolerance", 0.0) * scale
+
+
+def multiples(x: np.ndarray, y: np.ndarray, allowed: np.ndarray) -> np.ndarray:
+    """|x - y| over what is allowed; infinite where one is NaN or infinite and the other is not."""
+    equal = (x == y) | (np.isnan(x) & np.isnan(y))
+    with np.errstate(all="ignore"):
+        ratio = abs(x - y) / allowed
+    return np.where(equal, 0.0, np.where(np.isnan(ratio), np.inf, ratio))
+
+
+def legible(found: Any, expected: Any) -> tuple[str, str]:
+    """Two values in as few digits as tell them apart, but at least four."""
+    if isinstance(found, float):
+        for digits in range(4, 18):
+            texts = f"{found:.{digits}g}", f"{expected:.{digits}g}"
+            if texts[0] != texts[1]:
+                return texts
+    return shortened(found), shortened(expected)
+
+
+def shortened(value: Any) -> str:
+    """A value in at most 80 characters."""
+    text = repr(value.item() if isinstance(value, np.generic) else value)
+    return text if len(text) <= 80 else f"{text[:77]}…{text[-1]}"
+
+
+def record(data: xr.Dataset, key: str) -> dict:
+    """The parameters or versions that a dataset records; none if the record cannot be read."""
+    try:
+        return dict(json.loads(data.attrs[key]))
+    except (KeyError, ValueError, TypeError):
+        return {}
+
+
+def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
+    """Changed parameters, as "frequency_ratio.max 1000.0 -> 500.0"."""
+    found = []
+    for key in sorted({*old, *new}):
+        values = old.get(key, "absent"), new.get(key, "absent")
+        if all(isinstance(value, Mapping) for value in values):
+            found += changes(*values, f"{above}{key}.")
+        elif values[0] != values[1]:
+            found.append(f"{above}{key} {values[0]} -> {values[1]}")
+    return found
+
+
+def same_bits(first: xr.Dataset, second: xr.Dataset) -> bool:
+    """Whether two datasets differ in nothing but their provenance; -0.0 differs from 0.0."""
+    provenance = {key: first.attrs[key] for key in PROVENANCE if key in first.attrs}
+    return first.identical(second.assign_attrs(provenance)) and all(
+        variable.values.tobytes() == second[name].values.tobytes()
+        for name, variable in first.variables.items()
+        if variable.dtype.kind == "f"
+    )
+
+
+# Texts and pictures
+
+DESCRIPTION = re.compile(r"<dc:description>[^<]*</dc:description>")
+"""The provenance in an SVG; without "<" it can contain nothing that is drawn."""
+
+
+def file_difference(made: Path, path: Path, loosely: bool) -> Difference | None:
+    """How a file differs from what its datasets give; pictures of another matplotlib `loosely`."""
+    try:
+        return known_difference(made, path, loosely)
+    except Exception as error:  # Whatever readers of damaged files raise.
+        return Difference("file", f"it cannot be read: {error!r}")
+
+
+def known_difference(made: Path, path: Path, loosely: bool) -> Difference | None:
+    """As `file_difference`, of files that can be read."""
+    if path.suffix == ".nc":
+        return next(dataset_differences(datasets.read(path), datasets.read(made)), None)
+    if path.suffix == ".png":
+        return None if loosely else png_difference(made, path)
+    new, old = (file.read_text(encoding="utf-8", errors="replace") for file in (made, path))
+    if path.suffix == ".svg":
+        new, old = (DESCRIPTION.sub("", text, count=1) for text in (new, old))
+        if new == old:
+            return None
+        return outline_difference(new, old) if loosely else svg_difference(new, old)
+    if new == old:
+        return None
+    lines = [text.splitlines() for text in (old, new)]
+    unified = list(difflib.unified_diff(*lines, "reference", "now", lineterm="", n=1))
+    changed = [line for line in unified[2:] if line[0] in "-+"] or ["ends of lines"]
+    return Difference("text", shortened(changed[0]), lines="\n".join(unified))
+
+
+def svg_difference(new: str, old: str) -> Difference:
+    """The first lines at which two SVG files differ."""
+    pairs = zip_longest(new.splitlines(), old.splitlines(), fillvalue="")
+    number, (found, expected) = next(
+        ((number, pair) for number, pair in enumerate(pairs, 1) if pair[0] != pair[1]),
+        (0, ("", "")),
+    )
+    text = f"line {number} is {shortened(found.strip())}, expected {shortened(expected.strip())}"
+    return Difference("picture", text, (1.0,))
+
+
+def png_difference(made: Path, path: Path) -> Difference | None:
+    """How two PNG files differ in chunks or pixels, with an image of the difference."""
+    chunks = [png_chunks(file.read_bytes()) for file in (made, path)]
+    with Image.open(made) as ours, Image.open(path) as theirs:
+        pixels = [np.asarray(image) for image in (ours, theirs)]
+    if pixels[0].shape != pixels[1].shape:
+        return Difference("picture", f"its size is {pixels[1].shape}, expected {pixels[0].shape}")
+    count = np.count_nonzero(np.any(pixels[0] != pixels[1], axis=-1))
+    if count:
+        images = [Image.fromarray(values).convert("RGB") for values in pixels]
+        marked = ImageChops.difference(*images).convert("L").point(lambda value: 255 * (value == 0))
+        uris = tuple(data_uri(image) for image in (images[1], images[0], marked))
+        return Difference("picture", f"{count} pixels differ", images=uris)
+    if chunks[0] != chunks[1]:
+        kinds = [" ".join(kind for kind, _ in each) for each in chunks]
+        return Difference("picture", f"its chunks are {kinds[1]}, expected {kinds[0]}")
+    return None
+
+
+def png_chunks(data: bytes) -> list[tuple[str, bytes]]:
+    """Chunks of a PNG file, without its provenance and without its compressed pixels."""
+    chunks = []
+    start = 8
+    while start < len(data):
+        length = int.from_bytes(data[start : start + 4], "big")
+        kind = data[start + 4 : start + 8].decode("latin-1")
+        content = data[start + 8 : start + 8 + length]
+        start += 12 + length
+        if not content.startswith(b"Description\0"):
+            chunks.append((kind, b"" if kind == "IDAT" else content))
+    return [chunk for chunk, following in pairwise([*chunks, None]) if chunk != following]
+
+
+def data_uri(image: Image.Image) -> str:
+    """An image for a page that needs no other file."""
+    file = io.BytesIO()
+    image.save(file, "PNG")
+    return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
+
+
+# Pictures of another matplotlib
+
+SVG = "{http://www.w3.org/2000/svg}"
+HREF = "{http://www.w3.org/1999/xlink}href"
+NUMBER = re.compile(r"-?\d[\d.]*(?:e[-+]?\d+)?")
+PLACES = {"id", "d", "x", "y", "width", "height", "viewBox", "clip-path", "style", HREF}
+"""Attributes of SVG elements that do not belong to the look, or that are read apart."""
+
+CURVE_TOLERANCE = 1.0
+"""How far something may be off within its axes, in points: about the width of a line."""
+
+LAYOUT_TOLERANCE = 8.0
+"""How far axes, labels and legends may be off, in points: the size of a letter."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Something drawn: its look, the box of its axes or of the picture, and segments within it.
+
+    The box is left, top, width and height in points. Segments, of shape (number, 2, 2), are in
+    units of the box: (0, 0) is its left upper corner and (1, 1) its right lower one.
+    """
+
+    look: dict[str, str]
+    box: np.ndarray
+    segments: np.ndarray
+
+    def __str__(self) -> str:
+        return ", ".join(f"{key}: {value}" for key, value in self.look.items())
+
+
+def outline_difference(new: str, old: str) -> Difference | None:
+    """How two SVG files of different versions of matplotlib differ in what they draw.
+
+    What they draw has the same look in the same order, and is at the same place but for the
+    tolerances above.
+    """
+    ours, theirs = (
+        ElementTree.fromstring(
+            svg, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+        )
+        for svg in (new, old)
+    )
+    strange = sorted(vocabulary(theirs) ^ vocabulary(ours))
+    if strange:
+        return Difference("picture", f"one has an element {' '.join(strange[0])}", (1.0,))
+    for expected, found in zip_longest(drawn(ours), drawn(theirs)):
+        if found is None or expected is None or found.look != expected.look:
+            return Difference("picture", f"it draws [{found}], expected [{expected}]", (1.0,))
+        allowed = CURVE_TOLERANCE if "clipped" in found.look else LAYOUT_TOLERANCE
+        size = expected.box[2:]
+        if (
+            np.any(abs(found.box - expected.box) > LAYOUT_TOLERANCE)
+            or distance(found.segments * size, expected.segments * size) > allowed
+        ):
+            return Difference("picture", f"[{found}] is drawn elsewhere", (1.0,))
+    return None
+
+
+def vocabulary(root: ElementTree.Element) -> set[tuple[str, str]]:
+    """Kinds of elements, each with the names of its attributes and with its words."""
+    elements = [element for element in root.iter() if str(element.tag).startswith(SVG)]
+    attributes = {(element.tag, key) for element in elements for key in ["", *element.attrib]}
+    return attributes | {(element.tag, (element.text or "").strip()) for element in elements}
+
+
+def drawn(root: ElementTree.Element) -> Iterator[Shape]:
+    """All that an SVG draws, in order."""
+    named = {element.get("id"): element for element in root.iter()}
+    picture = np.array(root.get("viewBox").split(), float)
+    return shapes(root, named, {}, picture)
+
+
+def shapes(
+    element: ElementTree.Element,
+    named: Mapping[str, ElementTree.Element],
+    look: dict[str, str],
+    box: np.ndarray,
+) -> Iterator[Shape]:
+    """What an element and its children draw; of a text its words, and the place of the first."""
+    if element.tag in (SVG + "defs", SVG + "metadata", ElementTree.Comment):
+        return
+    look = look | look_of(element)
+    if "clip-path" in element.attrib:
+        clip = named[element.attrib["clip-path"][len("url(#") : -1]][0]
+        look["clipped"] = clip.tag
+        box = np.array([clip.get(key, "nan") for key in ("x", "y", "width", "height")], float)
+    if element.tag == SVG + "path":
+        yield Shape(look, box, (segments(element) - box[:2]) / box[2:])
+    if element.tag == SVG + "use":
+        path = named[element.attrib[HREF][1:]]
+        place = np.array([element.get("x", "0"), element.get("y", "0")], float)
+        yield Shape(look_of(path) | look, box, (segments(path) + place - box[:2]) / box[2:])
+    words = ""
+    for child in element:
+        if child.tag is ElementTree.Comment:
+            words = (child.text or "").strip()
+        elif words and "transform" in child.attrib:
+            letters = words if child.find(SVG + "use") is not None else "nothing"
+            place = np.array(NUMBER.findall(child.attrib["transform"])[:2], float)
+            text = look | look_of(child) | {"text": letters}
+            yield Shape(text, box, np.array([[place, place]] - box[:2]) / box[2:])
+        else:
+            yield from shapes(child, named, look, box)
+
+
+def look_of(element: ElementTree.Element) -> dict[str, str]:
+    """How an element is drawn, by its attributes and its style, without places."""
+    look = {key: value for key, value in element.attrib.items() if key not in PLACES}
+    if "transform" in look:
+        look["transform"] = re.sub(r"translate\([^)]*\)", "translate", look["transform"])
+    entries = (entry.split(":", 1) for entry in element.get("style", "").split(";") if entry)
+    return look | {key.strip(): value.strip() for key, value in entries}
+
+
+def segments(path: ElementTree.Element) -> np.ndarray:
+    """The segments of a path, of shape (number, 2, 2); of curves those between control points."""
+    parts = [np.empty((0, 2, 2))]
+    for piece in path.attrib["d"].split("M")[1:]:
+        points = np.array(NUMBER.findall(piece), float).reshape(-1, 2)
+        parts.append(np.stack([points[:-1], points[1:]], axis=1))
+    return np.concatenate(parts)
+
+
+def distance(first: np.ndarray, second: np.ndarray) -> float:
+    """The largest distance of a point of one set of segments from the other set (Hausdorff).
+
+    Points are the ends of segments and three between them.
+    """
+    if len(first) == 0 or len(second) == 0:
+        return 0.0 if len(first) == len(second) else np.inf
+    return max(farthest(first, second), farthest(second, first))
+
+
+def farthest(first: np.ndarray, second: np.ndarray) -> float:
+    """The largest distance of a point of the first segments from the second."""
+    along = np.linspace(0, 1, 5)[:, None, None]
+    points = (first[:, 0] + along * (first[:, 1] - first[:, 0])).reshape(-1, 1, 2)
+    start = second[:, 0]
+    step = second[:, 1] - start
+    length = np.maximum(np.sum(step**2, axis=-1), np.finfo(float).tiny)
+    nearest = np.clip(np.sum((points - start) * step, axis=-1) / length, 0, 1)
+    gaps = points - start - nearest[..., None] * step
+    return float(np.max(np.min(np.sqrt(np.sum(gaps**2, axis=-1)), axis=1)))
+
+
+# Causes
+
+
+def cause(files: Collection[str | Path], commit: str) -> str:
+    """The changed files, as far as git knows, among those that a result is made from.
+
+    First what is not committed, then what this branch changed against the main one; only if there
+    is none of these, what changed since `commit`, that of the reference.
+    """
+    paths = [str(Path(file).resolve()) for file in files]
+    folder = Path(paths[0]).parent if paths else Path.cwd()
+    if not paths or git(folder, "rev-parse", "HEAD") is None:
+        return "causes are unknown: there is no git"
+    edited = changed_files(folder, paths, "HEAD") or []
+    created = git(folder, "ls-files", "--others", "--full-name", "--", *paths) or ""
+    uncommitted = sorted({*edited, *created.splitlines()})
+    changed = [f"{name} (not committed)" for name in uncommitted]
+    main = "origin/main" if git(folder, "rev-parse", "--verify", "origin/main") else "main"
+    fork = git(folder, "merge-base", "HEAD", main)
+    branch = changed_files(folder, paths, fork, "HEAD") if fork else None
+    changed += [f"{name} (on this branch)" for name in branch or [] if name not in uncommitted]
+    if changed:
+        return f"changed: {', '.join(changed)}"
+    since = changed_files(folder, paths, commit[:40], "HEAD")
+    if since is None:
+        return "causes are unknown: git does not know the commit of the reference"
+    if since:
+        return f"also changed since the reference was made: {', '.join(since)}"
+    return "no file that it is made from has changed"
+
+
+def changed_files(folder: Path, paths: list[str], *commits: str) -> list[str] | None:
+    """Files that differ between two commits, or one and the checkout; none if git fails."""
+    revisions = [*commits, "--", *paths]
+    names = git(folder, "diff", "--name-only", *revisions)
+    return None if names is None else names.splitlines()
+
+
+def git(folder: Path, *arguments: str) -> str | None:
+    """The answer of git in a folder; none if there is no git or it refuses."""
+    command = ["git", "-C", str(folder), "-c", "core.quotePath=off", *arguments]
+    environment = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}
+    try:
+        answer = subprocess.run(
+            command, capture_output=True, check=False, encoding="utf-8", env=environment
+        )
+    except OSError:
+        return None
+    return answer.stdout.strip() if answer.returncode == 0 else None
+
+
+# The comparison
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was found, the most telling first, and what else a reader should know.
+
+    `consequences` are files of the results that differ from those of the reference because their
+    datasets do; they are shown and not counted. `provenance` has a line for each dataset of the
+    reference, and `notes` say what was not compared.
+    """
+
+    findings: list[Finding]
+    consequences: list[Finding]
+    provenance: list[str]
+    notes: list[str]
+    files: int
+
+    @property
+    def lines(self) -> list[str]:
+        """The report on a terminal: the most telling finding of each artifact, then the verdict."""
+        first = {finding.artifact: finding for finding in reversed(self.findings)}
+        told = sorted(first.values(), key=lambda finding: finding.order)
+        verdict = f"All {self.files} files agree with the reference."
+        if told:
+            verdict = f"{len(self.findings)} differences, in {', '.join(sorted(first))}."
+        return [*(finding.line for finding in told), " ".join([verdict, *self.notes])]
+
+
+@dataclass(frozen=True)
+class Side:
+    """The folder of the results or of the reference, with the datasets that could be read."""
+
+    name: str
+    folder: Path
+    data: dict[str, xr.Dataset]
+
+    def other_matplotlib(self) -> set[str]:
+        """Versions of matplotlib that made this side, and are not that of today."""
+        found = {record(data, "versions").get("matplotlib") for data in self.data.values()}
+        return {str(version) for version in found - {matplotlib.__version__}}
+
+
+def compare(
+    results: str | Path,
+    reference: str | Path,
+    artifacts: Mapping[str, Mapping],
+    names: Collection[str] = (),
+) -> Report:
+    """Compare the results in a folder with the reference: all, or those with the names given.
+
+    `artifacts` has for each name the "parameters" of the configuration, the files of "code" that
+    compute the dataset, and the files of "drawing" code and templates that make pictures and texts
+    from it; "settings" are parameters that count where a result records them. Without parameters
+    and code it is unknown whether a result is stale, and why it differs. Raises
+    ValueError if the results are the reference itself.
+    """
+    compared, products = chosen(names)
+    files = [f"figures/{name}.nc" for name in compared]
+    files += [file for product in products for file in product.files if file not in files]
+    folders = Path(results), Path(reference)
+    refuse_links(*folders, files)
+    needed = [name for name in ALL if any(name in product.needs for product in products)]
+    new, old = (
+        Side(name, folder, load(folder, [*compared, *needed] or STUDIES))
+        for name, folder in zip(("results", "reference"), folders, strict=True)
+    )
+    whole = len(products) == len(PRODUCTS)
+    findings = [*file_findings(new, files, whole), *file_findings(old, files, whole)]
+    for name in compared:
+        if name in new.data and name in old.data:
+            artifact = artifacts.get(name, {})
+            findings += dataset_findings(name, new.data[name], old.data[name], artifact)
+    with tempfile.TemporaryDirectory() as scratch:
+        for side in (new, old):
+            (Path(scratch) / side.name / "figures").mkdir(parents=True)
+        for product in products:
+            artifact = artifacts.get(product.artifact, {})
+            findings += product_findings(product, new, old, Path(scratch), artifact)
+    findings.sort(key=lambda finding: finding.order)
+    red = {finding.artifact for finding in findings}
+    return Report(
+        findings,
+        [
+            finding
+            for product in products
+            if red.intersection(product.needs)
+            for finding in consequences(product, new, old)
+        ],
+        [provenance(name, old.data[name]) for name in compared if name in old.data],
+        notes(new, old, artifacts),
+        len(files),
+    )
+
+
+def chosen(names: Collection[str]) -> tuple[list[str], list[Product]]:
+    """The datasets and products to compare: those named, and those that need no other datasets."""
+    if not names:
+        return list(ALL), PRODUCTS
+    products = [
+        product
+        for product in PRODUCTS
+        if product.artifact in names or (product.needs and set(product.needs) <= set(names))
+    ]
+    return [name for name in ALL if name in names], products
+
+
+def refuse_links(results: Path, reference: Path, files: Collection[str]) -> None:
+    """Refuse results that are the reference, or lie in it, also by links."""
+    inside = results.resolve().is_relative_to((reference / "figures").resolve())
+    pairs = [(results / file, reference / file) for file in ["", "figures", *files]]
+    same = [
+        pair for pair in pairs if all(path.exists() for path in pair) and pair[0].samefile(pair[1])
+    ]
+    if inside or same:
+        path = same[0][0] if same else results
+        raise ValueError(f"{path} is a part of the reference: results must be files of their own")
+
+
+def load(folder: Path, names: Collection[str]) -> dict[str, xr.Dataset]:
+    """The datasets of a folder that can be read, without groups that nobody sees."""
+    data = {}
+    for name in dict.fromkeys(names):
+        path = folder / "figures" / f"{name}.nc"
+        try:
+            with netCDF4.Dataset(path) as file:
+                hidden = list(file.groups)
+            if not hidden:
+                data[name] = datasets.read(path)
+        except (OSError, ValueError):
+            continue
+    return data
+
+
+def file_findings(side: Side, files: Collection[str], whole: bool) -> Iterator[Finding]:
+    """Files of one side that are missing, unreadable or, in a `whole` comparison, unexpected."""
+    folder = side.folder / "figures"
+    present = sorted(folder.iterdir()) if whole and folder.is_dir() else []
+    texts = {
+        file: f"figures/{path.name} of the {side.name} is made by no rule"
+        for path in present
+        if (file := f"figures/{path.name}") not in files and not path.name.startswith(".")
+    }
+    for file in files:
+        if not (side.folder / file).is_file():
+            texts[file] = f"{file} is missing in the {side.name}"
+        elif file.endswith(".nc") and Path(file).stem not in side.data:
+            texts[file] = f"{file} of the {side.name} cannot be read, or has groups"
+    for file, words in texts.items():
+        yield Finding(Path(file).stem, Difference("file", words), "", side.name == "results")
+
+
+def dataset_findings(
+    name: str, new: xr.Dataset, old: xr.Dataset, artifact: Mapping
+) -> Iterator[Finding]:
+    """Whether a dataset is stale, and where it differs from the reference, with the cause."""
+    for words in staleness(new, artifact):
+        yield Finding(name, Difference("stale", words), "", of_results=True)
+    differences = list(dataset_differences(new, old))
+    if differences:
+        changed = "; ".join(changes(record(old, "parameters"), record(new, "parameters")))
+        commit = str(old.attrs.get("commit"))
+        why = (
+            f"changed parameter: {changed}" if changed else cause(artifact.get("code", ()), commit)
+        )
+        yield from (Finding(name, difference, why) for difference in differences)
+
+
+def staleness(new: xr.Dataset, artifact: Mapping) -> Iterator[str]:
+    """Why a result is not that of today's configuration and code."""
+    if "parameters" in artifact:
+        recorded = record(new, "parameters")
+        settings = {
+            key: value for key, value in artifact.get("settings", {}).items() if key in recorded
+        }
+        wanted = datasets.plain({**artifact["parameters"], **settings})
+        changed = changes(recorded, wanted)
+        if changed:
+            yield f"stale: the configuration is another than it was made with: {'; '.join(changed)}"
+    if "code" in artifact and new.attrs.get("code") != datasets.digest(artifact["code"]):
+        yield "stale: it was made by other code than today's"
+
+
+def product_findings(
+    product: Product, new: Side, old: Side, scratch: Path, artifact: Mapping
+) -> Iterator[Finding]:
+    """Files of both sides that are not what today's code makes of the datasets of that side."""
+    code = artifact.get("drawing", artifact.get("code", ()))
+    commit = next((str(data.attrs.get("commit")) for data in old.data.values()), "unknown")
+    for side in (old, new):
+        made = scratch / side.name
+        if any(need not in side.data for need in product.needs):
+            continue
+        if side is new and all(
+            need in old.data and same_bits(new.data[need], old.data[need]) for need in product.needs
+        ):
+            made = scratch / old.name
+        else:
+            try:
+                product.make(side.data, made)
+            except Exception as error:  # Whatever a drawing does not find in an older dataset.
+                words = f"today's code cannot make it of the dataset in the {side.name}: {error!r}"
+                yield Finding(product.artifact, Difference("file", words), "", side is new)
+                return
+        loosely = bool(side.other_matplotlib())
+        for file in product.files:
+            path = side.folder / file
+            difference = file_difference(made / file, path, loosely) if path.is_file() else None
+            if difference:
+                words = (
+                    f"{file} in the {side.name} is not what its dataset gives: {difference.text}"
+                )
+                why = "" if side is new else cause(code, commit)
+                yield Finding(product.artifact, replace(difference, text=words), why, side is new)
+
+
+def consequences(product: Product, new: Side, old: Side) -> Iterator[Finding]:
+    """Texts and PNG files in the results that differ from those in the reference."""
+    for file in product.files:
+        paths = new.folder / file, old.folder / file
+        if not file.endswith(".svg") and all(path.is_file() for path in paths):
+            difference = file_difference(*paths, loosely=False)
+            if difference:
+                yield Finding(product.artifact, difference, "")
+
+
+def provenance(name: str, old: xr.Dataset) -> str:
+    """What a dataset of the reference records of its making."""
+    versions = ", ".join(f"{key} {value}" for key, value in record(old, "versions").items())
+    commit, code = (old.attrs.get(key, "unknown") for key in ("commit", "code"))
+    return f"{name}: commit {commit}, code {code[:12]}, {versions}"
+
+
+def notes(new: Side, old: Side, artifacts: Mapping[str, Mapping]) -> list[str]:
+    """What was not compared."""
+    found = []
+    other = sorted(new.other_matplotlib() | old.other_matplotlib())
+    if other:
+        found.append(
+            f"Pictures of matplotlib {', '.join(other)} were compared with those of "
+            f"{matplotlib.__version__} by strokes, fills, words and curves, and not by pixels."
+        )
+    known = [{"parameters", "code"} <= set(artifacts.get(name, {})) for name in new.data]
+    if not all(known):
+        found.append("It is not known whether today's code made the results.")
+    return found
+
+
+def page(report: Report, template: Path) -> str:
+    """The report as a page of HTML that needs no other file."""
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    written = environment.from_string(template.read_text(encoding="utf-8"))
+    return written.render(report=report, kinds=KINDS)
+
+
+# How results become the reference
+
+CODE = ("Snakefile", "config", "src", "workflow")
+"""What must be committed, so that the commit that a reference names is the code that made it."""
+
+
+def accept(
+    results: str | Path,
+    reference: str | Path,
+    artifacts: Mapping[str, Mapping],
+    names: Collection[str] = (),
+) -> list[str]:
+    """Make results the reference: those named, or all that differ; returns the files written.
+
+    Datasets are copied, and name the commit of today. Pictures and texts, of these and of texts
+    that depend on them, are made anew from the datasets that are then the reference. Raises
+    ValueError, with the reason, if a result is stale, incomplete, or not what its dataset gives,
+    and if the code is not committed.
+    """
+    old_folder = Path(reference)
+    commit = datasets.commit(old_folder).removesuffix("+dirty")
+    if not re.fullmatch("[0-9a-f]{40}", commit):
+        raise ValueError(f"nothing is accepted, because the commit of the code is {commit}")
+    edited = git(old_folder, "status", "--porcelain", "--untracked-files=all", "--", *CODE) or ""
+    if edited:
+        raise ValueError(f"nothing is accepted, commit first: {', '.join(edited.splitlines())}")
+    report = compare(results, reference, artifacts, names)
+    new = Side("results", Path(results), load(Path(results), ALL))
+    unfit = [finding.line for finding in report.findings if finding.of_results]
+    unfit += notes(new, new, artifacts)
+    if unfit:
+        raise ValueError(f"nothing is accepted: {unfit[0]}")
+    red = {finding.artifact for finding in report.findings}
+    with tempfile.TemporaryDirectory() as scratch:
+        stage(red, new, load(old_folder, ALL), Path(scratch), commit)
+        return list(replaced(Path(scratch), old_folder))
+
+
+def stage(red: Collection[str], new: Side, old: Datasets, folder: Path, commit: str) -> None:
+    """Write what becomes the reference into a folder: datasets, and what is made from them."""
+    (folder / "figures").mkdir()
+    data = dict(old)
+    for name in red:
+        if name in new.data and (
+            name not in old or any(dataset_differences(new.data[name], old[name]))
+        ):
+            data[name] = stamped(new.folder, folder, name, commit)
+    accepted = [name for name in data if data[name] is not old.get(name)]
+    for product in PRODUCTS:
+        concerned = product.artifact in red or any(need in accepted for need in product.needs)
+        if not concerned or any(need not in data for need in product.needs):
+            continue
+        product.make(data, folder)
+        if product.artifact == "claims":
+            judged = datasets.read(folder / "figures" / "claims.nc")
+            if any(dataset_differences(new.data["claims"], judged)):
+                raise ValueError("nothing is accepted: the claims depend on other results, too")
+            data["claims"] = stamped(new.folder, folder, "claims", commit)
+
+
+def stamped(source: Path, folder: Path, name: str, commit: str) -> xr.Dataset:
+    """Copy a dataset into a folder, as a result of a commit that has the code that made it."""
+    copy = folder / "figures" / f"{name}.nc"
+    shutil.copyfile(source / "figures" / copy.name, copy)
+    with netCDF4.Dataset(copy, "a") as file:
+        file.setncattr("commit", commit)
+    return datasets.read(copy)
+
+
+def replaced(source: Path, folder: Path) -> Iterator[str]:
+    """Move the files that differ from one folder into another, each whole or not at all."""
+    for path in sorted(path for path in source.rglob("*") if path.is_file()):
+        target = folder / path.relative_to(source)
+        if path.suffix == ".nc" or not target.is_file() or file_difference(path, target, False):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            unfinished = target.with_name(f".{target.name}.part.{os.getpid()}")
+            shutil.copyfile(path, unfinished)
+            os.replace(unfinished, target)
+            yield str(path.relative_to(source))

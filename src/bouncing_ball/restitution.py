@@ -16,6 +16,10 @@ from scipy.optimize import brentq, minimize_scalar
 PERMANENT_CONTACT = 1.0
 """Λ_CR: a ball at rest stays on the table up to this amplitude (Eq. 9)."""
 
+STICKING = 1e-9
+"""Relative velocity after an impact below which a ball sticks to the table. Its impacts then follow
+each other faster and faster, and their velocities fall geometrically."""
+
 
 def bounce_velocity(n: ArrayLike) -> NDArray:
     """Velocity nπ of the ball just after the impact of an n-T orbit (Eq. 6).
@@ -150,17 +154,11 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
 
     It is the first positive zero of the height above the table, which is searched in steps of a
     twentieth of a radian; where the height falls and rises again within a step, its minimum is
-    looked at, too.
-
-    Raises
-    ------
-    ValueError
-        If the ball does not leave the table.
+    looked at, too. A ball without relative velocity must be where the table falls faster than it,
+    Λ sin τ >= 1.
     """
     start = amplitude * np.sin(time)
     relative = velocity - amplitude * np.cos(time)
-    if relative <= 1e-9:
-        raise ValueError(f"the ball at Λ = {amplitude:g} sticks to the table at τ = {time:.6g}")
 
     def gap(s):
         return start + velocity * s - s**2 / 2 - amplitude * np.sin(time + s)
@@ -168,8 +166,9 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
     def gap_rate(s):
         return velocity - s - amplitude * np.cos(time + s)
 
-    # The relative acceleration is at least -(1 + Λ), so that the ball does not land before this.
-    earliest = 2 * relative / (1 + amplitude)
+    # The relative acceleration is at least -(1 + Λ), so that the ball does not land before this. A
+    # ball that has stuck to the table is above it for more than the first step.
+    earliest = 2 * relative / (1 + amplitude) if relative > STICKING else 0.01
     # At this time the flight is at the lowest level of the table.
     latest = velocity + np.sqrt(velocity**2 + 2 * (start + amplitude))
     grid = np.linspace(earliest, latest, 2 + int(20 * (latest - earliest)))
@@ -215,38 +214,67 @@ def impact_map(
 
 @dataclass(frozen=True)
 class Impacts:
-    """The impacts of a ball: their times τ, the velocities of the ball after them, and the logarithm
-    of the growth of a small deviation from each impact to the next, which has an entry less.
+    """The impacts of a ball: their times τ, the velocities of the ball after them, the logarithm of
+    the growth of a small deviation from each impact to the next, which has an entry less, and the
+    number of impacts after which the ball sticks to the table for a while.
     """
 
     time: NDArray
     velocity: NDArray
     growth: NDArray
+    stickings: int
+
+
+def departure(amplitude: float, time: float) -> float:
+    """The time at which a ball leaves the table if it sticks to it at a time τ and Λ > 1.
+
+    It is the next time at which Λ sin τ exceeds 1, so that the table falls faster than the ball.
+    """
+    rising = np.arcsin(1 / amplitude)
+    phase = np.mod(time, 2 * np.pi)
+    if rising <= phase <= np.pi - rising:
+        return time
+    return time + np.mod(rising - phase, 2 * np.pi)
 
 
 def simulate(r: float, amplitude: float, time: float, velocity: float, impacts: int) -> Impacts:
     """Follow a ball that leaves the table at a time τ with a velocity over a number of impacts.
 
+    After an impact with a relative velocity below STICKING the ball moves with the table until
+    that falls faster than the ball. Deviations from its motion are then lost, so that the growth
+    is NaN.
+
     Raises
     ------
     ValueError
-        If the ball sticks to the table after an impact.
+        If the ball comes to rest, on a table with Λ <= 1 (Eq. 9).
     """
     times = np.empty(impacts)
     velocities = np.empty(impacts)
-    growth = np.empty(impacts - 1)
+    growth = np.full(impacts - 1, np.nan)
     times[0] = time
     velocities[0] = velocity
     deviation = np.array([1.0, 0.0])
+    stickings = 0
     for k in range(impacts - 1):
-        times[k + 1], velocities[k + 1], derivative = impact_map(
-            r, amplitude, times[k], velocities[k]
-        )
+        time = times[k]
+        velocity = velocities[k]
+        sticks = velocity - amplitude * np.cos(time) <= STICKING
+        if sticks and amplitude <= PERMANENT_CONTACT:
+            raise ValueError(
+                f"the ball at Λ = {amplitude:g} comes to rest: Λ must exceed 1 (Eq. 9)"
+            )
+        if sticks:
+            stickings += 1
+            time = departure(amplitude, time)
+            velocity = amplitude * np.cos(time)
+        times[k + 1], velocities[k + 1], derivative = impact_map(r, amplitude, time, velocity)
         deviation = derivative @ deviation
         size = np.hypot(*deviation)
-        growth[k] = np.log(size)
         deviation = deviation / size
-    return Impacts(times, velocities, growth)
+        if not sticks:
+            growth[k] = np.log(size)
+    return Impacts(times, velocities, growth, stickings)
 
 
 def repetition(path: Impacts) -> tuple[int, int]:

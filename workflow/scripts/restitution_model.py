@@ -67,13 +67,16 @@ def three_balls(parameters: dict) -> xr.Dataset:
         velocity = amplitude * np.cos(phase) + r * parameters["impact_speed"]
         path = restitution.simulate(r, amplitude, phase, velocity, parameters["impacts"])
         impacts, periods = restitution.repetition(path)
-        exponent = (np.nan, np.nan) if impacts else restitution.lyapunov_exponent(path)
-        rows.append((impacts, periods, *exponent))
-    impacts, periods, exponents, errors = zip(*rows, strict=True)
+        exponent = (np.nan, np.nan)
+        if not impacts and not path.stickings:
+            exponent = restitution.lyapunov_exponent(path)
+        rows.append((impacts, periods, path.stickings, *exponent))
+    impacts, periods, stickings, exponents, errors = zip(*rows, strict=True)
     return xr.Dataset(
         {
             "impacts": ("amplitude", list(impacts)),
             "periods": ("amplitude", list(periods)),
+            "stickings": ("amplitude", list(stickings)),
             "lyapunov_exponent": ("amplitude", list(exponents)),
             "lyapunov_error": ("amplitude", list(errors)),
         },

@@ -63,6 +63,11 @@ def high_bounce_doubling(family: Family, y: np.ndarray) -> np.ndarray:
     return 1 + phase_by_phase + velocity_by_velocity + determinant
 
 
+def equal_damping() -> float:
+    """ζ with which a free impact with the force release has the restitution of the table."""
+    return brentq(lambda zeta: force_release_restitution(zeta) - RESTITUTION, 1e-3, 0.9, xtol=1e-15)
+
+
 def readings(n: np.ndarray, ratios: np.ndarray) -> dict[str, np.ndarray]:
     """Both ends of each range under nine readings, shape (n, ϖ, 2).
 
@@ -71,7 +76,7 @@ def readings(n: np.ndarray, ratios: np.ndarray) -> dict[str, np.ndarray]:
     """
     r = RESTITUTION
     zeta = float(damping_ratio(r))
-    equal = brentq(lambda value: float(force_release_restitution(value)) - r, 1e-3, 0.9, xtol=1e-15)
+    equal = equal_damping()
 
     # One walk along the contacts has the families of all readings with the same release.
     def ends(damping, release="displacement", weight=1.0):
@@ -255,19 +260,19 @@ def table1_readings(printed: xr.DataArray) -> xr.Dataset:
     compliant = dataset.rms_difference.sel(rows="compliant rows").round(6)
     every = dataset.rms_difference.sel(rows="all rows").round(6)
     ranked = dataset.isel(reading=np.lexsort([every, compliant]))
-    return ranked.assign(rank=("reading", 1 + np.arange(len(found))))
+    return ranked.assign(rank=("reading", 1 + np.arange(len(found)))).assign_attrs(
+        last_digit=LAST_DIGIT,
+        restitution=RESTITUTION,
+        printed_damping_ratio=PRINTED_DAMPING,
+        force_damping_ratio=equal_damping(),
+    )
 
 
 if __name__ == "__main__":
-    settings = {
-        "restitution": RESTITUTION,
-        "printed_damping_ratio": PRINTED_DAMPING,
-        "last_digit": LAST_DIGIT,
-    }
     save(
         table1_readings(read_printed(snakemake.input.printed)),
         snakemake.output.table1_readings,
         "Table 1 under readings of what the authors may have done",
-        settings,
+        {},
         snakemake.input.code,
     )

@@ -4,11 +4,11 @@
 rule table:
     """Writes Table 1, the thresholds, or Table 1 under other readings as text"""
     input:
-        data="results/figures/{table}.nc",
+        data=["results/figures/{table}.nc"],
         code=code("tables"),
     output:
-        markdown="results/figures/{table}.md",
-        csv=report("results/figures/{table}.csv", category="Tables", labels={"table": "{table}"}),
+        md=["results/figures/{table}.md"],
+        csv=[report("results/figures/{table}.csv", category="Tables", labels={"table": "{table}"})],
     log:
         "results/logs/{table}.log",
     conda:

@@ -26,6 +26,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter
 
 Look = dict[str, Any]
@@ -41,8 +42,9 @@ SETTINGS: Look = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.frameon": False,
-    "legend.handlelength": 2.6,
-    "legend.columnspacing": 1.4,
+    "legend.handlelength": 2.4,
+    "legend.columnspacing": 1.2,
+    "legend.handletextpad": 0.6,
     "lines.linewidth": 1.2,
     # The dashes of wide and narrow lines are equally long, so that they coincide too.
     "lines.scale_dashes": False,
@@ -59,7 +61,7 @@ SETTINGS: Look = {
 COLOURS = ("#000000", "#0072b2", "#c77c00", "#8a2f62", "#3f96cc")
 TABLE = "#8c8c8c"
 DASHES = ("-", (0, (7, 2)), (0, (7, 1.5, 1.2, 1.5)), (0, (2, 1.2)), (0, (7, 1.2, 1.2, 1.2) * 2))
-GUIDE: Look = {"color": "#777777", "linewidth": 0.8, "linestyle": (0, (1, 1.6))}
+GUIDE: Look = {"color": "#777777", "linewidth": 0.8, "linestyle": (0, (1, 1.6)), "zorder": 1}
 KINDS: Mapping[str, Any] = {
     "stable": "-",
     "unstable": (0, (4, 2)),
@@ -69,7 +71,7 @@ KINDS: Mapping[str, Any] = {
 
 MARKS: Mapping[str, Look] = {
     "saddle-node": {"marker": "o", "markersize": 5},
-    "period doubling": {"marker": "s", "markersize": 5.5},
+    "period doubling": {"marker": "s", "markersize": 5},
     "grazing of a flight": {"marker": "^", "markersize": 5},
     "grazing of a release": {"marker": "v", "markersize": 5},
     "period doubling, Eq. 8": {"marker": "x", "markersize": 3.5},
@@ -78,11 +80,8 @@ MARKS: Mapping[str, Look] = {
 }
 """Mark of each special orbit; hollow marks that coincide can all be seen."""
 
-PHASES: Mapping[str, tuple[str, float]] = {
-    "phase": (r"start of contact, $\varphi$", 3.4),
-    "release_phase": (r"end of contact, $\varphi+\tau_b$", 1.1),
-}
-"""Words and line width of both phases of a contact."""
+WIDE, NARROW = 3.4, 1.1
+"""Line widths of the phases at the start and at the end of a contact."""
 
 
 def style() -> AbstractContextManager:
@@ -183,19 +182,28 @@ def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
         axes.set_xlabel(r"frequency ratio $\varpi$")
 
 
-def legend_below(figure: Figure, handles: Sequence[Line2D] = (), columns: int = 2) -> None:
-    """A legend below the panels of the given lines, or of all labelled ones, each label once."""
-    labelled = handles or [
-        line for axes in figure.axes for line in axes.get_legend_handles_labels()[0]
-    ]
-    once = {str(line.get_label()): line for line in reversed(labelled)}
-    entries = list(reversed(once.values()))
-    figure.legend(handles=entries, loc="outside lower center", ncols=min(columns, len(entries)))
+def legend_below(
+    figure: Figure, entries: Mapping[str, Any] | None = None, columns: int = 2
+) -> None:
+    """A legend below the panels: label and handle of each entry, or all that the panels have.
+
+    It has fewer columns if so many are wider than the figure.
+    """
+    if entries is None:
+        entries = {}
+        for axes in figure.axes:
+            handles, labels = axes.get_legend_handles_labels()
+            entries = dict(zip(labels, handles, strict=True)) | entries
+    place = "outside lower center"
+    legend = figure.legend(entries.values(), entries.keys(), loc=place, ncols=columns)
+    if columns > 1 and legend.get_window_extent().width > figure.bbox.width:
+        legend.remove()
+        legend_below(figure, entries, columns - 1)
 
 
-def sample(name: str, **look: Any) -> Line2D:
-    """A line or a mark of a legend."""
-    return Line2D([], [], label=name, **{"color": "black"} | look)
+def sample(**look: Any) -> Line2D:
+    """A line or a mark for a legend, black unless it has a colour."""
+    return Line2D([], [], **{"color": "black"} | look)
 
 
 def mark_look(kind: str) -> Look:
@@ -285,7 +293,8 @@ def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: 
     for part in pieces(kinds):
         kind = kinds[part.start]
         look: Look = {"linestyle": KINDS[kind], "linewidth": width, "color": colour}
-        axes.plot(amplitude[part], angle[part], label=kind, dash_capstyle="butt", **look)
+        # Narrow lines are above the wide ones of all branches.
+        axes.plot(amplitude[part], angle[part], label=kind, zorder=3 - width / 10, **look)
 
 
 def mark(axes: Axes, kind: str, amplitude: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
@@ -328,19 +337,35 @@ def right_end(branch: xr.Dataset, phase: str) -> float:
 def branch_legend(figure: Figure, both_phases: bool) -> None:
     """What the line styles, widths and marks mean that occur in a figure."""
     drawn = {line.get_label() for axes in figure.axes for line in axes.lines}
-    handles = [sample(kind, linestyle=look) for kind, look in KINDS.items() if kind in drawn]
-    if both_phases:
-        (start, wide), (end, narrow) = PHASES.values()
-        handles.append(sample(start, linewidth=wide, color=pale("#000000")))
-        handles.append(sample(end, linewidth=narrow))
-    handles += [sample(kind, **mark_look(kind)) for kind in MARKS if kind in drawn]
-    legend_below(figure, handles)
+    kinds = {kind: look for kind, look in KINDS.items() if kind in drawn}
+    marks = {kind: sample(**mark_look(kind)) for kind in MARKS if kind in drawn}
+    if not both_phases:
+        lines = {kind: sample(linestyle=look) for kind, look in kinds.items()}
+        legend_below(figure, lines | marks)
+        return
+    wide: Look = {"linewidth": WIDE, "color": pale("#000000")}
+    phases = {
+        r"start of contact, $\varphi$": sample(**wide),
+        r"end of contact, $\varphi+\tau_b$": sample(linewidth=NARROW),
+    }
+    # The styles hold for lines of both widths.
+    lines = {
+        kind: (sample(linestyle=look, **wide), sample(linestyle=look, linewidth=NARROW))
+        for kind, look in kinds.items()
+    }
+    legend_below(figure, phases | lines | marks)
 
 
 # Labels beside curves. Their places depend on the size of the panels, so that they come last.
 
-LINE_HEIGHT = 11.0
+POINTS = 72
+"""Points in an inch, in which sizes of texts, marks and offsets are."""
+
+LINE_HEIGHT = 10.5
 """Distance of labels one above the other, in points."""
+
+MARK_RADIUS = 3
+"""Half the size of a mark, in points."""
 
 
 def ascending(values: np.ndarray) -> np.ndarray:
@@ -361,50 +386,53 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
 
     Each is as near to its height as the others allow.
     """
+    if not names:
+        return
     axes.figure.draw_without_rendering()
     order = sorted(names, key=lambda name: name[1])
     ends = [(0.0, height) for _, height, _ in order]
-    wanted = axes.transData.transform(ends)[:, 1] * 72 / axes.figure.dpi
+    wanted = axes.transData.transform(ends)[:, 1] * POINTS / axes.figure.dpi
     steps = LINE_HEIGHT * np.arange(len(order))
-    placed = ascending(wanted - steps) + steps
-    for (text, height, colour), offset in zip(order, placed - wanted, strict=True):
-        axes.annotate(
-            text,
-            (1.0, height),
-            (4, offset),
-            xycoords=axes.get_yaxis_transform(),
-            textcoords="offset points",
-            color=colour,
-            va="center",
-            annotation_clip=False,
-        )
+    moved = ascending(wanted - steps) + steps - wanted
+    look: Look = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points"}
+    for (text, height, colour), offset in zip(order, moved, strict=True):
+        axes.annotate(text, (1.0, height), (4, offset), color=colour, va="center", **look)
 
 
-def name_beside(axes: Axes, text: str, point: tuple[float, float], **look: Any) -> None:
-    """A label beside a point of the data, at the place where it hides the fewest curves and labels.
-
-    The nearer of two equally good places is taken.
+def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
+    """A label beside a point of the data, at the place where it hides the fewest curves, marks and
+    labels; of equally good places the nearest is taken. The panel must have been laid out.
     """
-    axes.figure.draw_without_rendering()
-    others = [other.get_window_extent() for other in axes.texts if other.get_text()]
-    curves = [line.get_transform().transform_path(line.get_path()) for line in axes.lines]
-    note = axes.annotate(text, point, (0, 0), textcoords="offset points", **look)
+    labels = [other.get_window_extent() for other in axes.texts]
+    note = axes.annotate(text, point, (0, 0), textcoords="offset points")
+    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in axes.lines]
+    curves = [path for line, path in paths if line.get_linestyle() != "None"]
+    marks = [path.vertices for line, path in paths if line.get_linestyle() == "None"]
+    inside = axes.get_window_extent()
 
-    def move(x: float, y: float) -> None:
-        horizontal = {0: "center", 1: "left", -1: "right"}[int(np.sign(x))]
-        vertical = {0: "center", 1: "bottom", -1: "top"}[int(np.sign(y))]
-        note.set(position=(x, y), ha=horizontal, va=vertical)
+    def hidden(place: tuple[float, float]) -> int:
+        move(note, place)
+        box = note.get_window_extent().padded(axes.figure.dpi / POINTS)
+        corners = np.array([box.min, box.max])
+        outside = inside.count_contains(corners) < len(corners)
+        covered = sum(path.intersects_bbox(box, filled=False) for path in curves)
+        covered += sum(
+            box.padded(MARK_RADIUS * axes.figure.dpi / POINTS).count_contains(points)
+            for points in marks
+        )
+        return covered + box.count_overlaps(labels) + outside
 
-    def hidden(place: tuple[float, float]) -> float:
-        move(*place)
-        box = note.get_window_extent().padded(4.0)
-        inside = axes.get_window_extent()
-        outside = not (inside.contains(*box.min) and inside.contains(*box.max))
-        labels = sum(box.overlaps(other) for other in others)
-        return 3 * outside + 3 * labels + sum(path.intersects_bbox(box, False) for path in curves)
+    sides = [(1, 1), (-1, -1), (1, -1), (-1, 1), (1, 0), (-1, 0), (0, 1), (0, -1)]
+    places = [(far * x, far * y) for far in (4, 8, 14, 20) for x, y in sides]
+    move(note, min(places, key=hidden))
 
-    sides = [(x, y) for x in (1, -1, 0) for y in (1, -1, 0) if x or y]
-    move(*min(((far * x, far * y) for far in (5, 10, 16, 24) for x, y in sides), key=hidden))
+
+def move(note: Annotation, place: tuple[float, float]) -> None:
+    """Put a label at an offset in points from its point, and beside the point."""
+    x, y = np.sign(place).astype(int)
+    horizontal = ("center", "left", "right")[x]
+    vertical = ("center", "bottom", "top")[y]
+    note.set(position=place, ha=horizontal, va=vertical)
 
 
 # Files
@@ -422,9 +450,6 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) 
         "svg": named | {"Date": None, "Creator": None},
     }
     with style():
-        figure.draw_without_rendering()
-        # Both pictures have the layout that was found now.
-        figure.set_layout_engine("none")
         for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
             path.parent.mkdir(parents=True, exist_ok=True)
             unfinished = path.with_name(f".{path.name}.part.{os.getpid()}")
@@ -433,3 +458,5 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) 
                 os.replace(unfinished, path)
             finally:
                 unfinished.unlink(missing_ok=True)
+            # The SVG has the layout of the PNG: sizes of texts differ a little between the two.
+            figure.set_layout_engine("none")

@@ -17,8 +17,10 @@ from bouncing_ball.drawing import (
     COLOURS,
     DASHES,
     GUIDE,
-    PHASES,
+    NARROW,
+    POINTS,
     TABLE,
+    WIDE,
     Look,
     along_ratio,
     branch_legend,
@@ -55,7 +57,7 @@ PERIOD = 2 * np.pi
 
 TIME = r"time $\tau/2\pi$"
 
-CLOSE = 14.0
+CLOSE = 9.0
 """Distance of marks in points below which they share a name."""
 
 PRINTED_RATIO = 6
@@ -155,7 +157,7 @@ def fig05(data: xr.Dataset) -> Figure:
     """The apparent restitution along ϖ for each case (r, Λ), with r as a guide."""
     figure, axes = panels(3.0)
     draw_cases(axes, data, data.apparent_restitution)
-    for restitution in data.restitution.values:
+    for restitution in np.unique(data.restitution):
         axes.axhline(restitution, label="restitution model, $r$", **GUIDE)
     axes.set_ylabel("apparent restitution $r_a$")
     legend_below(figure)
@@ -172,7 +174,7 @@ def fig10(data: xr.Dataset) -> Figure:
     draw_cases(axes, data, data.bounce_velocity)
     axes.axhline(limit, label=r"restitution model, $n\pi$", **GUIDE)
     axes.set_ylabel(r"bouncing-off velocity $z'_b$")
-    first = data.isel(case=int(data.bounce_velocity.notnull().any("frequency_ratio").argmax()))
+    first = data.isel(case=np.argmax(data.bounce_velocity.notnull().any("frequency_ratio").values))
     draw_cases(below, data, 100 * (data.bounce_velocity - first.bounce_velocity) / limit)
     below.set_title("")
     below.set_ylabel("difference from\n" + rf"{label(amplitude=first.amplitude)}, % of $n\pi$")
@@ -203,7 +205,7 @@ def case_names(data: xr.Dataset) -> tuple[str, list[str]]:
 
 
 def fig13(data: xr.Dataset) -> Figure:
-    """Phase and velocity along ϖ, as contact starts and as it ends, and in the restitution model."""
+    """Phase and velocity along ϖ as contact starts and as it ends, and in the restitution model."""
     figure, axes = panels(4.0)
     common, names = case_names(data)
     shades = colours(data.sizes["case"])
@@ -225,19 +227,19 @@ def fig13(data: xr.Dataset) -> Figure:
         axes.plot(phases, limits / np.pi, color=colour, zorder=4, **star)
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball $z'/\pi$")
     axes.set_title(common)
-    axes.margins(x=0.14, y=0.1)
-    handles = [
-        sample(r"start of contact, $(\varphi,\,z'_i)$", **start),
-        sample(r"end of contact, $(\varphi+\tau_b,\,z'_b)$", **end),
-        sample("restitution model", **star),
-    ]
+    axes.margins(x=0.2, y=0.1)
+    entries = {
+        r"start of contact, $(\varphi,\,z'_i)$": sample(**start),
+        r"end of contact, $(\varphi+\tau_b,\,z'_b)$": sample(**end),
+        "restitution model": sample(**star),
+    }
     # Colours need names only if there are several.
     if len(names) > 1:
         square: Look = {"marker": "s", "linestyle": "none"}
         pairs = zip(names, shades, strict=True)
-        handles += [sample(name, color=colour, **square) for name, colour in pairs]
-    legend_below(figure, handles, columns=1)
-    shown = data.isel(case=int(data.phase.notnull().any("frequency_ratio").argmax()))
+        entries |= {name: sample(color=colour, **square) for name, colour in pairs}
+    legend_below(figure, entries, columns=1)
+    shown = data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values))
     name_ratios(axes, shown, "phase", "impact_velocity")
     name_ratios(axes, shown, "release_phase", "bounce_velocity")
     return figure
@@ -251,7 +253,7 @@ def name_ratios(axes: Axes, case: xr.Dataset, phase: str, velocity: str) -> None
         return
     places = np.stack([marked[phase], marked[velocity]], axis=1) / np.pi
     axes.figure.draw_without_rendering()
-    points = axes.transData.transform(places) * 72 / axes.figure.dpi
+    points = axes.transData.transform(places) * POINTS / axes.figure.dpi
     beside = np.hypot(*(points - points[-1]).T) < CLOSE
     ratios = marked.frequency_ratio.values
     for ratio, place in zip(ratios[~beside], places[~beside], strict=True):
@@ -276,7 +278,7 @@ def fig16(data: xr.Dataset) -> Figure:
     figure, (axes, below) = panels(4.4, rows=2, sharex=True)
     draw_threshold(axes, data)
     limit = float(data.restitution_threshold)
-    axes.axhline(limit, label=r"restitution model, $\Lambda_{CR}$", **LIMIT)
+    axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     draw_error(below, data, data.threshold_amplitude - limit, "PC")
     given = parameters(data)
     if (given["restitution"], given["tolerance"], given["release"]) == (0.65, 0.01, "displacement"):
@@ -292,7 +294,7 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     symbol = r"\Lambda_F" if force else r"\Lambda_{SD}"
     formula = "" if force else r", $2\zeta\sqrt{1-\zeta^2}$"
     ratio, threshold = data.frequency_ratio, data.threshold_amplitude
-    axes.plot(ratio, threshold, color=CONTACT, label=f"spring-damper model, ${symbol}$")
+    axes.plot(ratio, threshold, color=CONTACT, label=f"spring-damper, ${symbol}$")
     axes.fill_between(ratio, threshold, color="0.9", linewidth=0, label="permanent contact")
     lowest = float(data.minimum_threshold)
     axes.axhline(
@@ -347,7 +349,7 @@ def draw_velocity(
     far = place[0] + (reach if forward else -reach), place[1] + reach * abs(velocity)
     tip, tail = (far, place) if forward else (place, far)
     axes.annotate("", tip, tail, arrowprops=ARROW)
-    offset, side = ((-3, 0), "right") if forward else ((3, 2), "left")
+    offset, side = ((-5, 1), "right") if forward else ((4, 2), "left")
     axes.annotate(symbol, far, offset, textcoords="offset points", ha=side, va="center")
 
 
@@ -397,7 +399,7 @@ def three_cycles(data: xr.Dataset, height: xr.DataArray) -> tuple[np.ndarray, np
 
 def show_summit(axes: Axes, data: xr.Dataset) -> None:
     """Limits within which the summits of the restitution model and of the stiffest contact part."""
-    place = int(data.restitution_ball.argmax())
+    place = int(np.argmax(data.restitution_ball.values))
     top = float(data.restitution_ball[place])
     stiffest = float(data.ball.sel(frequency_ratio=data.frequency_ratio.max()).max())
     below = np.fmax(2.5 * (top - stiffest), 0.02 * top)
@@ -443,14 +445,13 @@ def domains(
 ) -> Figure:
     """Both phases of some branches in one panel: name, branch and colour of each."""
     figure, axes = panels(height)
-    ends = []
     absent = [name for name, branch, _ in shown if branch.amplitude.isnull().all()]
     present = [each for each in shown if each[0] not in absent]
-    for name, branch, colour in present:
-        for phase, shade in (("phase", pale(colour)), ("release_phase", colour)):
-            draw_branch(axes, branch, phase, shade, width=PHASES[phase][1])
+    for _, branch, colour in present:
+        draw_branch(axes, branch, "phase", pale(colour), WIDE)
+        draw_branch(axes, branch, "release_phase", colour, NARROW)
+        for phase in ("phase", "release_phase"):
             mark_special(axes, branch, phase, colour)
-            ends.append((name, right_end(branch, phase), colour))
     least = min((float(branch.amplitude.min()) for _, branch, _ in present), default=0.0)
     # The space left of branches that begin far to the right would be empty.
     left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
@@ -458,8 +459,20 @@ def domains(
     axes.set(xlim=(left, amplitude_max), title=title + note)
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the table over $\pi$")
     branch_legend(figure, both_phases=True)
-    name_at_right(axes, ends)
+    name_at_right(axes, branch_names(present, 0.01 * np.ptp(axes.get_ylim())))
     return figure
+
+
+def branch_names(
+    present: list[tuple[str, xr.Dataset, str]], close: float
+) -> list[tuple[str, float, str]]:
+    """Labels of branches at the right ends of both phases; one where these are close."""
+    names = []
+    for name, branch, colour in present:
+        start, end = right_end(branch, "phase"), right_end(branch, "release_phase")
+        heights = [end] if abs(end - start) < close else [start, end]
+        names += [(name, height, colour) for height in heights]
+    return names
 
 
 # Errors
@@ -484,8 +497,8 @@ def fig14(data: xr.Dataset) -> Figure:
 def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str) -> None:
     """The relative error of the restitution model, its tolerance, and the threshold ϖ if there is.
 
-    Where the difference of the models changes its sign the error is zero, and its line leaves the
-    logarithmic panel.
+    Where the difference of the models changes its sign the error is zero, and its line meets the
+    lower edge of the logarithmic panel.
     """
     tolerance = parameters(data)["tolerance"]
     percent = f"{100 * tolerance:g}"
@@ -493,7 +506,8 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     sign = np.sign(difference.values)
     zeros = np.flatnonzero(sign[1:] * sign[:-1] < 0) + 1
     between = np.sqrt(ratio[zeros - 1] * ratio[zeros])
-    axes.plot(np.insert(ratio, zeros, between), np.insert(error, zeros, 0.0), color=CONTACT)
+    bottom = 0.5 * np.min(error[error > 0], initial=tolerance)
+    axes.plot(np.insert(ratio, zeros, between), np.insert(error, zeros, bottom), color=CONTACT)
     axes.axhline(tolerance, label=f"tolerance {percent} %", **GUIDE)
     threshold = float(data.error_threshold)
     if np.isfinite(threshold):
@@ -502,10 +516,8 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
         axes.plot(
             threshold, tolerance, "o", color="black", markersize=4, linestyle="none", label=value
         )
-    positive = error[np.isfinite(error) & (error > 0)]
-    axes.set_yscale("log", nonpositive="clip")
-    axes.set_ylim(bottom=0.5 * min(positive.min(initial=tolerance), tolerance))
-    axes.set_ylabel("relative error")
+    axes.set(yscale="log", ylabel="relative error")
+    axes.set_ylim(bottom=bottom)
     along_ratio(axes, data.frequency_ratio)
 
 

@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+
 from bouncing_ball import tables
 
 BOUNDS = ["saddle-node", "period doubling"]

@@ -293,13 +293,13 @@ def test_inadmissible_orbits_are_dotted_and_grazing_is_marked():
     (data,) = data_of("fig09")
     data.admissible[2, :100] = False
     kinds = data.special_kind.astype(object)
-    kinds[2, 0] = "grazing of a flight"
+    kinds[2, 0] = "grazing"
     data["special_kind"] = kinds
     figure = laid_out("fig09", data)
     dotted = lines_of(figure, "inadmissible")
     assert [len(line.get_xdata()) for line in dotted] == [101, 101]
-    assert {line.get_marker() for line in lines_of(figure, "grazing of a flight")} == {"^"}
-    assert {"inadmissible", "grazing of a flight"} <= set(words(figure))
+    assert {line.get_marker() for line in lines_of(figure, "grazing")} == {"^"}
+    assert {"inadmissible", "grazing"} <= set(words(figure))
 
 
 @pytest.mark.parametrize(("name", "threshold"), [("fig14", np.inf), ("fig16", np.nan)])

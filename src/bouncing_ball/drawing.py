@@ -72,11 +72,10 @@ KINDS: Mapping[str, Any] = {
 MARKS: Mapping[str, Look] = {
     "saddle-node": {"marker": "o", "markersize": 5},
     "period doubling": {"marker": "s", "markersize": 5},
-    "grazing of a flight": {"marker": "^", "markersize": 5},
-    "grazing of a release": {"marker": "v", "markersize": 5},
+    "grazing": {"marker": "^", "markersize": 5},
     "period doubling, Eq. 8": {"marker": "x", "markersize": 3.5},
     "joins permanent contact": {"marker": "D", "markersize": 4.5, "fillstyle": "full"},
-    "ends": {"marker": "h", "markersize": 5, "fillstyle": "full"},
+    "end of the branch": {"marker": "h", "markersize": 5, "fillstyle": "full"},
 }
 """Mark of each special orbit; hollow marks that coincide can all be seen."""
 
@@ -131,6 +130,12 @@ def label(**values: float) -> str:
     return ", ".join(f"${SYMBOLS[name]}={number(value)}$" for name, value in values.items())
 
 
+def title(data: xr.Dataset, *names: str) -> str:
+    """Some of the parameters of a dataset with their symbols."""
+    given = parameters(data)
+    return label(**{name: given[name] for name in names})
+
+
 def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
     r"""Label of the parameters that are equal in all curves, and label of the others for each.
 
@@ -174,8 +179,7 @@ def panels(height: float, rows: int = 1, **options: Any) -> tuple[Figure, Any]:
 
 def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
     """A logarithmic axis of ϖ from the least to the greatest, with plain numbers."""
-    axes.set_xscale("log")
-    axes.set_xlim(float(ratio.min()), float(ratio.max()))
+    axes.set(xscale="log", xlim=(float(ratio.min()), float(ratio.max())))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
     if axes.get_subplotspec().is_last_row():
@@ -193,7 +197,8 @@ def legend_below(
         entries = {}
         for axes in figure.axes:
             handles, labels = axes.get_legend_handles_labels()
-            entries = dict(zip(labels, handles, strict=True)) | entries
+            # The upper panel comes first, also where both have an entry.
+            entries |= dict(zip(labels, handles, strict=True)) | entries
     place = "outside lower center"
     legend = figure.legend(entries.values(), entries.keys(), loc=place, ncols=columns)
     if columns > 1 and legend.get_window_extent().width > figure.bbox.width:
@@ -261,7 +266,7 @@ def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Datase
     kinds = {
         "saddle-node": "saddle_node",
         "period doubling": "period_doubling",
-        "grazing of a flight": "grazing",
+        "grazing": "grazing",
     }
     known = {kind: name for kind, name in kinds.items() if f"{name}_phase" in bifurcations}
     phases = [float(bifurcations[f"{name}_phase"]) for name in known.values()]
@@ -282,7 +287,8 @@ def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: 
 
     `phase` is "phase" or "release_phase".
     """
-    special = branch.where(branch.special_amplitude.notnull(), drop=True).sortby("special_along")
+    known = np.flatnonzero(branch.special_amplitude.notnull())
+    special = branch.isel(special=known).sortby("special_along")
     place = np.searchsorted(branch.along, special.special_along)
     stability = np.where(branch.stable, "stable", "unstable")
     kinds = np.where(branch.admissible, stability, "inadmissible")
@@ -322,7 +328,8 @@ def inner_ends(branch: xr.Dataset) -> list[tuple[str, int]]:
     ends = zip(branch.end_reason.values, (known[0], known[-1]), strict=True)
     inner = [(reason, int(point)) for reason, point in ends if "is reached" not in reason]
     joins = "joins permanent contact"
-    return [(joins if "permanent contact" in reason else "ends", point) for reason, point in inner]
+    other = "end of the branch"
+    return [(joins if "permanent contact" in reason else other, point) for reason, point in inner]
 
 
 def right_end(branch: xr.Dataset, phase: str) -> float:
@@ -384,16 +391,19 @@ def ascending(values: np.ndarray) -> np.ndarray:
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     """Labels at the right edge of a panel: text, height in data and colour of each.
 
-    Each is as near to its height as the others allow.
+    Each is as near to its height as the others and the height of the panel allow.
     """
     if not names:
         return
     axes.figure.draw_without_rendering()
     order = sorted(names, key=lambda name: name[1])
     ends = [(0.0, height) for _, height, _ in order]
-    wanted = axes.transData.transform(ends)[:, 1] * POINTS / axes.figure.dpi
+    points = POINTS / axes.figure.dpi
+    wanted = axes.transData.transform(ends)[:, 1] * points
+    bottom, top = axes.get_window_extent().intervaly * points
     steps = LINE_HEIGHT * np.arange(len(order))
-    moved = ascending(wanted - steps) + steps - wanted
+    lowest = np.clip(ascending(wanted - steps), bottom, max(bottom, top - steps[-1]))
+    moved = lowest + steps - wanted
     look: Look = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points"}
     for (text, height, colour), offset in zip(order, moved, strict=True):
         axes.annotate(text, (1.0, height), (4, offset), color=colour, va="center", **look)

@@ -43,6 +43,7 @@ from bouncing_ball.drawing import (
     sample,
     spring_damper_branch,
     style,
+    title,
 )
 
 CONTACT = COLOURS[1]
@@ -115,21 +116,18 @@ def schematic(motion: str) -> tuple[Figure, Axes]:
 
 def fig02(data: xr.Dataset) -> Figure:
     """An n-T orbit of the restitution model over time."""
-    given = parameters(data)
     figure, axes = panels(2.5)
     time = data.time / PERIOD
     axes.plot(time, data.ball, color="black", label="ball $z$")
     axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
-    title = label(**{name: given[name] for name in ("n", "restitution", "amplitude")})
-    axes.set(xlabel=TIME, ylabel="height $z$, $w$", title=title)
-    axes.set_xlim(0, float(time[-1]))
+    axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(0, float(time[-1])))
+    axes.set_title(title(data, "n", "restitution", "amplitude"))
     legend_below(figure)
     return figure
 
 
 def fig03(data: xr.Dataset) -> Figure:
     """Branches of n-T orbits of the restitution model, with the period doubling of Eq. 8."""
-    given = parameters(data)
     figure, axes = panels(3.6)
     names = []
     for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
@@ -144,7 +142,7 @@ def fig03(data: xr.Dataset) -> Figure:
         if branch.amplitude.notnull().any():
             names.append((label(n=n), right_end(branch, "phase"), colour))
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
-    axes.set(xlim=(0, given["amplitude_max"]), title=label(restitution=given["restitution"]))
+    axes.set(xlim=(0, parameters(data)["amplitude_max"]), title=title(data, "restitution"))
     branch_legend(figure, both_phases=False)
     name_at_right(axes, names)
     return figure
@@ -209,8 +207,9 @@ def fig13(data: xr.Dataset) -> Figure:
     figure, axes = panels(4.0)
     common, names = case_names(data)
     shades = colours(data.sizes["case"])
-    start: Look = {"marker": "o", "markersize": 4, "fillstyle": "none", "linestyle": DASHES[1]}
-    end: Look = {"marker": "o", "markersize": 4, "linestyle": "-"}
+    dot: Look = {"marker": "o", "markersize": 4}
+    start = dot | {"markerfacecolor": "white", "linestyle": DASHES[1]}
+    end = dot | {"linestyle": "-"}
     star: Look = {"marker": "*", "markersize": 9, "linestyle": "none"}
     limits = np.array([data.restitution_impact_velocity, data.restitution_bounce_velocity])
     for k, colour in enumerate(shades):
@@ -281,6 +280,7 @@ def fig16(data: xr.Dataset) -> Figure:
     axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     draw_error(below, data, data.threshold_amplitude - limit, "PC")
     given = parameters(data)
+    # The paper has a number for these parameters.
     if (given["restitution"], given["tolerance"], given["release"]) == (0.65, 0.01, "displacement"):
         look: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
         below.plot(PRINTED_RATIO, given["tolerance"], label=f"printed: {PRINTED_RATIO}", **look)
@@ -293,17 +293,16 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     force = parameters(data)["release"] == "force"
     symbol = r"\Lambda_F" if force else r"\Lambda_{SD}"
     formula = "" if force else r", $2\zeta\sqrt{1-\zeta^2}$"
-    ratio, threshold = data.frequency_ratio, data.threshold_amplitude
+    ratio = data.frequency_ratio
+    threshold = data.threshold_amplitude
     axes.plot(ratio, threshold, color=CONTACT, label=f"spring-damper, ${symbol}$")
     axes.fill_between(ratio, threshold, color="0.9", linewidth=0, label="permanent contact")
-    lowest = float(data.minimum_threshold)
-    axes.axhline(
-        lowest, label=f"minimum{formula}", color=CONTACT, linewidth=0.9, dashes=(7, 2, 1, 2)
-    )
-    restitution = parameters(data)["restitution"]
-    axes.set_title(label(restitution=restitution, damping_ratio=float(data.damping_ratio)))
+    look: Look = {"color": CONTACT, "linewidth": 0.9, "linestyle": DASHES[2]}
+    axes.axhline(float(data.minimum_threshold), label=f"minimum{formula}", **look)
+    damping = label(damping_ratio=float(data.damping_ratio))
+    highest = max(2.0, 1.5 * float(threshold.min()))
+    axes.set(title=f"{title(data, 'restitution')}, {damping}", ylim=(0, highest))
     axes.set_ylabel(r"threshold amplitude $\Lambda$")
-    axes.set_ylim(0, max(2.0, 1.5 * float(threshold.min())))
     along_ratio(axes, ratio)
 
 
@@ -312,7 +311,6 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
 
 def fig07(data: xr.Dataset) -> Figure:
     """One cycle of the spring-damper model, with the instants and velocities of the equations."""
-    given = parameters(data)
     figure, axes = panels(2.9)
     time = data.time / PERIOD
     axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
@@ -334,8 +332,7 @@ def fig07(data: xr.Dataset) -> Figure:
         above: Look = {"xycoords": axes.get_xaxis_transform(), "textcoords": "offset points"}
         axes.annotate(name, (instant, 1.0), (0, 3), ha=side, va="bottom", **above)
         draw_velocity(axes, (instant, height), velocity, 0.12 * end, symbol)
-    names = ("n", "restitution", "amplitude", "frequency_ratio")
-    axes.set_title(label(**{name: given[name] for name in names}), pad=16)
+    axes.set_title(title(data, "n", "restitution", "amplitude", "frequency_ratio"), pad=16)
     axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(-0.18 * end, 1.12 * end))
     legend_below(figure, columns=3)
     return figure
@@ -355,20 +352,15 @@ def draw_velocity(
 
 def fig12(data: xr.Dataset) -> Figure:
     """Orbits of both models over time on one table; below, the summit of the stiffest contact."""
-    given = parameters(data)
     figure, (axes, summit) = panels(4.6, rows=2, height_ratios=(3, 2))
     time, table = three_cycles(data, data.table)
     axes.plot(time, table, color=TABLE, linewidth=2.0, label="table $w$")
+    broad: Look = {"color": "0.72", "linewidth": 3.4, "label": "restitution model"}
     for part in (axes, summit):
-        part.plot(
-            *three_cycles(data, data.restitution_ball),
-            color="0.72",
-            linewidth=3.4,
-            label="restitution model",
-        )
+        part.plot(*three_cycles(data, data.restitution_ball), **broad)
         draw_contacts(part, data)
-    title = label(**{name: given[name] for name in ("n", "restitution", "amplitude")})
-    axes.set(ylabel="height $z$, $w$", title=title, xlim=(-0.1, given["n"] + 0.35))
+    axes.set(ylabel="height $z$, $w$", xlim=(-0.1, parameters(data)["n"] + 0.35))
+    axes.set_title(title(data, "n", "restitution", "amplitude"))
     show_summit(summit, data)
     summit.set(xlabel=TIME, ylabel="height at the summit")
     legend_below(figure, columns=3)
@@ -414,15 +406,12 @@ def show_summit(axes: Axes, data: xr.Dataset) -> None:
 
 def fig08(data: xr.Dataset) -> Figure:
     """Branches along Λ for each ϖ: the phases of the table as contact starts and as it ends."""
-    given = parameters(data)
+    shades = colours(data.sizes["frequency_ratio"])
     shown = []
-    for ratio, colour in zip(
-        data.frequency_ratio, colours(data.sizes["frequency_ratio"]), strict=True
-    ):
+    for ratio, colour in zip(data.frequency_ratio, shades, strict=True):
         branch = spring_damper_branch(data.sel(frequency_ratio=ratio))
         shown.append((label(frequency_ratio=ratio), branch, colour))
-    title = label(n=given["n"], restitution=given["restitution"])
-    return domains(shown, given["amplitude_max"], title, height=4.8)
+    return domains(data, shown, height=4.8)
 
 
 fig09 = fig08
@@ -430,19 +419,15 @@ fig09 = fig08
 
 def fig15(data: xr.Dataset) -> Figure:
     """Branches of both models along Λ: the phases of the table as contact starts and as it ends."""
-    given = parameters(data)
     names = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in names})
     shown = [("restitution", restitution_branch(rigid, data), COLOURS[0])]
     contact = spring_damper_branch(data.squeeze("frequency_ratio"))
     shown.append((label(frequency_ratio=contact.frequency_ratio), contact, CONTACT))
-    title = label(n=given["n"], restitution=given["restitution"])
-    return domains(shown, given["amplitude_max"], title, height=4.2)
+    return domains(data, shown, height=4.2)
 
 
-def domains(
-    shown: list[tuple[str, xr.Dataset, str]], amplitude_max: float, title: str, height: float
-) -> Figure:
+def domains(data: xr.Dataset, shown: list[tuple[str, xr.Dataset, str]], height: float) -> Figure:
     """Both phases of some branches in one panel: name, branch and colour of each."""
     figure, axes = panels(height)
     absent = [name for name, branch, _ in shown if branch.amplitude.isnull().all()]
@@ -452,11 +437,12 @@ def domains(
         draw_branch(axes, branch, "release_phase", colour, NARROW)
         for phase in ("phase", "release_phase"):
             mark_special(axes, branch, phase, colour)
+    amplitude_max = parameters(data)["amplitude_max"]
     least = min((float(branch.amplitude.min()) for _, branch, _ in present), default=0.0)
     # The space left of branches that begin far to the right would be empty.
     left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
     note = f"\nno branch for {', '.join(absent)}" if absent else ""
-    axes.set(xlim=(left, amplitude_max), title=title + note)
+    axes.set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the table over $\pi$")
     branch_legend(figure, both_phases=True)
     name_at_right(axes, branch_names(present, 0.01 * np.ptp(axes.get_ylim())))
@@ -469,7 +455,8 @@ def branch_names(
     """Labels of branches at the right ends of both phases; one where these are close."""
     names = []
     for name, branch, colour in present:
-        start, end = right_end(branch, "phase"), right_end(branch, "release_phase")
+        start = right_end(branch, "phase")
+        end = right_end(branch, "release_phase")
         heights = [end] if abs(end - start) < close else [start, end]
         names += [(name, height, colour) for height in heights]
     return names
@@ -480,14 +467,13 @@ def branch_names(
 
 def fig14(data: xr.Dataset) -> Figure:
     """The greatest height of both models along ϖ, and their relative difference."""
-    given = parameters(data)
     figure, (axes, below) = panels(4.2, rows=2, sharex=True)
     look: Look = {"color": CONTACT, "label": "spring-damper model"}
     curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
     limit = float(data.restitution_max_height)
     axes.axhline(limit, label="restitution model", **LIMIT)
     axes.set_ylabel(r"greatest height $\max\,z$")
-    axes.set_title(label(**{name: given[name] for name in ("n", "restitution", "amplitude")}))
+    axes.set_title(title(data, "n", "restitution", "amplitude"))
     along_ratio(axes, data.frequency_ratio)
     draw_error(below, data, data.max_height - limit, "h")
     legend_below(figure)
@@ -502,7 +488,8 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     """
     tolerance = parameters(data)["tolerance"]
     percent = f"{100 * tolerance:g}"
-    ratio, error = data.frequency_ratio.values, data.relative_error.values
+    ratio = data.frequency_ratio.values
+    error = data.relative_error.values
     sign = np.sign(difference.values)
     zeros = np.flatnonzero(sign[1:] * sign[:-1] < 0) + 1
     between = np.sqrt(ratio[zeros - 1] * ratio[zeros])
@@ -513,9 +500,7 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     if np.isfinite(threshold):
         axes.axvline(threshold, **GUIDE)
         value = rf"$\varpi_{{{name},{percent}\%}}={number(threshold)}$"
-        axes.plot(
-            threshold, tolerance, "o", color="black", markersize=4, linestyle="none", label=value
-        )
+        axes.plot(threshold, tolerance, "o", color="black", markersize=4, label=value)
     axes.set(yscale="log", ylabel="relative error")
     axes.set_ylim(bottom=bottom)
     along_ratio(axes, data.frequency_ratio)

@@ -53,12 +53,13 @@ def filled_in(name: str, datasets: Datasets) -> str:
         keep_trailing_newline=True,
     )
     environment.filters.update(
-        fixed=fixed, percent=percent, at_most=at_most, short=short, listed=listed, at=at
+        fixed=fixed, percent=percent, at_most=at_most, short=short, listed=listed, at=at, zip=zip
     )
     given = {key: json.loads(data.attrs["parameters"]) for key, data in datasets.items()}
     judged = [row for group in claims.GROUPS for row in claims.each(datasets["claims"], group)]
     return environment.get_template(f"{name}.md.j2").render(
         **datasets,
+        titles={key: data.attrs["title"] for key, data in datasets.items()},
         given=given,
         judged=judged,
         claim={row["claim"]: row for row in judged},
@@ -178,9 +179,7 @@ def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
     """
     special = branch.isel(special=branch.special_kind.values != "")
     places = np.concatenate([[0.0], special.special_arclength, [1.0]])
-    ends = np.concatenate(
-        [branch.amplitude[:1], special.special_amplitude, branch.amplitude[-1:]]
-    )
+    ends = np.concatenate([branch.amplitude[:1], special.special_amplitude, branch.amplitude[-1:]])
     ranges = []
     for k in range(places.size - 1):
         middle = (places[k] + places[k + 1]) / 2

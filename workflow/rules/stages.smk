@@ -96,7 +96,7 @@ rule compute_permanent_contact:
 
 
 rule compute_error_thresholds:
-    """Errors of the restitution model, and the frequency ratios from which they are tolerable"""
+    """Errors of the restitution model along the frequency ratio"""
     input:
         code=code("error_thresholds"),
     output:

@@ -139,38 +139,28 @@ KINDS = {
 
 
 @dataclass(frozen=True)
-class Difference:
-    """A difference in a line; within a kind, a smaller `order` tells more."""
+class Finding:
+    """A difference, as the report shows it.
+
+    `text` says what is different in one line, `cause` why, as far as the parameters or git know.
+    Within a kind, a smaller `order` tells more. `lines` are a unified diff, `images` the file, what
+    it should be, and where they differ. `of_results` says that the result is wrong in itself,
+    whatever the reference is.
+    """
 
     kind: str
     text: str
     order: tuple[float, ...] = (0.0,)
     lines: str = ""
     images: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Finding:
-    """A difference of an artifact, with the cause that the parameters or git know.
-
-    `of_results` tells that the result is wrong in itself, whatever the reference is.
-    """
-
-    artifact: str
-    difference: Difference
-    cause: str
+    artifact: str = ""
+    cause: str = ""
     of_results: bool = False
-
-    @property
-    def order(self) -> tuple:
-        """What findings are sorted by."""
-        kind = list(KINDS).index(self.difference.kind)
-        return kind, self.difference.order, self.artifact
 
     @property
     def line(self) -> str:
         """The finding in a sentence."""
-        return f"{self.artifact}: {self.difference.text}{'; ' if self.cause else ''}{self.cause}"
+        return f"{self.artifact}: {self.text}{'; ' if self.cause else ''}{self.cause}"
 
 
 # Datasets
@@ -182,7 +172,7 @@ STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value",
 """How a file packs a variable; other encodings, such as compression, do not change values."""
 
 
-def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference]:
+def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
     """Differences of a dataset from the reference `old`, whose tolerances apply."""
     added = [str(name) for name in new.variables if name not in old.variables]
     for name in old.variables:
@@ -191,11 +181,11 @@ def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference
         else:
             twins = [other for other in added if new[other].variable.equals(old[name].variable)]
             renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
-            yield Difference("content", f"{name} is missing{renamed}")
+            yield Finding("content", f"{name} is missing{renamed}")
     for name in added:
-        yield Difference("content", f"{name} is not in the reference")
+        yield Finding("content", f"{name} is not in the reference")
     for change in changes(record(old, "parameters"), record(new, "parameters")):
-        yield Difference("content", f"parameter {change}", (1.0,))
+        yield Finding("content", f"parameter {change}", (1.0,))
     judged = [
         {key: value for key, value in data.attrs.items() if key not in (*PROVENANCE, "parameters")}
         for data in (new, old)
@@ -203,14 +193,14 @@ def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference
     yield from attribute_differences("the dataset", *judged)
 
 
-def variable_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference]:
+def variable_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
     """Differences of one variable in attributes, form and values."""
     yield from attribute_differences(name, new[name].attrs, old[name].attrs)
     forms = form(name, new), form(name, old)
     for what, found in forms[0].items():
         if found != forms[1][what]:
             text = f"{name} has {what} {found}, in the reference {forms[1][what]}"
-            yield Difference("content", text)
+            yield Finding("content", text)
     if all(forms[0][what] == forms[1][what] for what in ("dimensions", "type")):
         yield from value_differences(name, new, old)
 
@@ -229,16 +219,16 @@ def form(name: str, data: xr.Dataset) -> dict[str, str]:
     }
 
 
-def attribute_differences(where: str, new: Mapping, old: Mapping) -> Iterator[Difference]:
+def attribute_differences(where: str, new: Mapping, old: Mapping) -> Iterator[Finding]:
     """Attributes that are absent on one side, or have another value or type."""
     for key in sorted({*new, *old}):
         found, expected = (repr(attributes.get(key, "absent")) for attributes in (new, old))
         if found != expected:
             text = f"attribute {key} of {where} is {found}, in the reference {expected}"
-            yield Difference("content", text, (2.0,))
+            yield Finding("content", text, (2.0,))
 
 
-def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Difference]:
+def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
     """The place where a variable is furthest from the reference, if beyond the tolerance."""
     x = new[name].values
     y = old[name].values
@@ -262,7 +252,7 @@ def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[D
     if count > 1:
         text += f", and {count - 1} more of {y.size} values"
     kind = "verdict" if name == "verdict" else "number" if numbers else "content"
-    yield Difference(kind, text, (y.size, -multiple[worst]))
+    yield Finding(kind, text, (y.size, -multiple[worst]))
 
 
 def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
@@ -337,15 +327,15 @@ DESCRIPTION = re.compile(r"<dc:description>[^<]*</dc:description>")
 """The provenance in an SVG; without "<" it can contain nothing that is drawn."""
 
 
-def file_difference(made: Path, path: Path, loosely: bool) -> Difference | None:
+def file_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
     """How a file differs from what its datasets give; pictures of another matplotlib `loosely`."""
     try:
         return known_difference(made, path, loosely)
     except Exception as error:  # Whatever readers of damaged files raise.
-        return Difference("file", f"it cannot be read: {error!r}")
+        return Finding("file", f"it cannot be read: {error!r}")
 
 
-def known_difference(made: Path, path: Path, loosely: bool) -> Difference | None:
+def known_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
     """As `file_difference`, of files that can be read."""
     if path.suffix == ".nc":
         return next(dataset_differences(datasets.read(path), datasets.read(made)), None)
@@ -362,10 +352,10 @@ def known_difference(made: Path, path: Path, loosely: bool) -> Difference | None
     lines = [text.splitlines() for text in (old, new)]
     unified = list(difflib.unified_diff(*lines, "reference", "now", lineterm="", n=1))
     changed = [line for line in unified[2:] if line[0] in "-+"] or ["ends of lines"]
-    return Difference("text", shortened(changed[0]), lines="\n".join(unified))
+    return Finding("text", shortened(changed[0]), lines="\n".join(unified))
 
 
-def svg_difference(new: str, old: str) -> Difference:
+def svg_difference(new: str, old: str) -> Finding:
     """The first lines at which two SVG files differ."""
     pairs = zip_longest(new.splitlines(), old.splitlines(), fillvalue="")
     number, (found, expected) = next(
@@ -373,25 +363,25 @@ def svg_difference(new: str, old: str) -> Difference:
         (0, ("", "")),
     )
     text = f"line {number} is {shortened(found.strip())}, expected {shortened(expected.strip())}"
-    return Difference("picture", text, (1.0,))
+    return Finding("picture", text, (1.0,))
 
 
-def png_difference(made: Path, path: Path) -> Difference | None:
+def png_difference(made: Path, path: Path) -> Finding | None:
     """How two PNG files differ in chunks or pixels, with an image of the difference."""
     chunks = [png_chunks(file.read_bytes()) for file in (made, path)]
     with Image.open(made) as ours, Image.open(path) as theirs:
         pixels = [np.asarray(image) for image in (ours, theirs)]
     if pixels[0].shape != pixels[1].shape:
-        return Difference("picture", f"its size is {pixels[1].shape}, expected {pixels[0].shape}")
+        return Finding("picture", f"its size is {pixels[1].shape}, expected {pixels[0].shape}")
     count = np.count_nonzero(np.any(pixels[0] != pixels[1], axis=-1))
     if count:
         images = [Image.fromarray(values).convert("RGB") for values in pixels]
         marked = ImageChops.difference(*images).convert("L").point(lambda value: 255 * (value == 0))
         uris = tuple(data_uri(image) for image in (images[1], images[0], marked))
-        return Difference("picture", f"{count} pixels differ", images=uris)
+        return Finding("picture", f"{count} pixels differ", images=uris)
     if chunks[0] != chunks[1]:
         kinds = [" ".join(kind for kind, _ in each) for each in chunks]
-        return Difference("picture", f"its chunks are {kinds[1]}, expected {kinds[0]}")
+        return Finding("picture", f"its chunks are {kinds[1]}, expected {kinds[0]}")
     return None
 
 
@@ -419,10 +409,10 @@ def data_uri(image: Image.Image) -> str:
 # Pictures of another matplotlib
 
 SVG = "{http://www.w3.org/2000/svg}"
-HREF = "{http://www.w3.org/1999/xlink}href"
 NUMBER = re.compile(r"-?\d[\d.]*(?:e[-+]?\d+)?")
-PLACES = {"id", "d", "x", "y", "width", "height", "viewBox", "clip-path", "style", HREF}
-"""Attributes of SVG elements that do not belong to the look, or that are read apart."""
+
+PLACES = {"id", "d", "x", "y", "width", "height", "clip-path", "transform", "viewBox"}
+"""Attributes that say where an element is, or that have no effect."""
 
 CURVE_TOLERANCE = 1.0
 """How far something may be off within its axes, in points: about the width of a line."""
@@ -433,110 +423,84 @@ LAYOUT_TOLERANCE = 8.0
 
 @dataclass(frozen=True)
 class Shape:
-    """Something drawn: its look, the box of its axes or of the picture, and segments within it.
+    """An element of an SVG: its look, and its segments, of shape (number, 2, 2), in a box.
 
-    The box is left, top, width and height in points. Segments, of shape (number, 2, 2), are in
-    units of the box: (0, 0) is its left upper corner and (1, 1) its right lower one.
+    The box, that of the axes to which the element is clipped or that of the picture, is left, top,
+    width and height in points; segments are in units of it.
     """
 
-    look: dict[str, str]
+    look: str
+    clipped: bool
     box: np.ndarray
     segments: np.ndarray
 
-    def __str__(self) -> str:
-        return ", ".join(f"{key}: {value}" for key, value in self.look.items())
 
-
-def outline_difference(new: str, old: str) -> Difference | None:
+def outline_difference(new: str, old: str) -> Finding | None:
     """How two SVG files of different versions of matplotlib differ in what they draw.
 
-    What they draw has the same look in the same order, and is at the same place but for the
-    tolerances above.
+    Elements must have the same look in the same order, and lie at the same place but for the
+    tolerances above. Letters are compared as words, which matplotlib writes in comments.
     """
-    ours, theirs = (
-        ElementTree.fromstring(
-            svg, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
-        )
-        for svg in (new, old)
-    )
-    strange = sorted(vocabulary(theirs) ^ vocabulary(ours))
-    if strange:
-        return Difference("picture", f"one has an element {' '.join(strange[0])}", (1.0,))
-    for expected, found in zip_longest(drawn(ours), drawn(theirs)):
+    for expected, found in zip_longest(drawn(new), drawn(old)):
         if found is None or expected is None or found.look != expected.look:
-            return Difference("picture", f"it draws [{found}], expected [{expected}]", (1.0,))
-        allowed = CURVE_TOLERANCE if "clipped" in found.look else LAYOUT_TOLERANCE
+            looks = [shape.look if shape else "nothing" for shape in (found, expected)]
+            return Finding("picture", f"it draws {looks[0]}, expected {looks[1]}", (1.0,))
         size = expected.box[2:]
-        if (
-            np.any(abs(found.box - expected.box) > LAYOUT_TOLERANCE)
-            or distance(found.segments * size, expected.segments * size) > allowed
-        ):
-            return Difference("picture", f"[{found}] is drawn elsewhere", (1.0,))
+        allowed = CURVE_TOLERANCE if expected.clipped else LAYOUT_TOLERANCE
+        if distance(found.segments * size, expected.segments * size) > allowed:
+            return Finding("picture", f"{found.look} is drawn elsewhere", (1.0,))
     return None
 
 
-def vocabulary(root: ElementTree.Element) -> set[tuple[str, str]]:
-    """Kinds of elements, each with the names of its attributes and with its words."""
-    elements = [element for element in root.iter() if str(element.tag).startswith(SVG)]
-    attributes = {(element.tag, key) for element in elements for key in ["", *element.attrib]}
-    return attributes | {(element.tag, (element.text or "").strip()) for element in elements}
-
-
-def drawn(root: ElementTree.Element) -> Iterator[Shape]:
-    """All that an SVG draws, in order."""
+def drawn(svg: str) -> Iterator[Shape]:
+    """All elements of an SVG that matplotlib wrote."""
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    root = ElementTree.fromstring(svg, parser)
     named = {element.get("id"): element for element in root.iter()}
-    picture = np.array(root.get("viewBox").split(), float)
-    return shapes(root, named, {}, picture)
+    return shapes(root, named, np.array(root.attrib["viewBox"].split(), float))
 
 
 def shapes(
     element: ElementTree.Element,
-    named: Mapping[str, ElementTree.Element],
-    look: dict[str, str],
+    named: Mapping[str | None, ElementTree.Element],
     box: np.ndarray,
+    clipped: bool = False,
 ) -> Iterator[Shape]:
-    """What an element and its children draw; of a text its words, and the place of the first."""
-    if element.tag in (SVG + "defs", SVG + "metadata", ElementTree.Comment):
-        return
-    look = look | look_of(element)
+    """An element and all in it, in order, without metadata and without the letters of words."""
     if "clip-path" in element.attrib:
-        clip = named[element.attrib["clip-path"][len("url(#") : -1]][0]
-        look["clipped"] = clip.tag
-        box = np.array([clip.get(key, "nan") for key in ("x", "y", "width", "height")], float)
-    if element.tag == SVG + "path":
-        yield Shape(look, box, (segments(element) - box[:2]) / box[2:])
-    if element.tag == SVG + "use":
-        path = named[element.attrib[HREF][1:]]
-        place = np.array([element.get("x", "0"), element.get("y", "0")], float)
-        yield Shape(look_of(path) | look, box, (segments(path) + place - box[:2]) / box[2:])
-    words = ""
-    for child in element:
-        if child.tag is ElementTree.Comment:
-            words = (child.text or "").strip()
-        elif words and "transform" in child.attrib:
-            letters = words if child.find(SVG + "use") is not None else "nothing"
-            place = np.array(NUMBER.findall(child.attrib["transform"])[:2], float)
-            text = look | look_of(child) | {"text": letters}
-            yield Shape(text, box, np.array([[place, place]] - box[:2]) / box[2:])
-        else:
-            yield from shapes(child, named, look, box)
+        rectangle = named[element.attrib["clip-path"][len("url(#") : -1]][0]
+        box = np.array([rectangle.attrib[key] for key in ("x", "y", "width", "height")], float)
+        clipped = True
+    yield Shape(look_of(element), clipped, box, (segments(element) - box[:2]) / box[2:])
+    if element.tag != SVG + "metadata" and "transform" not in element.attrib:
+        for child in element:
+            yield from shapes(child, named, box, clipped)
 
 
-def look_of(element: ElementTree.Element) -> dict[str, str]:
-    """How an element is drawn, by its attributes and its style, without places."""
-    look = {key: value for key, value in element.attrib.items() if key not in PLACES}
-    if "transform" in look:
-        look["transform"] = re.sub(r"translate\([^)]*\)", "translate", look["transform"])
-    entries = (entry.split(":", 1) for entry in element.get("style", "").split(";") if entry)
-    return look | {key.strip(): value.strip() for key, value in entries}
+def look_of(element: ElementTree.Element) -> str:
+    """How an element is drawn: its attributes without places, its words, and if it has letters."""
+    attributes = [
+        key if key in PLACES else f"{key}={value}" for key, value in sorted(element.attrib.items())
+    ]
+    turned = re.sub(r"translate\([^)]*\)", "", element.get("transform", ""))
+    kind = "words" if element.tag is ElementTree.Comment else element.tag.removeprefix(SVG)
+    letters = "" if element.find(SVG + "use") is None else "letters"
+    words = [kind, *attributes, turned, letters, (element.text or "").strip()]
+    return f"[{' '.join(word for word in words if word)}]"
 
 
-def segments(path: ElementTree.Element) -> np.ndarray:
-    """The segments of a path, of shape (number, 2, 2); of curves those between control points."""
+def segments(element: ElementTree.Element) -> np.ndarray:
+    """The segments of a path, of curves those between control points, or the diagonal of a box."""
     parts = [np.empty((0, 2, 2))]
-    for piece in path.attrib["d"].split("M")[1:]:
+    for piece in element.get("d", "").split("M")[1:]:
         points = np.array(NUMBER.findall(piece), float).reshape(-1, 2)
         parts.append(np.stack([points[:-1], points[1:]], axis=1))
+    place = [element.attrib[key] for key in ("x", "y") if key in element.attrib]
+    place += NUMBER.findall(element.get("transform", ""))[:2]
+    if len(place) == 2:
+        corner = np.array(place, float)
+        size = np.array([element.get("width", "0"), element.get("height", "0")], float)
+        parts.append(np.array([[corner, corner + size]]))
     return np.concatenate(parts)
 
 
@@ -552,14 +516,14 @@ def distance(first: np.ndarray, second: np.ndarray) -> float:
 
 def farthest(first: np.ndarray, second: np.ndarray) -> float:
     """The largest distance of a point of the first segments from the second."""
-    along = np.linspace(0, 1, 5)[:, None, None]
+    along = np.linspace(0, 1, 5)[:, np.newaxis, np.newaxis]
     points = (first[:, 0] + along * (first[:, 1] - first[:, 0])).reshape(-1, 1, 2)
     start = second[:, 0]
     step = second[:, 1] - start
     length = np.maximum(np.sum(step**2, axis=-1), np.finfo(float).tiny)
     nearest = np.clip(np.sum((points - start) * step, axis=-1) / length, 0, 1)
-    gaps = points - start - nearest[..., None] * step
-    return float(np.max(np.min(np.sqrt(np.sum(gaps**2, axis=-1)), axis=1)))
+    gaps = points - start - nearest[..., np.newaxis] * step
+    return float(np.max(np.min(np.linalg.norm(gaps, axis=-1), axis=1)))
 
 
 # Causes
@@ -634,12 +598,13 @@ class Report:
     @property
     def lines(self) -> list[str]:
         """The report on a terminal: the most telling finding of each artifact, then the verdict."""
-        first = {finding.artifact: finding for finding in reversed(self.findings)}
-        told = sorted(first.values(), key=lambda finding: finding.order)
+        first: dict[str, str] = {}
+        for finding in self.findings:
+            first.setdefault(finding.artifact, finding.line)
         verdict = f"All {self.files} files agree with the reference."
-        if told:
+        if first:
             verdict = f"{len(self.findings)} differences, in {', '.join(sorted(first))}."
-        return [*(finding.line for finding in told), " ".join([verdict, *self.notes])]
+        return [*first.values(), " ".join([verdict, *self.notes])]
 
 
 @dataclass(frozen=True)
@@ -692,7 +657,8 @@ def compare(
         for product in products:
             artifact = artifacts.get(product.artifact, {})
             findings += product_findings(product, new, old, Path(scratch), artifact)
-    findings.sort(key=lambda finding: finding.order)
+    kinds = list(KINDS)
+    findings.sort(key=lambda each: (kinds.index(each.kind), each.order, each.artifact))
     red = {finding.artifact for finding in findings}
     return Report(
         findings,
@@ -762,7 +728,8 @@ def file_findings(side: Side, files: Collection[str], whole: bool) -> Iterator[F
         elif file.endswith(".nc") and Path(file).stem not in side.data:
             texts[file] = f"{file} of the {side.name} cannot be read, or has groups"
     for file, words in texts.items():
-        yield Finding(Path(file).stem, Difference("file", words), "", side.name == "results")
+        name = Path(file).stem
+        yield Finding("file", words, artifact=name, of_results=side.name == "results")
 
 
 def dataset_findings(
@@ -770,7 +737,7 @@ def dataset_findings(
 ) -> Iterator[Finding]:
     """Whether a dataset is stale, and where it differs from the reference, with the cause."""
     for words in staleness(new, artifact):
-        yield Finding(name, Difference("stale", words), "", of_results=True)
+        yield Finding("stale", words, artifact=name, of_results=True)
     differences = list(dataset_differences(new, old))
     if differences:
         changed = "; ".join(changes(record(old, "parameters"), record(new, "parameters")))
@@ -778,7 +745,7 @@ def dataset_findings(
         why = (
             f"changed parameter: {changed}" if changed else cause(artifact.get("code", ()), commit)
         )
-        yield from (Finding(name, difference, why) for difference in differences)
+        yield from (replace(each, artifact=name, cause=why) for each in differences)
 
 
 def staleness(new: xr.Dataset, artifact: Mapping) -> Iterator[str]:
@@ -815,7 +782,7 @@ def product_findings(
                 product.make(side.data, made)
             except Exception as error:  # Whatever a drawing does not find in an older dataset.
                 words = f"today's code cannot make it of the dataset in the {side.name}: {error!r}"
-                yield Finding(product.artifact, Difference("file", words), "", side is new)
+                yield Finding("file", words, artifact=product.artifact, of_results=side is new)
                 return
         loosely = bool(side.other_matplotlib())
         for file in product.files:
@@ -826,7 +793,8 @@ def product_findings(
                     f"{file} in the {side.name} is not what its dataset gives: {difference.text}"
                 )
                 why = "" if side is new else cause(code, commit)
-                yield Finding(product.artifact, replace(difference, text=words), why, side is new)
+                named = replace(difference, artifact=product.artifact, text=words)
+                yield replace(named, cause=why, of_results=side is new)
 
 
 def consequences(product: Product, new: Side, old: Side) -> Iterator[Finding]:
@@ -836,7 +804,7 @@ def consequences(product: Product, new: Side, old: Side) -> Iterator[Finding]:
         if not file.endswith(".svg") and all(path.is_file() for path in paths):
             difference = file_difference(*paths, loosely=False)
             if difference:
-                yield Finding(product.artifact, difference, "")
+                yield replace(difference, artifact=product.artifact)
 
 
 def provenance(name: str, old: xr.Dataset) -> str:

@@ -355,7 +355,7 @@ def _follow(
     """Pseudo-arclength continuation from an orbit towards smaller Λ, and round the saddle-node.
 
     A step is halved if the corrector fails or the tangent turns by more than about 14 degrees, and
-    grows otherwise. Returns the orbits, shape (4, steps), and why the branch ends where it does not
+    grows otherwise. The branches of undamped contacts end before they reach Λ = 0. Returns the orbits, shape (4, steps), and why the branch ends where it does not
     end at the amplitude.
     """
     path = [start]
@@ -366,7 +366,8 @@ def _follow(
     while step > SMALLEST_STEP:
         guess = y + step * direction
         new = correct(family, guess, on_plane(guess, direction), iterations=5)
-        if np.isnan(new).any() or np.linalg.norm(new - y) > 1.5 * step:
+        # Near Λ = 0 a step can jump over a sharp turn of φ to the same orbits with Λ < 0.
+        if np.isnan(new).any() or np.linalg.norm(new - y) > 1.5 * step or new[0] < 0:
             step = step / 2
             continue
         if family.period - new[3] / family.contact.frequency_ratio < LEAST_FLIGHT:
@@ -421,7 +422,6 @@ def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) ->
         def orbit(part, before=before, chord=chord):
             guess = before + part * chord
             found = correct(family, guess, on_plane(guess, chord))
-            # The phase is not defined at Λ = 0, which the branches of undamped contacts pass.
             return guess if np.isnan(found).any() else found
 
         zero = orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15))

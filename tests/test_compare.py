@@ -554,9 +554,9 @@ def the_cause(record):
 
 def test_without_git_causes_are_unknown(record, monkeypatch):
     record.edit(scaled("error_threshold", 2, ()))
-    assert the_cause(record) == "causes are unknown: there is no git"
+    assert the_cause(record) == "causes are unknown without git"
     monkeypatch.setenv("PATH", "")
-    assert the_cause(record) == "causes are unknown: there is no git"
+    assert the_cause(record) == "causes are unknown without git"
 
 
 def test_causes_are_files_of_the_rule_that_git_knows_to_have_changed(committed):

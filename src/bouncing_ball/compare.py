@@ -117,6 +117,12 @@ PRODUCTS = [
     *(picture(name, name) for name in FIGURES if name not in SCHEMATICS),
     *(product for name, rows in tables.TABLES.items() for product in table(name, rows)),
     Product(("figures/claims.nc",), ALL, judge),
+    text("figures/claims.md", ("claims",), lambda data: claims.claims_markdown(data["claims"])),
+    text(
+        "figures/claims.csv",
+        ("claims",),
+        lambda data: tables.comma_separated(claims.all_rows(data["claims"])),
+    ),
     text("paper.md", ALL, article.paper),
     text("supplement.md", ALL, article.supplement),
     text("figures/README.md", ALL, article.figure_list),
@@ -411,8 +417,9 @@ def data_uri(image: Image.Image) -> str:
 SVG = "{http://www.w3.org/2000/svg}"
 NUMBER = re.compile(r"-?\d[\d.]*(?:e[-+]?\d+)?")
 
-PLACES = {"id", "d", "x", "y", "width", "height", "clip-path", "transform", "viewBox"}
-"""Attributes that say where an element is, or that have no effect."""
+HREF = "{http://www.w3.org/1999/xlink}href"
+PLACES = {"id", "d", "x", "y", "width", "height", "clip-path", "transform", "viewBox", HREF}
+"""Attributes that say where an element is, and what its outline is."""
 
 CURVE_TOLERANCE = 1.0
 """How far something may be off within its axes, in points: about the width of a line."""
@@ -471,7 +478,8 @@ def shapes(
         rectangle = named[element.attrib["clip-path"][len("url(#") : -1]][0]
         box = np.array([rectangle.attrib[key] for key in ("x", "y", "width", "height")], float)
         clipped = True
-    yield Shape(look_of(element), clipped, box, (segments(element) - box[:2]) / box[2:])
+    outline = (segments(element, named) - box[:2]) / box[2:]
+    yield Shape(look_of(element), clipped, box, outline)
     if element.tag != SVG + "metadata" and "transform" not in element.attrib:
         for child in element:
             yield from shapes(child, named, box, clipped)
@@ -489,18 +497,24 @@ def look_of(element: ElementTree.Element) -> str:
     return f"[{' '.join(word for word in words if word)}]"
 
 
-def segments(element: ElementTree.Element) -> np.ndarray:
-    """The segments of a path, of curves those between control points, or the diagonal of a box."""
+def segments(element: ElementTree.Element, named: Mapping) -> np.ndarray:
+    """The segments of a path or of a copy of it, of curves those between control points.
+
+    Words have a point where they start, and a rectangle has its diagonal.
+    """
     parts = [np.empty((0, 2, 2))]
     for piece in element.get("d", "").split("M")[1:]:
         points = np.array(NUMBER.findall(piece), float).reshape(-1, 2)
         parts.append(np.stack([points[:-1], points[1:]], axis=1))
     place = [element.attrib[key] for key in ("x", "y") if key in element.attrib]
     place += NUMBER.findall(element.get("transform", ""))[:2]
-    if len(place) == 2:
-        corner = np.array(place, float)
-        size = np.array([element.get("width", "0"), element.get("height", "0")], float)
-        parts.append(np.array([[corner, corner + size]]))
+    if HREF in element.attrib:
+        path = named[element.attrib[HREF].removeprefix("#")]
+        return segments(path, named) + np.array(place or [0.0, 0.0], float)
+    if place:
+        size = [element.get("width", "0"), element.get("height", "0")]
+        corners = np.cumsum(np.array([place, size], float), axis=0)
+        parts.append(corners[np.newaxis])
     return np.concatenate(parts)
 
 
@@ -535,10 +549,12 @@ def cause(files: Collection[str | Path], commit: str) -> str:
     First what is not committed, then what this branch changed against the main one; only if there
     is none of these, what changed since `commit`, that of the reference.
     """
+    if not files:
+        return "causes are unknown"
     paths = [str(Path(file).resolve()) for file in files]
-    folder = Path(paths[0]).parent if paths else Path.cwd()
-    if not paths or git(folder, "rev-parse", "HEAD") is None:
-        return "causes are unknown: there is no git"
+    folder = Path(paths[0]).parent
+    if git(folder, "rev-parse", "HEAD") is None:
+        return "causes are unknown without git"
     edited = changed_files(folder, paths, "HEAD") or []
     created = git(folder, "ls-files", "--others", "--full-name", "--", *paths) or ""
     uncommitted = sorted({*edited, *created.splitlines()})
@@ -767,7 +783,7 @@ def product_findings(
     product: Product, new: Side, old: Side, scratch: Path, artifact: Mapping
 ) -> Iterator[Finding]:
     """Files of both sides that are not what today's code makes of the datasets of that side."""
-    code = artifact.get("drawing", artifact.get("code", ()))
+    code = artifact.get("drawing", ())
     commit = next((str(data.attrs.get("commit")) for data in old.data.values()), "unknown")
     for side in (old, new):
         made = scratch / side.name

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from tests import independent
 
 from bouncing_ball import restitution
-from tests import independent
 
 # The tolerance of what takes some hundred roundings: a few hundred units of 1e-16.
 ROUNDING = 1e-12

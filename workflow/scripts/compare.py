@@ -34,29 +34,29 @@ def configured() -> dict[str, dict]:
     }
 
 
-def main(results: str, reference: str, artifacts: dict, names: list[str]) -> str:
-    """Write the page, and return the lines of the report; exit with a line if there is an error."""
+def main(results: str, reference: str, artifacts: dict, names: list[str]) -> compare.Report:
+    """Compare, write the page, and print the report."""
     report = compare.compare(results, reference, artifacts, names)
     page = Path(results) / "diff" / "index.html"
-    template = CHECKOUT / "workflow" / "templates" / "diff.html.j2"
     page.parent.mkdir(parents=True, exist_ok=True)
-    page.write_text(compare.page(report, template), encoding="utf-8", newline="\n")
-    print("\n".join(report.lines))
-    return f"Differences from the reference: see {page}" if report.findings else ""
+    text = compare.page(report, CHECKOUT / "workflow" / "templates" / "diff.html.j2")
+    page.write_text(text, encoding="utf-8", newline="\n")
+    print("\n".join([*report.lines, f"See {page}."]))
+    return report
 
 
 if __name__ == "__main__":
-    # What a terminal cannot show is replaced.
+    # A terminal may not know all letters.
     sys.stdout.reconfigure(errors="replace")
-    given = globals().get("snakemake")
-    if given:
-        options = given.params
-        arguments = ("results", options.reference, options.artifacts, options.names)
-    elif len(sys.argv) in (2, 3):
-        arguments = (sys.argv[1], [*sys.argv, str(CHECKOUT)][2], configured(), [])
-    else:
-        sys.exit("usage: python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]")
     try:
-        sys.exit(main(*arguments) or 0)
+        if "snakemake" in globals():
+            given = snakemake.params
+            report = main("results", given.reference, given.artifacts, given.names)
+            Path(snakemake.log[0]).write_text("\n".join(report.lines), encoding="utf-8")
+        elif len(sys.argv) in (2, 3):
+            report = main(sys.argv[1], [*sys.argv, str(CHECKOUT)][2], configured(), [])
+        else:
+            sys.exit("usage: python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]")
     except ValueError as error:
         sys.exit(str(error))
+    sys.exit(1 if report.findings else 0)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball import claims, tables
+from bouncing_ball import claims, errors, restitution, tables
 from bouncing_ball.datasets import read
 
 ROOT = Path(__file__).parents[1]
@@ -365,6 +365,39 @@ def test_parameters_on_which_no_claim_rests_may_be_others(reference, judged):
     assert verdicts(claims.judge(reference | {"fig14": changed}, PRINTED)) == verdicts(judged)
 
 
+# Formulas that no other module tests
+
+
+@pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.65), (3, 0.2)])
+def test_equation_8_is_the_doubling_of_the_map_whose_flights_end_at_their_height(n, r):
+    amplitude = restitution.holmes_period_doubling(n, r)
+
+    def reduced_map(phase, velocity):
+        landing = phase + 2 * velocity
+        return np.array([landing, r * velocity + (1 + r) * amplitude * np.cos(landing)])
+
+    orbit = np.array([restitution.impact_phase(n, r, amplitude), n * np.pi])
+    assert reduced_map(*orbit) == pytest.approx([orbit[0] + 2 * n * np.pi, orbit[1]], abs=1e-12)
+    step = 1e-5
+    columns = [
+        (reduced_map(*(orbit + change)) - reduced_map(*(orbit - change))) / (2 * step)
+        for change in step * np.eye(2)
+    ]
+    # Central differences are off by the third derivative, some ten, times the square of the step.
+    assert min(np.linalg.eigvals(np.transpose(columns)).real) == pytest.approx(-1, abs=1e-8)
+
+
+def test_equation_9_is_the_amplitude_at_which_the_table_falls_as_fast_as_a_free_ball():
+    phase = np.linspace(0, 2 * np.pi, 5)
+    fall = restitution.PERMANENT_CONTACT * np.sin(phase)
+    assert fall.max() == 1.0
+
+
+def test_equations_37_and_38_are_shares_of_the_restitution_model():
+    assert errors.relative_error(0.99, 1.0) == pytest.approx(0.01)
+    assert errors.relative_error(5.05, 5.0) == pytest.approx(0.01)
+
+
 # All claims
 
 
@@ -439,7 +472,8 @@ def test_counts_are_those_of_the_dataset_without_the_restored_formulas(judged):
 
 def test_restored_formulas_cover_the_equations_and_name_members_and_tests():
     numbers = []
-    for equations, _, members in claims.FORMULAS:
+    for equations, _, members, tests in claims.FORMULAS:
+        assert (ROOT / "tests" / f"{tests}.py").exists()
         # "Eqs. 1, 3 and 4" and "Eqs. 18-20"
         text = equations.partition(" ")[2].replace(" and ", ", ")
         for part in text.split(", "):
@@ -448,7 +482,6 @@ def test_restored_formulas_cover_the_equations_and_name_members_and_tests():
         for member in members.split(", "):
             module, _, path = member.partition(".")
             assert attrgetter(path)(importlib.import_module(f"bouncing_ball.{module}")) is not None
-            assert (ROOT / "tests" / f"test_{module}.py").exists()
     assert sorted(numbers) == list(range(1, 39))
 
 

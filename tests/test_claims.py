@@ -168,8 +168,8 @@ READINGS = {
         [f"each step on the curve of r = {r}" for r in ("0.85", "0.65", "0.1")],
     ),
     "stable between": (
-        ["the restitution model", "the stability of this range"],
-        ["the instability of all other orbits (some are stable at Λ = 0.7518-1.0955"],
+        ["the restitution model", "the stability of this range, in branches without it (0,"],
+        ["all other orbits, in stable ranges (Λ = 0.7518-1.0955, 1.1625-1.1763)"],
     ),
     "compliant divergence": (
         ["each step of the greatest height"],

@@ -600,11 +600,11 @@ def stability_range(fig03, *figures):
         ranges = stable_ranges(branch)
         absent += ends not in ranges
         others += [f"{low:.4f}-{high:.4f}" for low, high in ranges if (low, high) != ends]
-    extra = f" (some are stable at Λ = {', '.join(others)})" if others else ""
+    extra = f" (Λ = {', '.join(others)})" if others else ""
     return [
-        at_most("the restitution model, by its orbits that break the rule", beyond.sum(), 0),
-        at_most("the stability of this range, by the branches on which it is not", absent, 0),
-        at_most(f"the instability of all other orbits{extra}", len(others), 0),
+        at_most("the restitution model, in orbits that break the rule", beyond.sum(), 0),
+        at_most("the stability of this range, in branches without it", absent, 0),
+        at_most(f"the instability of all other orbits, in stable ranges{extra}", len(others), 0),
     ]
 
 
@@ -701,7 +701,7 @@ def table_velocities(*figures):
     equal = [np.count_nonzero(np.diff(np.sign(np.sin(complete(each).ravel())))) for each in middles]
     return [
         at_most("all orbits of a branch but one", equal, 1),
-        at_most("every orbit, by those with equal velocities on the branches", sum(equal), 0),
+        at_most("every orbit, in orbits with equal velocities", sum(equal), 0),
     ]
 
 
@@ -1018,7 +1018,7 @@ def stable_permanent_contact(fig11):
     surplus = fig11["threshold_amplitude"] - lowest
     decay = 1 - np.exp(-2 * np.pi * zeta * fig11["frequency_ratio"])
     return [
-        at_least("its existence, by the smallest surplus of Fig. 11", surplus, 0.0),
+        at_least("the smallest distance of Fig. 11 above Eq. 36", surplus, 0.0),
         above("the decay of a small disturbance in a period", decay),
     ]
 

@@ -104,7 +104,7 @@ LABELS = {
     "fig02": ["$n=1$, $r=0.85$, $\\Lambda=1$", "ball $z$", "table $w$"],
     "fig03": [*(f"$n={n}$" for n in range(1, 6)), "saddle-node", "period doubling, Eq. 8"],
     "fig04": ["$k$", "$c$", r"$a\,\sin(\Omega t+\varphi)$"],
-    "fig05": ["$n=1$", "$r=1$, $\\Lambda=0.8$", "$r=0.1$, $\\Lambda=2.6$"],
+    "fig05": ["$n=1$", "$r=1$, $\\Lambda=0.8$", r"frequency ratio $\varpi$"],
     "fig06": ["$n=1$, $r=0.65$", "$\\Lambda=0.7$", "$\\Lambda=1$", "$\\Lambda=1.2$"],
     "fig07": ["$z'_i$", "$z'_b$", "$z'_2$", r"$\tau_i=0$", r"$\tau_b$", r"$\tau_2=\tau_i+2\pi n$"],
     "fig08": ["$n=1$, $r=0.85$", "$\\varpi=10^{4}$", "$\\varpi=2$", "joins permanent contact"],
@@ -175,11 +175,12 @@ def test_marks_are_at_the_special_points(name):
     count = 0
     for branch in branches(name, data):
         special = branch.isel(special=np.flatnonzero(branch.special_amplitude.notnull()))
-        for phase in PHASES:
+        durations = special.get("special_contact_duration", xr.zeros_like(special.special_phase))
+        for phase in (special.special_phase, special.special_phase + durations):
             for kind, x, y in zip(
                 special.special_kind.values,
                 special.special_amplitude.values,
-                special[f"special_{phase}"].values / np.pi,
+                phase.values / np.pi,
                 strict=True,
             ):
                 marks = lines_of(figure, kind)
@@ -250,6 +251,28 @@ def test_the_summit_shows_both_models_apart():
     assert heights[0] - heights[1] > 0.2 * (high - low)
 
 
+def test_a_motion_repeats_before_and_after_its_cycle():
+    data = reference("fig12")
+    period = 2 * np.pi
+    motions = [data.table.values, data.restitution_ball.values, *data.ball.values[::-1]]
+    for line, height in zip(of_reference("fig12").axes[0].lines, motions, strict=True):
+        for shift in (-1, 0, 1):
+            at_times = np.interp(data.table_phase.values / period + shift, *line.get_data())
+            assert at_times == pytest.approx(height)
+
+
+def test_an_error_that_changes_its_sign_is_zero_between():
+    data = reference("fig16")
+    axes = of_reference("fig16").axes[1]
+    ratio, error = axes.lines[0].get_data()
+    zero = ratio[np.argmin(error)]
+    assert error.min() == axes.get_ylim()[0]
+    near = np.abs(np.log(data.frequency_ratio / zero)).argsort().values[:2]
+    signs = np.sign(data.threshold_amplitude - data.restitution_threshold).values[near]
+    assert sorted(signs) == [-1, 1]
+    assert np.delete(error, np.argmin(error)) == pytest.approx(data.relative_error.values)
+
+
 def test_velocities_of_the_cycle_are_tangents():
     data = reference("fig07")
     axes = of_reference("fig07").axes[0]
@@ -258,6 +281,14 @@ def test_velocities_of_the_cycle_are_tangents():
     velocities = [dy / dx / (2 * np.pi) for dx, dy in slopes]
     expected = [data.impact_velocity, data.bounce_velocity, data.impact_velocity]
     assert velocities == pytest.approx([float(velocity) for velocity in expected])
+
+
+def test_a_legend_that_is_too_wide_has_fewer_columns():
+    with drawing.style():
+        figure, _ = drawing.panels(2.0)
+        drawing.legend_below(figure, {letter * 30: drawing.sample() for letter in "abc"}, 3)
+        figure.draw_without_rendering()
+    assert_readable(figure)
 
 
 # Other parameters

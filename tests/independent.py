@@ -100,6 +100,17 @@ def roots(function, grid):
     return [brentq(function, grid[i], grid[i + 1], xtol=1e-16) for i in brackets]
 
 
+def lowest(function):
+    """The lowest value of a function on the open interval from 0 to 1, without a hundredth at each
+    end, from samples and further samples round the lowest.
+    """
+    part = np.linspace(0.01, 0.99, 201)
+    for _ in range(2):
+        middle = np.clip(np.argmin(function(part)), 1, 199)
+        part = np.linspace(part[middle - 1], part[middle + 1], 201)
+    return function(part).min()
+
+
 @dataclass
 class Contact:
     """A contact by integration: its duration, δ and δ′ at its end, and samples of δ and δ′."""
@@ -164,14 +175,14 @@ class Cycle:
 
     def greatest_height(self):
         """The greatest height, by a parabola through the three samples round the largest."""
-        largest = self.heights.max()
+        greatest = self.heights.max()
         for part in np.split(self.heights, 2):
             middle = np.clip(np.argmax(part), 1, 398)
             before, top, after = part[middle - 1 : middle + 2]
             if top >= max(before, after):
                 summit = top - (after - before) ** 2 / (8 * (before - 2 * top + after))
-                largest = max(largest, summit)
-        return largest
+                greatest = max(greatest, summit)
+        return greatest
 
 
 def cycle(ratio, zeta, release, amplitude, phase, velocity):

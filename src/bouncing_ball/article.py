@@ -39,7 +39,7 @@ def supplement(datasets: Datasets) -> str:
 
 
 def figure_list(datasets: Datasets) -> str:
-    """The page with each figure and table, what the paper says of it, and what we find, Markdown."""
+    """The page of all figures and tables, with what the paper says and what we find, Markdown."""
     return filled_in("figures", datasets)
 
 

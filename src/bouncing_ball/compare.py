@@ -32,7 +32,7 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise, zip_longest
+from itertools import pairwise, takewhile, zip_longest
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -42,7 +42,7 @@ import matplotlib
 import netCDF4
 import numpy as np
 import xarray as xr
-from PIL import Image, ImageChops
+from PIL import Image
 
 from bouncing_ball import article, claims, datasets, drawing, figures, tables
 
@@ -283,18 +283,19 @@ def multiples(x: np.ndarray, y: np.ndarray, allowed: np.ndarray) -> np.ndarray:
 
 def legible(found: Any, expected: Any) -> tuple[str, str]:
     """Two values in as few digits as tell them apart, but at least four."""
-    if isinstance(found, float):
-        for digits in range(4, 18):
-            texts = f"{found:.{digits}g}", f"{expected:.{digits}g}"
-            if texts[0] != texts[1]:
-                return texts
-    return shortened(found), shortened(expected)
+    if not isinstance(found, float):
+        return excerpts(str(found), str(expected))
+    digits = next(
+        (digits for digits in range(4, 18) if f"{found:.{digits}g}" != f"{expected:.{digits}g}"), 18
+    )
+    return f"{found:.{digits}g}", f"{expected:.{digits}g}"
 
 
-def shortened(value: Any) -> str:
-    """A value in at most 80 characters."""
-    text = repr(value.item() if isinstance(value, np.generic) else value)
-    return text if len(text) <= 80 else f"{text[:77]}…{text[-1]}"
+def excerpts(first: str, second: str) -> tuple[str, str]:
+    """Two texts; of long ones 80 characters, from shortly before they part."""
+    same = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False))))
+    start = max(0, same - 30) if max(len(first), len(second)) > 80 else 0
+    return first[start : start + 80], second[start : start + 80]
 
 
 def record(data: xr.Dataset, key: str) -> dict:
@@ -334,7 +335,10 @@ DESCRIPTION = re.compile(r"<dc:description>[^<]*</dc:description>")
 
 
 def file_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
-    """How a file differs from what its datasets give; pictures of another matplotlib `loosely`."""
+    """How a file differs from what is `made` of its datasets; pictures `loosely` by what they draw.
+
+    An arrow in the text of a finding leads from the file to what is made.
+    """
     try:
         return known_difference(made, path, loosely)
     except Exception as error:  # Whatever readers of damaged files raise.
@@ -344,50 +348,47 @@ def file_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
 def known_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
     """As `file_difference`, of files that can be read."""
     if path.suffix == ".nc":
-        return next(dataset_differences(datasets.read(path), datasets.read(made)), None)
+        difference = next(dataset_differences(datasets.read(made), datasets.read(path)), None)
+        words = difference.text.replace("the reference", "the file") if difference else ""
+        return difference and replace(difference, text=words)
     if path.suffix == ".png":
         return None if loosely else png_difference(made, path)
-    new, old = (file.read_text(encoding="utf-8", errors="replace") for file in (made, path))
+    texts = [file.read_text(encoding="utf-8", errors="replace") for file in (path, made)]
     if path.suffix == ".svg":
-        new, old = (DESCRIPTION.sub("", text, count=1) for text in (new, old))
-        if new == old:
-            return None
-        return outline_difference(new, old) if loosely else svg_difference(new, old)
-    if new == old:
+        texts = [DESCRIPTION.sub("", text, count=1) for text in texts]
+    if texts[0] == texts[1]:
         return None
-    lines = [text.splitlines() for text in (old, new)]
-    unified = list(difflib.unified_diff(*lines, "reference", "now", lineterm="", n=1))
-    changed = [line for line in unified[2:] if line[0] in "-+"] or ["ends of lines"]
-    return Finding("text", shortened(changed[0]), lines="\n".join(unified))
-
-
-def svg_difference(new: str, old: str) -> Finding:
-    """The first lines at which two SVG files differ."""
-    pairs = zip_longest(new.splitlines(), old.splitlines(), fillvalue="")
-    number, (found, expected) = next(
-        ((number, pair) for number, pair in enumerate(pairs, 1) if pair[0] != pair[1]),
-        (0, ("", "")),
+    if path.suffix == ".svg" and loosely:
+        return outline_difference(*texts)
+    lines = [text.splitlines(keepends=True) for text in texts]
+    number, pair = next(
+        (number, pair)
+        for number, pair in enumerate(zip_longest(*lines, fillvalue=""), 1)
+        if pair[0] != pair[1]
     )
-    text = f"line {number} is {shortened(found.strip())}, expected {shortened(expected.strip())}"
-    return Finding("picture", text, (1.0,))
+    words = " -> ".join(repr(excerpt) for excerpt in excerpts(*pair))
+    if path.suffix == ".svg":
+        return Finding("picture", f"line {number}: {words}", (1.0,))
+    unified = difflib.unified_diff(*lines, "the file", "as its datasets give it", n=1)
+    return Finding("text", f"line {number}: {words}", lines="".join(unified))
 
 
 def png_difference(made: Path, path: Path) -> Finding | None:
-    """How two PNG files differ in chunks or pixels, with an image of the difference."""
-    chunks = [png_chunks(file.read_bytes()) for file in (made, path)]
-    with Image.open(made) as ours, Image.open(path) as theirs:
-        pixels = [np.asarray(image) for image in (ours, theirs)]
-    if pixels[0].shape != pixels[1].shape:
-        return Finding("picture", f"its size is {pixels[1].shape}, expected {pixels[0].shape}")
-    count = np.count_nonzero(np.any(pixels[0] != pixels[1], axis=-1))
-    if count:
-        images = [Image.fromarray(values).convert("RGB") for values in pixels]
-        marked = ImageChops.difference(*images).convert("L").point(lambda value: 255 * (value == 0))
-        uris = tuple(data_uri(image) for image in (images[1], images[0], marked))
-        return Finding("picture", f"{count} pixels differ", images=uris)
+    """How two PNG files differ in pixels, with an image of the difference, or in other chunks."""
+    files = path, made
+    images = [Image.open(io.BytesIO(file.read_bytes())) for file in files]
+    chunks = [png_chunks(file.read_bytes()) for file in files]
+    if images[0].size != images[1].size:
+        return Finding("picture", f"its size: {images[0].size} -> {images[1].size}")
+    pixels = [np.asarray(image.convert("RGBA")) for image in images]
+    unequal = np.any(pixels[0] != pixels[1], axis=-1)
+    if np.any(unequal):
+        marked = Image.fromarray(np.where(unequal, 0, 255).astype("uint8"))
+        uris = tuple(data_uri(image) for image in (*images, marked))
+        return Finding("picture", f"{np.count_nonzero(unequal)} pixels differ", images=uris)
     if chunks[0] != chunks[1]:
         kinds = [" ".join(kind for kind, _ in each) for each in chunks]
-        return Finding("picture", f"its chunks are {kinds[1]}, expected {kinds[0]}")
+        return Finding("picture", f"its chunks: {kinds[0]} -> {kinds[1]}")
     return None
 
 
@@ -442,16 +443,16 @@ class Shape:
     segments: np.ndarray
 
 
-def outline_difference(new: str, old: str) -> Finding | None:
+def outline_difference(old: str, new: str) -> Finding | None:
     """How two SVG files of different versions of matplotlib differ in what they draw.
 
     Elements must have the same look in the same order, and lie at the same place but for the
     tolerances above. Letters are compared as words, which matplotlib writes in comments.
     """
-    for expected, found in zip_longest(drawn(new), drawn(old)):
+    for found, expected in zip_longest(drawn(old), drawn(new)):
         if found is None or expected is None or found.look != expected.look:
             looks = [shape.look if shape else "nothing" for shape in (found, expected)]
-            return Finding("picture", f"it draws {looks[0]}, expected {looks[1]}", (1.0,))
+            return Finding("picture", f"it draws {' -> '.join(looks)}", (1.0,))
         size = expected.box[2:]
         allowed = CURVE_TOLERANCE if expected.clipped else LAYOUT_TOLERANCE
         if distance(found.segments * size, expected.segments * size) > allowed:
@@ -619,7 +620,7 @@ class Report:
             first.setdefault(finding.artifact, finding.line)
         verdict = f"All {self.files} files agree with the reference."
         if first:
-            verdict = f"{len(self.findings)} differences, in {', '.join(sorted(first))}."
+            verdict = f"Differences: {len(self.findings)}, in {', '.join(sorted(first))}."
         return [*first.values(), " ".join([verdict, *self.notes])]
 
 
@@ -805,10 +806,11 @@ def product_findings(
             path = side.folder / file
             difference = file_difference(made / file, path, loosely) if path.is_file() else None
             if difference:
-                words = (
-                    f"{file} in the {side.name} is not what its dataset gives: {difference.text}"
-                )
+                what = f"today's code makes another {file} of the reference"
+                if side is new:
+                    what = f"{file} in the results is not what its dataset gives"
                 why = "" if side is new else cause(code, commit)
+                words = f"{what}: {difference.text}"
                 named = replace(difference, artifact=product.artifact, text=words)
                 yield replace(named, cause=why, of_results=side is new)
 

@@ -90,8 +90,14 @@ VARIABLES = {
     "apparent_restitution": Variable("apparent restitution coefficient", "r_a", "Eq. 17"),
     "max_height": Variable("greatest height of the ball over the cycle", "max z", "Eq. 37"),
     "damping_ratio": Variable("damping ratio of the contact", "ζ", "Eq. 16"),
-    "multiplier_real": Variable("real part of the Floquet multiplier", "Re μ"),
-    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", "Im μ"),
+    # Where both multipliers nearly coincide, they are known to the square root of the precision of
+    # the matrix whose eigenvalues they are, some 1e-13.
+    "multiplier_real": Variable(
+        "real part of the Floquet multiplier", "Re μ", tolerance=1e-6, floor=1.0
+    ),
+    "multiplier_imag": Variable(
+        "imaginary part of the Floquet multiplier", "Im μ", tolerance=1e-6, floor=1.0
+    ),
     "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
     "admissible": Variable("whether nothing else happens during the orbit"),
     "end_reason": Variable("why the branch ends there"),

@@ -52,7 +52,7 @@ if __name__ == "__main__":
         if "snakemake" in globals():
             given = snakemake.params
             report = main("results", given.reference, given.artifacts, given.names)
-            Path(snakemake.log[0]).write_text("\n".join(report.lines), encoding="utf-8")
+            Path(snakemake.log[0]).write_text(report.lines[-1], encoding="utf-8")
         elif len(sys.argv) in (2, 3):
             report = main(sys.argv[1], [*sys.argv, str(CHECKOUT)][2], configured(), [])
         else:

@@ -85,7 +85,8 @@ WIDE, NARROW = 3.4, 1.1
 
 def style() -> AbstractContextManager:
     """Context in which figures are drawn and saved: matplotlib's defaults and `SETTINGS`."""
-    return matplotlib.rc_context(matplotlib.rcParamsDefault | SETTINGS)
+    settings: Any = matplotlib.rcParamsDefault | SETTINGS
+    return matplotlib.rc_context(settings)
 
 
 # Labels and parameters
@@ -165,7 +166,8 @@ def colours(count: int) -> Sequence[str]:
 
 def pale(colour: str) -> str:
     """A colour mixed with white, for the wide lines."""
-    return to_hex(0.45 * np.array(to_rgb(colour)) + 0.55)
+    red, green, blue = (0.45 * part + 0.55 for part in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 # Panels
@@ -182,8 +184,9 @@ def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
     axes.set(xscale="log", xlim=(float(ratio.min()), float(ratio.max())))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
-    if axes.get_subplotspec().is_last_row():
-        axes.set_xlabel(r"frequency ratio $\varpi$")
+    axes.set_xlabel(r"frequency ratio $\varpi$")
+    # Of panels one above the other the lowest has the words.
+    axes.label_outer()
 
 
 def legend_below(
@@ -199,8 +202,8 @@ def legend_below(
             handles, labels = axes.get_legend_handles_labels()
             # The upper panel comes first, also where both have an entry.
             entries |= dict(zip(labels, handles, strict=True)) | entries
-    place = "outside lower center"
-    legend = figure.legend(entries.values(), entries.keys(), loc=place, ncols=columns)
+    shown = list(entries.values())
+    legend = figure.legend(shown, list(entries), loc="outside lower center", ncols=columns)
     if columns > 1 and legend.get_window_extent().width > figure.bbox.width:
         legend.remove()
         legend_below(figure, entries, columns - 1)
@@ -347,8 +350,7 @@ def branch_legend(figure: Figure, both_phases: bool) -> None:
     kinds = {kind: look for kind, look in KINDS.items() if kind in drawn}
     marks = {kind: sample(**mark_look(kind)) for kind in MARKS if kind in drawn}
     if not both_phases:
-        lines = {kind: sample(linestyle=look) for kind, look in kinds.items()}
-        legend_below(figure, lines | marks)
+        legend_below(figure, {kind: sample(linestyle=kinds[kind]) for kind in kinds} | marks)
         return
     wide: Look = {"linewidth": WIDE, "color": pale("#000000")}
     phases = {
@@ -356,7 +358,7 @@ def branch_legend(figure: Figure, both_phases: bool) -> None:
         r"end of contact, $\varphi+\tau_b$": sample(linewidth=NARROW),
     }
     # The styles hold for lines of both widths.
-    lines = {
+    lines: dict[str, Any] = {
         kind: (sample(linestyle=look, **wide), sample(linestyle=look, linewidth=NARROW))
         for kind, look in kinds.items()
     }
@@ -391,11 +393,11 @@ def ascending(values: np.ndarray) -> np.ndarray:
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     """Labels at the right edge of a panel: text, height in data and colour of each.
 
-    Each is as near to its height as the others and the height of the panel allow.
+    Each is as near to its height as the others and the height of the panel allow. The panel must
+    have been laid out.
     """
     if not names:
         return
-    axes.figure.draw_without_rendering()
     order = sorted(names, key=lambda name: name[1])
     ends = [(0.0, height) for _, height, _ in order]
     points = POINTS / axes.figure.dpi

@@ -144,6 +144,7 @@ def fig03(data: xr.Dataset) -> Figure:
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
     axes.set(xlim=(0, parameters(data)["amplitude_max"]), title=title(data, "restitution"))
     branch_legend(figure, both_phases=False)
+    figure.draw_without_rendering()
     name_at_right(axes, names)
     return figure
 
@@ -194,8 +195,8 @@ def draw_cases(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
 
 def case_names(data: xr.Dataset) -> tuple[str, list[str]]:
     """What all cases of a dataset share, and a label of each case."""
-    columns = {name: data[name].values for name in ("restitution", "amplitude")}
-    common, names = parted({"n": [parameters(data)["n"]]} | columns)
+    n = parameters(data)["n"]
+    common, names = parted({"n": [n], "restitution": data.restitution, "amplitude": data.amplitude})
     present = data.phase.notnull().any("frequency_ratio").values
     named = [name or "spring-damper model" for name in names]
     pairs = zip(named, present, strict=True)
@@ -238,6 +239,7 @@ def fig13(data: xr.Dataset) -> Figure:
         pairs = zip(names, shades, strict=True)
         entries |= {name: sample(color=colour, **square) for name, colour in pairs}
     legend_below(figure, entries, columns=1)
+    figure.draw_without_rendering()
     shown = data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values))
     name_ratios(axes, shown, "phase", "impact_velocity")
     name_ratios(axes, shown, "release_phase", "bounce_velocity")
@@ -251,7 +253,6 @@ def name_ratios(axes: Axes, case: xr.Dataset, phase: str, velocity: str) -> None
     if not marked.sizes["frequency_ratio"]:
         return
     places = np.stack([marked[phase], marked[velocity]], axis=1) / np.pi
-    axes.figure.draw_without_rendering()
     points = axes.transData.transform(places) * POINTS / axes.figure.dpi
     beside = np.hypot(*(points - points[-1]).T) < CLOSE
     ratios = marked.frequency_ratio.values
@@ -445,6 +446,7 @@ def domains(data: xr.Dataset, shown: list[tuple[str, xr.Dataset, str]], height: 
     axes.set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the table over $\pi$")
     branch_legend(figure, both_phases=True)
+    figure.draw_without_rendering()
     name_at_right(axes, branch_names(present, 0.01 * np.ptp(axes.get_ylim())))
     return figure
 

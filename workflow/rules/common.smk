@@ -80,6 +80,22 @@ def datasets(stage):
     return {name: f"results/figures/{name}.nc" for name in STAGES[stage]}
 
 
+def figure_datasets(stage):
+    """The datasets that the figures of a stage show."""
+    return [file for name, file in datasets(stage).items() if name in FIGURES]
+
+
+def pictures(stage):
+    """The pictures of a stage, with what the report says of them."""
+    names = [name for name in STAGES.get(stage, SCHEMATICS) if name in FIGURES]
+    png = [f"results/figures/{name}.png" for name in names]
+    about = {"caption": f"../report/{stage}.rst", "category": "Figures"}
+    return {
+        "png": [report(file, labels={"figure": Path(file).stem}, **about) for file in png],
+        "svg": [f"results/figures/{name}.svg" for name in names],
+    }
+
+
 def files(name):
     """All files of a figure, a table or a dataset."""
     kinds = ["nc"] if name in [*DATASETS, "claims"] else []
@@ -126,5 +142,4 @@ for folder in (Path("results"), Path("results/figures")):
 
 
 wildcard_constraints:
-    figure="|".join(FIGURES),
     table="|".join(TABLES),

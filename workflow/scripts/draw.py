@@ -1,10 +1,13 @@
-"""Draw one figure from its dataset, if it has one."""
+"""Draw figures, each from its dataset if it has one."""
+
+from pathlib import Path
 
 from bouncing_ball.datasets import commit, read
 from bouncing_ball.drawing import save_picture
 from bouncing_ball.figures import draw
 
-given = snakemake.input.get("data")  # noqa: F821
-datasets = [read(str(given))] if given else []
-figure = draw(snakemake.wildcards.figure, *datasets)  # noqa: F821
-save_picture(figure, snakemake.output.png, snakemake.output.svg, commit())  # noqa: F821
+datasets = {Path(file).stem: read(file) for file in snakemake.input.get("data", [])}
+for png, svg in zip(snakemake.output.png, snakemake.output.svg, strict=True):
+    name = Path(png).stem
+    shown = [datasets[name]] if name in datasets else []
+    save_picture(draw(name, *shown), png, svg, commit())

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -70,7 +71,7 @@ def article(data):
     return f"The threshold is {threshold:.2f}.\nThe verdicts are {verdict}.\n"
 
 
-PICTURE = compare.Product(("figures/fig14.png", "figures/fig14.svg"), ("fig14",), draw)
+PICTURE = compare.Product(("figures/fig14.png", "figures/fig14.svg"), ("fig14",), draw, ())
 PAPER = compare.text("paper.md", ("fig14", "claims"), article)
 
 
@@ -78,7 +79,7 @@ PAPER = compare.text("paper.md", ("fig14", "claims"), article)
 def original(tmp_path_factory):
     """A folder with the files that today's code makes, and that code."""
     folder = tmp_path_factory.mktemp("original")
-    for name in ("study.py", "draw.py", "article.py"):
+    for name in ("study.py", "draw.py"):
         (folder / name).write_text(f"# {name}\n")
     (folder / "figures").mkdir()
     code = [folder / "study.py"]
@@ -99,11 +100,7 @@ class Record:
         for place in (self.reference, self.results):
             shutil.copytree(original, place)
         code = {"parameters": PARAMETERS, "code": [self.reference / "study.py"]}
-        self.artifacts = {
-            "fig14": code | {"drawing": [self.reference / "draw.py"]},
-            "claims": code | {"parameters": {}},
-            "paper": {"drawing": [self.reference / "article.py"]},
-        }
+        self.artifacts = {"fig14": code, "claims": code | {"parameters": {}}}
 
     def report(self, *names):
         return compare.compare(self.results, self.reference, self.artifacts, names)
@@ -583,6 +580,8 @@ def test_causes_are_files_of_the_rule_that_git_knows_to_have_changed(committed):
 def test_a_changed_drawing_is_blamed_for_the_picture_only(committed, monkeypatch):
     committed.edit(scaled("error_threshold", 0.5, ()))
     (committed.reference / "draw.py").write_text("# two\n")
+    picture = replace(PICTURE, code=(committed.reference / "draw.py",))
+    monkeypatch.setattr(compare, "PRODUCTS", [picture, PAPER])
     monkeypatch.setitem(STYLE, "color", "#c77c00")
     lines = committed.lines()
     assert lines.count("changed: draw.py (not committed)") == 2

@@ -44,7 +44,16 @@ import numpy as np
 import xarray as xr
 from PIL import Image
 
-from bouncing_ball import article, claims, datasets, drawing, figures, tables
+from bouncing_ball import (
+    article,
+    claims,
+    datasets,
+    drawing,
+    figures,
+    restitution,
+    spring_damper,
+    tables,
+)
 
 Datasets = Mapping[str, xr.Dataset]
 """Datasets by the names of their artifacts."""
@@ -55,16 +64,23 @@ Datasets = Mapping[str, xr.Dataset]
 
 @dataclass(frozen=True)
 class Product:
-    """Files that follow from the datasets `needs`; `make` writes them into a folder."""
+    """Files that follow from the datasets `needs`; `make` writes them into a folder by `code`."""
 
     files: tuple[str, ...]
     needs: tuple[str, ...]
     make: Callable[[Datasets, Path], None]
+    code: tuple[str | Path, ...]
 
     @property
     def artifact(self) -> str:
         """The name of the figure, table or text."""
         return Path(self.files[0]).stem
+
+
+PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
+DRAWING = (figures.__file__, drawing.__file__)
+JUDGING = (claims.__file__, restitution.__file__, spring_damper.__file__, PRINTED)
+WRITING = (article.__file__, *JUDGING, *sorted(article.TEMPLATES.glob("*.md.j2")))
 
 
 def picture(name: str, *needs: str) -> Product:
@@ -76,35 +92,43 @@ def picture(name: str, *needs: str) -> Product:
         png, svg = (folder / file for file in files)
         drawing.save_picture(figure, png, svg, datasets.commit())
 
-    return Product(files, needs, make)
+    return Product(files, needs, make, DRAWING)
 
 
-def text(file: str, needs: tuple[str, ...], write: Callable[[Datasets], str]) -> Product:
+def text(
+    file: str,
+    needs: tuple[str, ...],
+    write: Callable[[Datasets], str],
+    code: tuple[str | Path, ...] = WRITING,
+) -> Product:
     """A file of text."""
 
     def make(data: Datasets, folder: Path) -> None:
         (folder / file).write_text(write(data), encoding="utf-8", newline="\n")
 
-    return Product((file,), needs, make)
+    return Product((file,), needs, make, code)
+
+
+def table(name: str, rows: Callable[[xr.Dataset], list[list[str]]]) -> list[Product]:
+    """A table of a dataset as Markdown and as CSV."""
+    code = (tables.__file__, claims.__file__)
+    kinds = {"md": tables.markdown, "csv": tables.comma_separated}
+    return [
+        text(
+            f"figures/{name}.{kind}", (name,), lambda data, form=form: form(rows(data[name])), code
+        )
+        for kind, form in kinds.items()
+    ]
 
 
 def judge(data: Datasets, folder: Path) -> None:
     """Write the verdicts on the claims, with what the dataset of claims records of itself."""
     verdicts = claims.judge({name: data[name] for name in STUDIES}, claims.printed_table(PRINTED))
-    kept = data["claims"]
+    title = data["claims"].attrs["title"]
     path = folder / "figures" / "claims.nc"
-    datasets.save(verdicts, path, kept.attrs["title"], record(kept, "parameters"), code=[])
+    datasets.save(verdicts, path, title, record(data["claims"], "parameters"), code=[])
 
 
-def table(name: str, rows: Callable[[xr.Dataset], list[list[str]]]) -> list[Product]:
-    """A table of a dataset as Markdown and as CSV."""
-    return [
-        text(f"figures/{name}.md", (name,), lambda data: tables.markdown(rows(data[name]))),
-        text(f"figures/{name}.csv", (name,), lambda data: tables.comma_separated(rows(data[name]))),
-    ]
-
-
-PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
 FIGURES = [f"fig{number:02}" for number in range(1, 17)]
 SCHEMATICS = ["fig01", "fig04"]
 STUDIES = [name for name in FIGURES if name not in SCHEMATICS]
@@ -116,13 +140,9 @@ PRODUCTS = [
     *(picture(name) for name in SCHEMATICS),
     *(picture(name, name) for name in FIGURES if name not in SCHEMATICS),
     *(product for name, rows in tables.TABLES.items() for product in table(name, rows)),
-    Product(("figures/claims.nc",), ALL, judge),
+    Product(("figures/claims.nc",), ALL, judge, JUDGING),
     text("figures/claims.md", ("claims",), lambda data: claims.claims_markdown(data["claims"])),
-    text(
-        "figures/claims.csv",
-        ("claims",),
-        lambda data: tables.comma_separated(claims.all_rows(data["claims"])),
-    ),
+    table("claims", claims.all_rows)[1],
     text("paper.md", ALL, article.paper),
     text("supplement.md", ALL, article.supplement),
     text("figures/README.md", ALL, article.figure_list),
@@ -646,10 +666,9 @@ def compare(
 ) -> Report:
     """Compare the results in a folder with the reference: all, or those with the names given.
 
-    `artifacts` has for each name the "parameters" of the configuration, the files of "code" that
-    compute the dataset, and the files of "drawing" code and templates that make pictures and texts
-    from it; "settings" are parameters that count where a result records them. Without parameters
-    and code it is unknown whether a result is stale, and why it differs. Raises
+    `artifacts` has for each dataset the "parameters" of the configuration and the files of "code"
+    that compute it; "settings" are parameters that count where a result records them. Without
+    parameters and code it is unknown whether a result is stale, and why it differs. Raises
     ValueError if the results are the reference itself.
     """
     compared, products = chosen(names)
@@ -672,8 +691,7 @@ def compare(
         for side in (new, old):
             (Path(scratch) / side.name / "figures").mkdir(parents=True)
         for product in products:
-            artifact = artifacts.get(product.artifact, {})
-            findings += product_findings(product, new, old, Path(scratch), artifact)
+            findings += product_findings(product, new, old, Path(scratch))
     kinds = list(KINDS)
     findings.sort(key=lambda each: (kinds.index(each.kind), each.order, each.artifact))
     red = {finding.artifact for finding in findings}
@@ -780,11 +798,8 @@ def staleness(new: xr.Dataset, artifact: Mapping) -> Iterator[str]:
         yield "stale: it was made by other code than today's"
 
 
-def product_findings(
-    product: Product, new: Side, old: Side, scratch: Path, artifact: Mapping
-) -> Iterator[Finding]:
+def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> Iterator[Finding]:
     """Files of both sides that are not what today's code makes of the datasets of that side."""
-    code = artifact.get("drawing", ())
     commit = next((str(data.attrs.get("commit")) for data in old.data.values()), "unknown")
     for side in (old, new):
         made = scratch / side.name
@@ -809,7 +824,7 @@ def product_findings(
                 what = f"today's code makes another {file} of the reference"
                 if side is new:
                     what = f"{file} in the results is not what its dataset gives"
-                why = "" if side is new else cause(code, commit)
+                why = "" if side is new else cause(product.code, commit)
                 words = f"{what}: {difference.text}"
                 named = replace(difference, artifact=product.artifact, text=words)
                 yield replace(named, cause=why, of_results=side is new)

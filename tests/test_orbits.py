@@ -90,6 +90,13 @@ def test_an_orbit_and_all_that_is_said_of_it(seed):
     assert found["max_height"] == pytest.approx(cycle.greatest_height(), abs=1e-7)
 
 
+@pytest.mark.parametrize("seed", range(100, 130))
+def test_an_orbit_is_admissible_if_the_integration_returns_to_its_start(seed):
+    one = case(seed, (1.0, 3.0))
+    returns = abs(one.cycle().time - 2 * np.pi * one.n) < 1e-6
+    assert (one.family.clearance(one.y) > 0) == returns
+
+
 def differences(function, y, steps):
     """Derivatives of a function by central differences of the fourth order."""
     columns = []

@@ -214,10 +214,16 @@ def test_what_the_article_says_of_table_1(data):
     assert [end.place[2] for end in by_formula] == ["period doubling"] * 3
 
 
+def test_all_orbits_drawn_are_admissible(data):
+    assert all(each.admissible.all() for each in data.values() if "admissible" in each)
+
+
 def test_what_the_article_says_of_figures_6_10_and_16(data):
     fig06, fig10, fig16 = (data[name] for name in ("fig06", "fig10", "fig16"))
     dips = (fig06.restitution - fig06.apparent_restitution.min("frequency_ratio")).values
     assert dips[0] > 0.005 and dips[-1] < 1e-6
+    compliant = fig06.apparent_restitution.isel(frequency_ratio=0)
+    assert [article.fixed(value, 2) for value in compliant] == ["0.81"] * 3
     departure = 1 - fig10.bounce_velocity / fig10.restitution_bounce_velocity
     assert (departure > 0).all()
     ratio = fig10.frequency_ratio.values

@@ -49,7 +49,8 @@ def test_numbers_of_readme_are_those_of_the_datasets():
         f"greatest height ({article.at_most(worst.sel(measure='max_height'), 2)} at most",
         f"velocity ({article.percent(worst.sel(measure='bounce_velocity'), 2)}), the apparent "
         f"restitution ({article.percent(worst.sel(measure='apparent_restitution'), 2)}) and the "
-        f"phase of the impact ({article.percent(worst.sel(measure='phase'), 1)}).",
+        "phase of the impact relative to itself "
+        f"({article.percent(worst.sel(measure='phase'), 1)}).",
         f"Of the {sum(judged.values())} statements that we judged, {judged['reproduced']} are "
         f"*reproduced*, {judged['definition']} are *definitions*, {judged['by reading']} are right "
         f"*by reading*, {judged['undecidable']} are *undecidable*, and {judged['contradicted']} is",

@@ -65,7 +65,7 @@ def filled_in(name: str, datasets: Datasets) -> str:
         claim={row["claim"]: row for row in judged},
         error_limit=claims.LIMIT,
         stiff=claims.STIFF,
-        stiff_errors=claims.stiff_errors(**{name: datasets[name] for name in STIFF_CURVES}),
+        stiff_errors=stiff_errors(datasets),
         stable_ranges=stable_ranges,
         table1_ends=table1_ends(datasets["table1"]),
         permanent_contact=spring_damper.permanent_contact,
@@ -81,15 +81,16 @@ def filled_in(name: str, datasets: Datasets) -> str:
 
 def rounded(value: Decimal, digits: int, rounding: str) -> str:
     """A number with a number of decimals; its sign is a minus and no hyphen."""
-    text = str(value.quantize(Decimal(1).scaleb(-digits), rounding=rounding))
-    return text.replace("-", "−")
+    # Zero has no sign.
+    number = value.quantize(Decimal(1).scaleb(-digits), rounding=rounding) + 0
+    return str(number).replace("-", "−")
 
 
 def fixed(value: float, digits: int) -> str:
     """A number with a number of decimals.
 
-    >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(np.nan, 2)
-    ('82.18', '−0.2', '–')
+    >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-0.001, 2), fixed(np.nan, 2)
+    ('82.18', '−0.2', '0.00', '–')
     """
     number = float(value)
     return rounded(Decimal(number), digits, ROUND_HALF_EVEN) if np.isfinite(number) else "–"
@@ -170,6 +171,16 @@ def table1_ends(table: xr.Dataset) -> dict[tuple, SimpleNamespace]:
             found = claims.against_print(float(one.computed), printed)
             ends[place] = SimpleNamespace(printed=printed, place=place, **found._asdict())
     return ends
+
+
+def stiff_errors(datasets: Datasets) -> xr.DataArray:
+    """`claims.stiff_errors` on the figures that reach stiff contacts; NaN if none does."""
+    lowest = claims.STIFF * (1 - claims.ROUNDING)
+    sweeps = {name: datasets[name] for name in STIFF_CURVES}
+    stiff = {name: each for name, each in sweeps.items() if each.frequency_ratio.max() >= lowest}
+    if stiff:
+        return claims.stiff_errors(**stiff)
+    return xr.DataArray([[np.nan]], {"orbit": ["–"], "measure": ["–"]}, ("orbit", "measure"))
 
 
 def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 import yaml
 
+import bouncing_ball
 from bouncing_ball import article, claims, figures
 from bouncing_ball.datasets import read
 from bouncing_ball.drawing import style
@@ -73,6 +74,7 @@ def test_abstracts_are_that_of_the_article(file):
 
 def test_versions_agree():
     cited = yaml.safe_load(text("CITATION.cff"))
+    assert bouncing_ball.__version__ == cited["version"]
     assert f'version = "{cited["version"]}"' in text("pyproject.toml")
     assert f"## {cited['version']} ({cited['date-released']})" in text("CHANGELOG.md")
 

@@ -36,3 +36,8 @@ rule accept:
         "../envs/environment.yaml"
     script:
         "../scripts/accept.py"
+
+
+# If a figure fails, the page of an earlier comparison would be taken for that of this run.
+onstart:
+    shell("rm -rf results/diff")

@@ -14,6 +14,10 @@ VERSION := $(shell sed -n 's/^version: //p' CITATION.cff)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
 
+ifneq ($(words $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))),1)
+$(error Snakemake needs a Python whose path has no space: move this folder, or make VENV=/another/path)
+endif
+
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
 .PHONY: all setup test test-cluster test-processors lint diff replication accept report release newest lock clean ci everything test-everything

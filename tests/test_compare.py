@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import subprocess
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -94,11 +93,11 @@ def original(tmp_path_factory):
 class Record:
     """A reference and results in folders of their own, which are equal until a test edits them."""
 
-    def __init__(self, folder: Path, original: Path):
+    def __init__(self, folder: Path, original: Path, *without: str):
         self.reference = folder / "reference"
         self.results = folder / "results"
         for place in (self.reference, self.results):
-            shutil.copytree(original, place)
+            shutil.copytree(original, place, ignore=shutil.ignore_patterns(*without))
         code = {"parameters": PARAMETERS, "code": [self.reference / "study.py"]}
         self.artifacts = {"fig14": code, "claims": code | {"parameters": {}}}
 
@@ -126,10 +125,18 @@ class Record:
 
 @pytest.fixture
 def record(tmp_path, original, monkeypatch):
+    """Datasets and a text; without a picture a comparison takes no time."""
     monkeypatch.setattr(compare, "STUDIES", ["fig14"])
     monkeypatch.setattr(compare, "ALL", ("fig14", "claims"))
+    monkeypatch.setattr(compare, "PRODUCTS", [PAPER])
+    return Record(tmp_path, original, "*.png", "*.svg")
+
+
+@pytest.fixture
+def drawn(record, tmp_path, original, monkeypatch):
+    """Datasets, a text and a picture."""
     monkeypatch.setattr(compare, "PRODUCTS", [PICTURE, PAPER])
-    return Record(tmp_path, original)
+    return Record(tmp_path / "drawn", original)
 
 
 def scaled(name, factor, where=slice(None)):
@@ -156,26 +163,26 @@ def attribute(name, key, value):
 # Truths
 
 
-def test_equal_results_are_one_green_line(record):
-    report = record.report()
+def test_equal_results_are_one_green_line(drawn):
+    report = drawn.report()
     assert report.findings == []
     assert report.lines == ["All 5 files agree with the reference."]
 
 
-def test_rounding_and_other_versions_of_the_code_of_the_reference_are_no_difference(record):
-    record.edit(scaled("max_height", 1 + 1e-11))
-    record.edit(scaled("relative_error", 1 + 1e-7, slice(20, None)))
-    record.edit(lambda data: data.assign_attrs(commit="old", code="old"), side="reference")
-    record.edit(lambda data: data[sorted(data.variables, reverse=True)])
-    PICTURE.make(compare.load(record.results, ["fig14"]), record.results)
-    assert record.lines() == ""
+def test_rounding_and_other_versions_of_the_code_of_the_reference_are_no_difference(drawn):
+    drawn.edit(scaled("max_height", 1 + 1e-11))
+    drawn.edit(scaled("relative_error", 1 + 1e-7, slice(20, None)))
+    drawn.edit(lambda data: data.assign_attrs(commit="old", code="old"), side="reference")
+    drawn.edit(lambda data: data[sorted(data.variables, reverse=True)])
+    PICTURE.make(compare.load(drawn.results, ["fig14"]), drawn.results)
+    assert drawn.lines() == ""
 
 
-def test_line_ends_of_windows_are_no_difference(record):
+def test_line_ends_of_windows_are_no_difference(drawn):
     for file in ("paper.md", "figures/fig14.svg"):
-        path = record.reference / file
+        path = drawn.reference / file
         path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-    assert record.lines() == ""
+    assert drawn.lines() == ""
 
 
 def test_signed_zeros_are_equal(record):
@@ -184,9 +191,9 @@ def test_signed_zeros_are_equal(record):
     assert "error_threshold" not in record.lines()
 
 
-def test_a_user_setting_of_matplotlib_changes_nothing(record):
+def test_a_user_setting_of_matplotlib_changes_nothing(drawn):
     with matplotlib.rc_context({"axes.grid": True, "axes.spines.left": False}):
-        assert record.lines() == ""
+        assert drawn.lines() == ""
 
 
 # Datasets
@@ -344,12 +351,12 @@ def test_a_result_that_is_linked_to_the_reference_is_refused(record):
 
 
 @pytest.mark.parametrize("side", ["reference", "results"])
-def test_missing_and_unexpected_files_are_different(record, side):
-    folder = getattr(record, side)
+def test_missing_and_unexpected_files_are_different(drawn, side):
+    folder = getattr(drawn, side)
     (folder / "figures" / "fig14.svg").unlink()
     (folder / "figures" / "fig17.png").write_bytes(b"")
     (folder / "figures" / ".DS_Store").write_bytes(b"")
-    lines = record.lines()
+    lines = drawn.lines()
     assert f"figures/fig14.svg is missing in the {side}" in lines
     assert f"figures/fig17.png of the {side} is made by no rule" in lines
     assert "DS_Store" not in lines
@@ -370,10 +377,10 @@ WORDS = {
 
 
 @pytest.mark.parametrize("side", ["reference", "results"])
-def test_edited_texts_and_pictures_are_different(record, side):
-    record.rewrite("paper.md", "82.18", "82.19", side)
-    record.rewrite("figures/fig14.svg", "stroke-width: 1.2", "stroke-width: 1.21", side)
-    lines = record.lines()
+def test_edited_texts_and_pictures_are_different(drawn, side):
+    drawn.rewrite("paper.md", "82.18", "82.19", side)
+    drawn.rewrite("figures/fig14.svg", "stroke-width: 1.2", "stroke-width: 1.21", side)
+    lines = drawn.lines()
     assert f"paper: {WORDS[side].format('paper.md')}" in lines
     assert f"fig14: {WORDS[side].format('figures/fig14.svg')}" in lines
 
@@ -394,7 +401,7 @@ def test_a_text_that_is_written_otherwise_is_different(record, monkeypatch):
         return article(data).replace("82.18", "82.17")
 
     changed = compare.text("paper.md", ("fig14", "claims"), floor)
-    monkeypatch.setattr(compare, "PRODUCTS", [PICTURE, changed])
+    monkeypatch.setattr(compare, "PRODUCTS", [changed])
     finding = record.report().findings[0]
     assert "-The threshold is 82.18.\n+The threshold is 82.17." in finding.lines
 
@@ -474,33 +481,33 @@ def test_a_png_with_more_than_its_pixels_is_different(original, tmp_path):
     assert compare.file_difference(made, path, loosely=False).kind == "file"
 
 
-def test_a_picture_that_is_older_than_its_dataset_is_different(record):
-    record.edit(scaled("max_height", 1.01))
-    record.edit(scaled("max_height", 1.01), side="reference")
-    PICTURE.make(compare.load(record.reference, ["fig14"]), record.reference)
-    lines = record.lines()
+def test_a_picture_that_is_older_than_its_dataset_is_different(drawn):
+    drawn.edit(scaled("max_height", 1.01))
+    drawn.edit(scaled("max_height", 1.01), side="reference")
+    PICTURE.make(compare.load(drawn.reference, ["fig14"]), drawn.reference)
+    lines = drawn.lines()
     assert "figures/fig14.png in the results is not what its dataset gives" in lines
     assert "figures/fig14.svg in the results is not what its dataset gives" in lines
     assert "in the reference" not in lines
 
 
-def test_code_that_cannot_draw_the_reference_is_one_line(record):
-    record.edit(lambda data: data.drop_vars("max_height"), side="reference")
-    assert "today's code cannot make it of the dataset in the reference" in record.lines()
+def test_code_that_cannot_draw_the_reference_is_one_line(drawn):
+    drawn.edit(lambda data: data.drop_vars("max_height"), side="reference")
+    assert "today's code cannot make it of the dataset in the reference" in drawn.lines()
 
 
 # Another matplotlib
 
 
 @pytest.fixture
-def older(record):
+def older(drawn):
     """The reference names another matplotlib."""
     versions = datasets.versions() | {"matplotlib": "3.10.0"}
     for name in ("fig14", "claims"):
-        record.edit(
+        drawn.edit(
             lambda data: data.assign_attrs(versions=json.dumps(versions)), name, side="reference"
         )
-    return record
+    return drawn
 
 
 def test_another_matplotlib_is_another_green(older):
@@ -577,27 +584,28 @@ def test_causes_are_files_of_the_rule_that_git_knows_to_have_changed(committed):
     assert the_cause(committed) == "changed: study.py (not committed)"
 
 
-def test_a_changed_drawing_is_blamed_for_the_picture_only(committed, monkeypatch):
+def test_a_changed_text_is_blamed_for_the_text_only(committed, monkeypatch):
     committed.edit(scaled("error_threshold", 0.5, ()))
-    (committed.reference / "draw.py").write_text("# two\n")
-    picture = replace(PICTURE, code=(committed.reference / "draw.py",))
-    monkeypatch.setattr(compare, "PRODUCTS", [picture, PAPER])
-    monkeypatch.setitem(STYLE, "color", "#c77c00")
-    lines = committed.lines()
-    assert lines.count("changed: draw.py (not committed)") == 2
-    assert "study.py" not in lines
+    code = committed.reference / "draw.py"
+    code.write_text("# two\n")
+    changed = compare.text("paper.md", ("fig14",), lambda data: "The threshold.\n", (code,))
+    monkeypatch.setattr(compare, "PRODUCTS", [changed])
+    assert committed.report().lines[0] == (
+        "paper: today's code makes another paper.md of the reference: line 1: "
+        "'The threshold is 82.18.\\n' -> 'The threshold.\\n'; changed: draw.py (not committed)"
+    )
 
 
 # The page
 
 
-def test_the_page_has_all_findings_and_needs_no_other_file(record):
-    record.edit(scaled("error_threshold", 1.01, ()))
-    PICTURE.make(compare.load(record.results, ["fig14"]), record.results)
-    PAPER.make(compare.load(record.results, ["fig14", "claims"]), record.results)
-    record.rewrite("figures/fig14.svg", "#0072b2", "<&>", "reference")
+def test_the_page_has_all_findings_and_needs_no_other_file(drawn):
+    drawn.edit(scaled("error_threshold", 1.01, ()))
+    PICTURE.make(compare.load(drawn.results, ["fig14"]), drawn.results)
+    PAPER.make(compare.load(drawn.results, ["fig14", "claims"]), drawn.results)
+    drawn.rewrite("figures/fig14.svg", "#0072b2", "<&>", "reference")
     template = Path(__file__).parents[1] / "workflow" / "templates" / "diff.html.j2"
-    report = record.report()
+    report = drawn.report()
     page = compare.page(report, template)
     assert "Numbers beyond their tolerance" in page
     assert "error_threshold is 83, the reference has 82.18" in page
@@ -613,13 +621,22 @@ def test_the_page_has_all_findings_and_needs_no_other_file(record):
 def clean(committed):
     """Results that differ, and follow from committed code."""
     data = compare.load(committed.results, ["fig14", "claims"])
-    for product in (PICTURE, PAPER):
-        product.make(data, committed.results)
+    PAPER.make(data, committed.results)
     return committed
 
 
 def accepted(record):
     return compare.accept(record.results, record.reference, record.artifacts)
+
+
+def test_a_picture_is_accepted_with_its_dataset(drawn, monkeypatch):
+    git(drawn.reference, "init", "-q")
+    git(drawn.reference, "add", ".")
+    git(drawn.reference, "commit", "-q", "-m", "code")
+    drawn.edit(scaled("max_height", 1.01))
+    PICTURE.make(compare.load(drawn.results, ["fig14"]), drawn.results)
+    assert accepted(drawn) == ["figures/fig14.nc", "figures/fig14.png", "figures/fig14.svg"]
+    assert drawn.lines() == ""
 
 
 def test_accepted_results_are_the_reference(clean):

@@ -472,7 +472,7 @@ def outline_difference(old: str, new: str) -> Finding | None:
     for found, expected in zip_longest(drawn(old), drawn(new)):
         if found is None or expected is None or found.look != expected.look:
             looks = [shape.look if shape else "nothing" for shape in (found, expected)]
-            return Finding("picture", f"it draws {' -> '.join(looks)}", (1.0,))
+            return Finding("picture", f"it draws {' -> '.join(excerpts(*looks))}", (1.0,))
         size = expected.box[2:]
         allowed = CURVE_TOLERANCE if expected.clipped else LAYOUT_TOLERANCE
         if distance(found.segments * size, expected.segments * size) > allowed:
@@ -773,7 +773,10 @@ def dataset_findings(
     """Whether a dataset is stale, and where it differs from the reference, with the cause."""
     for words in staleness(new, artifact):
         yield Finding("stale", words, artifact=name, of_results=True)
-    differences = list(dataset_differences(new, old))
+    try:
+        differences = list(dataset_differences(new, old))
+    except (KeyError, TypeError, ValueError) as error:
+        differences = [Finding("file", f"the datasets cannot be compared: {error!r}")]
     if differences:
         changed = "; ".join(changes(record(old, "parameters"), record(new, "parameters")))
         commit = str(old.attrs.get("commit"))

@@ -148,7 +148,7 @@ def test_the_points_of_a_branch_do_not_depend_on_the_steps(n, ratio, release, am
 def test_the_period_doubling_of_an_undamped_contact_is_known(n, ratio, expected):
     beside = ratio if ratio != 1 else 1 + 1e-9
     formula = abs(1 - 1 / beside**2) / abs(np.cos(np.pi / (2 * beside)))
-    found = continuation.bifurcations(n, 1.0, "period doubling", ratio, Contact(ratio, 0.0))
+    found = continuation.bifurcations(n, "period doubling", ratio, Contact(ratio, 0.0))
     # Both factors vanish at ϖ = 1, beside which the formula has seven digits.
     assert found[0, 0, 0] == pytest.approx(formula, rel=1e-10 if ratio != 1 else 1e-6)
     if expected is not None:
@@ -159,9 +159,7 @@ def test_the_period_doubling_of_an_undamped_contact_is_known(n, ratio, expected)
 @pytest.mark.parametrize(("n", "ratio"), [(1, 0.61), (2, 2.2260684470825036), (3, 3.7), (1, 1.0)])
 def test_the_branch_of_an_undamped_contact_has_its_period_doubling(n, ratio):
     branch = continuation.branch(Family(n, Contact(ratio, 0.0)), 1.0, 2.1, 30)
-    known = continuation.bifurcations(n, 1.0, "period doubling", ratio, Contact(ratio, 0.0))[
-        0, 0, 0
-    ]
+    known = continuation.bifurcations(n, "period doubling", ratio, Contact(ratio, 0.0))[0, 0, 0]
     doublings = [each.orbit[0] for each in branch.special if each.kind == "period doubling"]
     assert known == pytest.approx(doublings[-1], rel=1e-9)
     assert_on_closed_form(n, ratio, 0.0, "displacement", branch.orbits)
@@ -174,7 +172,7 @@ def test_bifurcations_along_the_frequency_ratio_are_those_of_the_closed_form(rel
     ratios = np.array([1.3, 2.0, 7.77, 10.0, 431.0, 1e4])
     contact = Contact(1.0, zeta, release)
     found = {
-        kind: continuation.bifurcations(n, r, kind, ratios, contact)
+        kind: continuation.bifurcations(n, kind, ratios, contact)
         for kind in continuation.SPECIAL[:2]
     }
     for i in range(3):
@@ -214,7 +212,7 @@ def test_orbits_tend_to_the_restitution_model_to_first_order_in_the_stiffness():
     y = continuation.stable_orbits(n, r, amplitude, ratios)[:, 0]
     observed = Family(n, Contact(ratios, zeta)).observables(y)
     observed["saddle_node"] = continuation.bifurcations(
-        n, r, "saddle-node", ratios, Contact(ratios, zeta)
+        n, "saddle-node", ratios, Contact(ratios, zeta)
     )[0, 0]
     limits = {
         "max_height": restitution.max_height(n, r, amplitude),

@@ -34,6 +34,9 @@ LEAST_FLIGHT = 8e-4
 permanent contact by the square of this, and the multipliers, which are divided by the squared
 velocity of the impact, still have ten digits."""
 
+VANISHES = "the amplitude vanishes, as it does for undamped contacts only"
+"""Why the branch of an undamped contact ends: its phase is not defined at Λ = 0."""
+
 MERGES = "the flight vanishes: the orbit merges with permanent contact"
 
 SPECIAL = ("saddle-node", "period doubling", "grazing")
@@ -133,14 +136,12 @@ def correct(
 
 
 def _solve(matrix: NDArray, values: NDArray) -> NDArray:
-    """Solve systems whose axes come first; NaN if one of the matrices is singular."""
+    """Solve systems whose axes come first; NaN for those whose matrix is singular."""
     rows = np.moveaxis(matrix, (0, 1), (-2, -1))
     columns = np.moveaxis(values, 0, -1)[..., np.newaxis]
-    try:
-        solved = np.linalg.solve(rows, columns)
-    except np.linalg.LinAlgError:
-        solved = np.full_like(columns, np.nan)
-    return np.moveaxis(solved[..., 0], -1, 0)
+    singular = np.linalg.det(rows) == 0
+    rows = np.where(singular[..., np.newaxis, np.newaxis], np.nan, rows)
+    return np.moveaxis(np.linalg.solve(rows, columns)[..., 0], -1, 0)
 
 
 def stiff_guess(family: Family, x: ArrayLike, lift: ArrayLike) -> NDArray:
@@ -185,17 +186,30 @@ def walk(
     count = 3 + int(STEPS_PER_DECADE * np.log10(stiffest / ratios.min()))
     nodes = np.geomspace(stiffest, ratios.min(), count)
     stiff = _at_ratio(family, nodes[0])
-    start = correct(stiff, stiff_guess(stiff, x, lift), condition)
-    path = [start, start]
-    for node in nodes[1:]:
-        path.append(correct(_at_ratio(family, node), 2 * path[-1] - path[-2], condition))
+    guess = stiff_guess(stiff, x, lift)
+    path = [guess]
+    for node in nodes:
+        path.append(_reached(_at_ratio(family, node), guess, condition))
+        guess = path[-1] if len(path) == 2 else 2 * path[-1] - path[-2]
     orbits = np.stack(path[1:])
     # The node before each ratio, and the one before that.
     before = np.clip(np.searchsorted(-nodes, -ratios, side="right") - 1, 1, count - 2)
     part = np.log(ratios / nodes[before]) / np.log(nodes[1] / nodes[0])
     latest = orbits[before, ..., 0]
     guess = latest + part[:, np.newaxis, np.newaxis] * (latest - orbits[before - 1, ..., 0])
-    return correct(_at_ratio(family, ratios), np.moveaxis(guess, 0, -1), condition)
+    return _reached(_at_ratio(family, ratios), np.moveaxis(guess, 0, -1), condition)
+
+
+def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
+    """The orbits predicted by a walk; NaN where they have ceased.
+
+    There Newton's method finds none, or one of another branch, which is far from the prediction, or
+    a solution without the signs of an orbit.
+    """
+    y = correct(family, guess, condition)
+    with np.errstate(invalid="ignore"):
+        near = (np.abs(y - guess)[[1, 3]] < 0.5).all(axis=0)
+        return np.where(near & family.possible(y), y, np.nan)
 
 
 def _at_ratio(family: Family, ratio: ArrayLike) -> Family:
@@ -224,35 +238,35 @@ def stable_orbits(
     Returns
     -------
     ndarray, shape (4, cases, ratios)
-        NaN where there is no orbit.
+        NaN where the orbits of the stiff contacts have ceased.
 
     Raises
     ------
     NoOrbit
-        If Λ lies below the saddle-node of the restitution model (Eq. 7).
+        If Λ lies below the saddle-node of the stiff limit, the restitution model (Eq. 7); orbits of
+        compliant contacts alone are not searched for.
     """
     r, amplitude = (
         np.atleast_1d(each)[:, np.newaxis] for each in np.broadcast_arrays(r, amplitude)
     )
-    x = restitution.saddle_node(n, r)
+    contact = Contact(STIFF, damping_ratio(r), release)
+    x = restitution.saddle_node(n, contact.restitution)
     for one, lowest in zip(amplitude.flat, x.flat, strict=True):
         if one < lowest:
             raise NoOrbit(
                 f"Λ = {one:g} is below the {n}-T orbits, from Λ = {lowest:.6g} on (Eq. 7)"
             )
     lift = np.sqrt(amplitude**2 - x**2)
-    family = Family(n, Contact(STIFF, damping_ratio(r), release))
+    family = Family(n, contact)
     return walk(family, np.atleast_1d(ratios), at_amplitude(amplitude), x, lift)
 
 
-def bifurcations(n: ArrayLike, r: float, kind: str, ratios: ArrayLike, contact: Contact) -> NDArray:
+def bifurcations(n: ArrayLike, kind: str, ratios: ArrayLike, contact: Contact) -> NDArray:
     """The saddle-nodes, or the period doublings, that bound the stable orbits, along ϖ.
 
     Parameters
     ----------
     n : array_like, shape (families,)
-    r : float
-        The restitution coefficient of the stiff limit.
     kind : str
         ``saddle-node`` or ``period doubling``.
     ratios : array_like, shape (ratios,)
@@ -265,11 +279,11 @@ def bifurcations(n: ArrayLike, r: float, kind: str, ratios: ArrayLike, contact: 
         NaN where it is not reached.
     """
     n = np.atleast_1d(n)[:, np.newaxis]
-    x = restitution.saddle_node(n, r)
+    x = restitution.saddle_node(n, contact.restitution)
     lift = np.zeros_like(x)
     test = Family.saddle_node
     if kind == "period doubling":
-        lift = lift + restitution.period_doubling_lift(r)
+        lift = lift + restitution.period_doubling_lift(contact.restitution)
         test = Family.period_doubling
     return walk(Family(n, contact), np.atleast_1d(ratios), at_bifurcation(test), x, lift)
 
@@ -385,29 +399,31 @@ def _follow(
         y = new
         direction = following
         step = min(1.5 * step, largest_step)
-    return np.stack(path, axis=1), f"the continuation does not get beyond amplitude = {y[0]:.6g}"
+    reason = f"the continuation does not get beyond amplitude = {y[0]:.6g}"
+    return np.stack(path, axis=1), VANISHES if y[0] < 10 * SMALLEST_STEP else reason
 
 
 def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
     """Orbits along a path at equal distances between neighbours, shape (4, points).
 
-    A spline through the path is sampled, the samples are corrected to orbits, and this is repeated
-    with them until the distances are equal: then they depend on the branch alone, and not on the
-    steps by which it was followed.
+    A spline through the path is sampled, and the samples are corrected to orbits. The places of the
+    samples are moved until the distances are equal: then the orbits depend on the branch alone, and
+    not on the steps by which it was followed.
     """
-    orbits = path
-    for _ in range(8):
+    length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path), axis=0))])
+    curve = CubicSpline(length, path, axis=1)
+    places = np.linspace(0, length[-1], points)
+    for _ in range(30):
+        guess = curve(places)
+        orbits = correct(family, guess, on_plane(guess, curve(places, 1)))
+        orbits[:, [0, -1]] = path[:, [0, -1]]
+        if np.isnan(orbits).any():
+            raise NoOrbit(f"a {family.n}-T branch cannot be sampled at {points} points")
         chords = np.linalg.norm(np.diff(orbits), axis=0)
-        if orbits.shape[1] == points and np.ptp(chords) < 1e-12 * chords.mean():
+        if np.ptp(chords) < 1e-12 * chords.mean():
             break
-        length = np.concatenate([[0], np.cumsum(chords)])
-        curve = CubicSpline(length, orbits, axis=1)
-        even = np.linspace(0, length[-1], points)
-        inner = curve(even)
-        normal = curve(even, 1)
-        inner[:, [0, -1]] = path[:, [0, -1]]
-        corrected = correct(family, inner[:, 1:-1], on_plane(inner[:, 1:-1], normal[:, 1:-1]))
-        orbits = np.concatenate([path[:, :1], corrected, path[:, -1:]], axis=1)
+        passed = np.concatenate([[0], np.cumsum(chords)])
+        places = np.interp(np.linspace(0, passed[-1], points), passed, places)
     return orbits
 
 

@@ -40,7 +40,8 @@ class Threshold(NamedTuple):
     """A frequency ratio, and how it was found.
 
     The status is ``found``; ``within`` if the error is within the tolerance at every ratio of the
-    scan, and ``outside`` if it is not at the largest: the ratio then is NaN.
+    scan; and ``outside`` if it is not at the largest, or if there is no orbit right below those at
+    which it is. The ratio is NaN if it is not found.
     """
 
     ratio: float
@@ -59,9 +60,8 @@ def relative_error(value: ArrayLike, reference: ArrayLike) -> NDArray:
 def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
     """The frequency ratio from which on an error stays within a tolerance.
 
-    The last ratio of the scan whose error exceeds the tolerance, or is not known because there is
-    no orbit, begins the interval in which the threshold is located. Two crossings between two
-    neighbours are not noticed.
+    The last ratio of the scan whose error exceeds the tolerance begins the interval in which the
+    threshold is located. Two crossings between two neighbours are not noticed.
 
     >>> grid = np.geomspace(1, 1000, 7)
     >>> found = threshold(grid, Error(1 / grid, lambda ratio, i: 1 / ratio), 0.02)
@@ -124,7 +124,7 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
     contact = Contact(ratios, damping_ratio(r), release)
     found = {}
     for name, (kind, test, reference) in kinds.items():
-        orbits = bifurcations(n, r, kind, ratios, contact)[:, 0]
+        orbits = bifurcations(n, kind, ratios, contact)[:, 0]
         condition = at_bifurcation(test)
         found[name] = _along(
             n, r, ratios, release, orbits, condition, lambda family, y: y[0], reference
@@ -163,7 +163,9 @@ def errors(
     quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
 ) -> dict[str, Error]:
     """The errors of the quantities with these names, of all that can be compared."""
-    known = orbit_errors(n, r, amplitude, ratios, release)
+    known = {}
+    if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
+        known |= orbit_errors(n, r, amplitude, ratios, release)
     if {"saddle_node", "period_doubling"} & set(quantities):
         known |= bifurcation_errors(n, r, ratios, release)
     known["permanent_contact"] = permanent_contact_error(ratios, damping_ratio(r), release)
@@ -179,7 +181,7 @@ def lowest_period_doublings(
     digits of its value.
     """
     contact = Contact(ratios, damping_ratio(r), release)
-    orbits = bifurcations(n, r, "period doubling", ratios, contact)
+    orbits = bifurcations(n, "period doubling", ratios, contact)
     turns = np.full(len(orbits[0]), np.nan)
     amplitudes = np.full_like(turns, np.nan)
     for k, lowest in enumerate(np.nanargmin(orbits[0], axis=1)):

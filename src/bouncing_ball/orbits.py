@@ -18,8 +18,8 @@ from bouncing_ball.spring_damper import Contact
 
 @dataclass(frozen=True)
 class Release:
-    """The end of a contact: its duration and the flight that follows, the phase of the table, the
-    relative motion δ, δ′ and δ″ before it, and the velocity z′_b of the ball (Eq. 24).
+    """The end of a contact: its duration and that of the flight, height and velocity of the table,
+    the relative motion δ, δ′ and δ″ before it, and the velocity z′_b of the ball (Eq. 24).
     """
 
     duration: NDArray
@@ -256,13 +256,22 @@ class Family:
         summit = end.table_height + end.gap + end.velocity * rise - rise**2 / 2
         return np.maximum(summit, -_least(lambda part: -in_contact(part), summit.shape))
 
+    def possible(self, y: NDArray) -> NDArray:
+        """Whether a solution of the equations has the signs of an orbit: Λ >= 0, a contact and a
+        flight that take time, and an impact from above.
+        """
+        _, _, u = self.start(y)
+        flight = self.period - y[3] / self.contact.frequency_ratio
+        return (y[0] >= 0) & (y[3] > 0) & (flight > 0) & (u < 0)
+
     def clearance(self, y: NDArray) -> NDArray:
         """Positive if nothing else happens during an orbit, and zero where it grazes.
 
         In contact δ + κδ′ must be negative until the release. In flight the ball must be above the
         table or, after a force release, must not be pressed by the contact before it is. Both
         functions are divided by t(1 - t), with t the part of the contact or flight that has passed,
-        because they vanish at its ends; the smallest quotient is returned.
+        because they vanish at its ends; there, the relative velocity of the impact must be
+        negative and δ + κδ′ must rise. The smallest of these numbers is returned.
         """
         x, lift, u = self.start(y)
         end = self.release(y)
@@ -285,7 +294,8 @@ class Family:
 
         shape = np.shape(end.velocity)
         samples = 32 * int(np.max(self.n)) + 1
-        return np.minimum(_least(in_contact, shape), _least(in_flight, shape, samples))
+        inside = np.minimum(_least(in_contact, shape), _least(in_flight, shape, samples))
+        return np.minimum(inside, np.minimum(-u, end.gap_velocity + lag * end.gap_acceleration))
 
     def observables(self, y: NDArray) -> dict[str, NDArray]:
         """The quantities of orbits by the names that they have in datasets."""
@@ -307,23 +317,17 @@ class Family:
 def _least(function, shape: tuple[int, ...], samples: int = 33) -> NDArray:
     """The smallest value of functions on the open interval from 0 to 1, for an array of functions.
 
-    The functions are sampled, and sampled again twice between the neighbours of their smallest
-    samples. The last samples are so close, 1e-4 of the interval, that a parabola through three of
-    them has the minimum of a smooth function up to rounding errors.
+    The functions are sampled, and sampled again four times between the neighbours of their smallest
+    samples. The last samples are 5e-7 of the interval apart, so that the smallest of them is the
+    minimum of a smooth function up to the square of this.
     """
     steps = np.linspace(0, 1, samples).reshape(-1, *np.ones(len(shape), dtype=int))
     grid = np.broadcast_to(1 / (samples + 1) + steps * (1 - 2 / (samples + 1)), (samples, *shape))
-    for _ in range(2):
+    for _ in range(4):
         best = np.clip(np.argmin(function(grid), axis=0), 1, samples - 2)[np.newaxis]
         low = np.take_along_axis(grid, best - 1, axis=0)
         high = np.take_along_axis(grid, best + 1, axis=0)
+        steps = np.linspace(0, 1, 33).reshape(-1, *np.ones(len(shape), dtype=int))
+        samples = 33
         grid = low + steps * (high - low)
-    values = function(grid)
-    best = np.clip(np.argmin(values, axis=0), 1, samples - 2)[np.newaxis]
-    before, middle, after = (np.take_along_axis(values, best + k, axis=0)[0] for k in (-1, 0, 1))
-    curvature = before - 2 * middle + after
-    convex = curvature > 0
-    drop = np.where(convex, (after - before) ** 2 / (8 * np.where(convex, curvature, 1)), 0)
-    # A minimum at the end of the interval is the smallest sample.
-    inside = np.minimum(before, after) >= middle
-    return np.where(inside, middle - drop, values.min(axis=0))
+    return function(grid).min(axis=0)

@@ -29,6 +29,16 @@ def damping_ratio(r: ArrayLike) -> NDArray:
     return -logarithm / np.hypot(np.pi, logarithm)
 
 
+def free_restitution(zeta: ArrayLike) -> NDArray:
+    """Restitution exp(-πζ/√(1 - ζ²)) of a free impact, the inverse of Eq. 16.
+
+    >>> round(float(free_restitution(damping_ratio(0.85))), 12)
+    0.85
+    """
+    zeta = np.asarray(zeta)
+    return np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
+
+
 def force_release_restitution(zeta: ArrayLike) -> NDArray:
     """Restitution of a free impact whose contact ends where its force vanishes, for ζ < 1.
 
@@ -92,6 +102,13 @@ class Contact:
             return np.zeros_like(self.frequency_ratio, dtype=float)
         return 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
 
+    @property
+    def restitution(self) -> NDArray:
+        """The restitution coefficient of a free impact, the limit of r_a for a stiff contact."""
+        if self.release == "displacement":
+            return free_restitution(self.damping_ratio)
+        return force_release_restitution(self.damping_ratio)
+
     def responses(self, s: ArrayLike) -> Responses:
         """The responses I, I′, J, P and Q at times s, from which the motion in contact is made.
 
@@ -143,9 +160,11 @@ def _quotient(a, b, s):
     """(e^{as} - e^{bs})/(a - b) for complex a and b, also where they are equal."""
     half = (a - b) * s / 2
     small = np.abs(half) < 1e-4
-    # The series of sinh(x)/x, whose next term is x⁴/120 < 1e-18 here.
-    ratio = np.where(small, 1 + half**2 / 6, np.sinh(half) / np.where(small, 1, half))
-    return s * np.exp((a + b) * s / 2) * ratio
+    # Complex arithmetic warns of NaN, which is the answer where there is no orbit.
+    with np.errstate(invalid="ignore"):
+        # The series of sinh(x)/x, whose next term is x⁴/120 < 1e-18 here.
+        ratio = np.where(small, 1 + half**2 / 6, np.sinh(half) / np.where(small, 1, half))
+        return s * np.exp((a + b) * s / 2) * ratio
 
 
 def permanent_contact(ratio: ArrayLike, zeta: ArrayLike, release: str = "displacement") -> NDArray:

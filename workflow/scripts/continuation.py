@@ -116,7 +116,7 @@ def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
     r = parameters["restitution"]
     ratios = parameters["frequency_ratio"]
     contact = Contact(np.array(ratios), damping_ratio(r), release)
-    ends = np.stack([bifurcations(n, r, kind, ratios, contact) for kind in BOUNDS], axis=-1)
+    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in BOUNDS], axis=-1)
     amplitude, phase, _, angle = np.where(ends[0] <= parameters["amplitude_max"], ends, np.nan)
     duration = angle / np.array(ratios)[:, np.newaxis]
     fold = restitution.saddle_node(n, r)

@@ -88,7 +88,7 @@ def readings(n: np.ndarray, ratios: np.ndarray) -> dict[str, np.ndarray]:
             np.repeat(weight, n.size)[:, np.newaxis],
         )
         families = np.tile(n, damping.size)
-        kinds = [bifurcations(families, r, kind, ratios, contact)[0] for kind in BOUNDS]
+        kinds = [bifurcations(families, kind, ratios, contact)[0] for kind in BOUNDS]
         return np.stack(kinds, axis=-1).reshape(damping.size, n.size, ratios.size, 2)
 
     first_order = -np.log(r) / np.pi
@@ -223,7 +223,7 @@ def table1_readings(printed: xr.DataArray) -> xr.Dataset:
     parts = xr.concat([difference.where(group) for group in groups.values()], rows)
     over = ["frequency_ratio", "n", "bound"]
     zeta = float(damping_ratio(RESTITUTION))
-    nodes = bifurcations(n, RESTITUTION, "saddle-node", ratios, Contact(ratios, zeta))
+    nodes = bifurcations(n, "saddle-node", ratios, Contact(ratios, zeta))
     needed = [
         [
             needed_tolerance(

@@ -5,8 +5,7 @@ import io
 import os
 import re
 import shutil
-import subprocess
-import sys
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,29 +25,32 @@ class Checkout:
 
     path: Path
 
-    def run(self, *arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess:
-        """Snakemake as a user calls it, by default in the copy."""
-        return subprocess.run(
-            [sys.executable, "-m", "snakemake", *arguments],
-            cwd=folder or self.path,
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
+    def run(self, *arguments: str, folder: Path | None = None) -> tuple[int | str, str]:
+        """Snakemake's command in the copy or another folder: its exit status and what it prints.
 
-    def plan(self, *arguments: str) -> str:
-        """What a dry run prints, or the line with which it is refused. It runs in this process."""
+        It runs in this process, which has imported Snakemake; scripts have their own as always. The
+        status of a refused configuration is the line with which it is refused.
+        """
         printed = io.StringIO()
         variables = dict(os.environ)
-        with contextlib.chdir(self.path), contextlib.redirect_stdout(printed):
-            with contextlib.redirect_stderr(printed), pytest.raises(SystemExit) as ended:
-                cli.main(["--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments])
+        with (
+            # Those of Snakemake's code: files left open, deprecated arguments.
+            warnings.catch_warnings(action="ignore"),
+            contextlib.chdir(folder or self.path),
+            contextlib.redirect_stdout(printed),
+            contextlib.redirect_stderr(printed),
+            pytest.raises(SystemExit) as ended,
+        ):
+            cli.main([*arguments])
         os.environ.clear()
         os.environ.update(variables)
-        if isinstance(ended.value.code, str):
-            return ended.value.code
-        assert ended.value.code == 0, printed.getvalue()
-        return printed.getvalue()
+        return ended.value.code, printed.getvalue()
+
+    def plan(self, *arguments: str) -> str:
+        """What a dry run prints."""
+        status, printed = self.run("--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments)
+        assert status == 0, printed
+        return printed
 
     def planned(self, *arguments: str) -> set[str]:
         """The rules whose jobs a run would execute."""
@@ -79,8 +81,8 @@ def complete(stubs, tmp_path_factory) -> Checkout:
     """The same after a whole run. Tests may plan further runs here, and change nothing."""
     folder = tmp_path_factory.mktemp("complete") / "checkout"
     shutil.copytree(stubs.path, folder)
-    done = Checkout(folder).run("--cores", "2")
-    assert done.returncode == 0, done.stderr
+    status, printed = Checkout(folder).run("--cores", "2")
+    assert status == 0, printed
     return Checkout(folder)
 
 

@@ -48,7 +48,8 @@ class Checkout:
 
     def plan(self, *arguments: str) -> str:
         """What a dry run prints."""
-        status, printed = self.run("--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments)
+        options = ["--dry-run", "--cores", "1", "--quiet", "host", "--"]
+        status, printed = self.run(*options, *arguments)
         assert status == 0, printed
         return printed
 

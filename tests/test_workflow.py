@@ -43,9 +43,8 @@ def made(folder: Path) -> set[str]:
 
 def files(name: str) -> set[str]:
     """The files of a figure, a table or a dataset."""
-    kinds = ["nc"] * (name in DATASETS) + ["png", "svg"] * (name in FIGURES)
-    kinds += ["md", "csv"] * (name in TABLES)
-    return {f"figures/{name}.{kind}" for kind in kinds}
+    kinds = {"nc": DATASETS, "png": FIGURES, "svg": FIGURES, "md": TABLES, "csv": TABLES}
+    return {f"figures/{name}.{kind}" for kind, names in kinds.items() if name in names}
 
 
 # Targets
@@ -180,7 +179,8 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
         if script is None:
             continue
         scripts.add(Path(script).name)
-        needed, new = {"__init__"}, imported(ROOT / script)
+        needed = {"__init__"}
+        new = imported(ROOT / script)
         while new:
             needed |= new
             new = set().union(*(imported(ROOT / f"src/bouncing_ball/{name}.py") for name in new))
@@ -310,12 +310,10 @@ def test_a_stage_runs_on_a_cluster(fresh, tmp_path, monkeypatch):
     try:
         monkeypatch.setenv("PATH", f"{tmp_path / 'slurm/bin'}{os.pathsep}{os.environ['PATH']}")
         # Without accounting, squeue knows the state of a job; the rest makes the test short.
-        status, printed = fresh.run(
-            *("--profile", "profiles/slurm", "--slurm-no-account"),
-            *("--slurm-status-command", "squeue"),
-            *("--slurm-init-seconds-before-status-checks", "6", "--latency-wait", "5"),
-            *("--", "permanent_contact"),
-        )
+        options = ["--profile", "profiles/slurm", "--slurm-no-account", "--latency-wait", "5"]
+        options += ["--slurm-status-command", "squeue"]
+        options += ["--slurm-init-seconds-before-status-checks", "6"]
+        status, printed = fresh.run(*options, "--", "permanent_contact")
     finally:
         subprocess.run([loopback, "stop", tmp_path / "slurm"], check=True)
     assert status == 0, printed

@@ -148,6 +148,12 @@ def test_the_threshold_of_permanent_contact_is_among_the_others(known_errors):
     assert round(found.ratio, 4) == 9.8118
 
 
+def test_permanent_contact_needs_no_orbit():
+    # There is no orbit with this amplitude.
+    found = errors.errors(["permanent_contact"], 1, 0.65, 0.1, RATIOS, "displacement")
+    assert list(found) == ["permanent_contact"]
+
+
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_dense_scan_has_the_same_errors_and_threshold(release):
     n, r, amplitude = 2, 0.85, 1.0
@@ -182,7 +188,8 @@ def test_where_there_is_no_orbit_the_error_is_infinite():
 @pytest.mark.parametrize("n", [1, 3])
 def test_the_error_of_the_height_of_elastic_impacts_is_that_of_half_a_contact(n):
     """As r tends to 1, n ϖ times the error tends to 1/(1 + 2Λ sin φ/(nπ)²)."""
-    r, amplitude = 1 - 1e-5, 0.5
+    r = 1 - 1e-5
+    amplitude = 0.5
     lift = amplitude * np.sin(restitution.impact_phase(n, r, amplitude))
     ratios = np.array([1e3, 2e3])
     found = errors.orbit_errors(n, r, amplitude, ratios, "displacement")["max_height"].values

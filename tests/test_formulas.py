@@ -52,7 +52,8 @@ class Parameters:
 
     def coefficients(self):
         """a, b, c of Eqs. 12 and 13, and A and B for δ = 0 and z′ = z′_i at the start."""
-        ratio, zeta = self.ratio, self.zeta
+        ratio = self.ratio
+        zeta = self.zeta
         amplitude, phase, velocity, _ = self.y
         a = ratio * np.sqrt(1 - zeta**2)
         b = -2 * zeta * ratio / self.gamma
@@ -76,7 +77,8 @@ class Parameters:
         """Eq. 13 as printed."""
         a, b, c, first, second = self.coefficients()
         amplitude, phase, *_ = self.y
-        zeta, ratio = self.zeta, self.ratio
+        ratio = self.ratio
+        zeta = self.zeta
         transient = np.exp(-zeta * ratio * s) * (
             (-zeta * ratio * first + a * second) * np.cos(a * s)
             + (-a * first - zeta * ratio * second) * np.sin(a * s)
@@ -176,8 +178,10 @@ def contact_in_units(p):
 
     def acceleration(table, table_velocity, displacement, velocity):
         speed = p.length * p.frequency
-        y, x = (table + displacement) * p.length, table * p.length
-        y_rate, x_rate = (table_velocity + velocity) * speed, table_velocity * speed
+        x = table * p.length
+        y = (table + displacement) * p.length
+        x_rate = table_velocity * speed
+        y_rate = (table_velocity + velocity) * speed
         forces = p.damping * (x_rate - y_rate) + p.stiffness * (x - y) - p.mass * GRAVITY
         return forces / p.mass
 
@@ -191,7 +195,8 @@ def contact_equation(p):
     damper = 2 * p.zeta * p.ratio
 
     def acceleration(w, w_rate, displacement, velocity):
-        z, z_rate = w + displacement, w_rate + velocity
+        z = w + displacement
+        z_rate = w_rate + velocity
         return -1 - damper * (z_rate - w_rate) - p.ratio**2 * (z - w)
 
     return p.family.bounce_velocity(p.y) - p.y[2], gained(p, acceleration)
@@ -335,7 +340,8 @@ def steady_coefficients(p):
 
 def steady_bracket(p):
     """δ = -1/ϖ² + (Λ/γ)[(ϖ² - 1) sin(τ + φ) - 2ζϖ cos(τ + φ)], and the bracket is at most √γ."""
-    sine, cosine = p.ratio**2 - 1, -2 * p.zeta * p.ratio
+    sine = p.ratio**2 - 1
+    cosine = -2 * p.zeta * p.ratio
     turn = np.linspace(0, 2 * np.pi, 100_001)
     largest = np.max(sine * np.sin(turn) + cosine * np.cos(turn))
     found, printed = steady_motion(p, sine / p.gamma, cosine / p.gamma)

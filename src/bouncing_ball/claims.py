@@ -17,7 +17,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -364,7 +364,7 @@ class Claim:
     place: str
     text: str
     datasets: tuple[str, ...]
-    decide: Callable[..., float | list[Reading]]
+    decide: Callable[..., Any]
     printed: str = ""
     missing: str = ""
     definition: bool = False
@@ -1186,7 +1186,8 @@ def printed_table(path: str | Path) -> xr.DataArray:
         for row in rows
         for bound in bounds
     }
-    ratios, families = (list(dict.fromkeys(place[axis] for place in entries)) for axis in (0, 1))
+    ratios = list(dict.fromkeys(ratio for ratio, _, _ in entries))
+    families = list(dict.fromkeys(n for _, n, _ in entries))
     texts = [[[entries[ratio, n, bound] for bound in bounds] for n in families] for ratio in ratios]
     axes = {"frequency_ratio": ratios, "n": families, "bound": bounds}
     return xr.DataArray(texts, axes, list(axes))
@@ -1302,8 +1303,10 @@ def answer(claim: Claim, datasets: Mapping[str, xr.Dataset]) -> dict:
         return {"verdict": "not asked", "reason": "; ".join(filter(None, others))}
     try:
         decided = claim.decide(*(datasets[name] for name in claim.datasets))
-        return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
-    except Exception as error:  # whatever fails for this claim, the others are judged
+        if claim.printed:
+            return of_number(claim, decided)
+        return of_readings(claim, decided)
+    except (KeyError, ValueError, IndexError) as error:
         return {"verdict": "not computed", "reason": f"{type(error).__name__}: {error}"}
 
 
@@ -1473,7 +1476,7 @@ def each(data: xr.Dataset, group: str) -> list[dict]:
     chosen = data.isel(claim=data["group"].values == group)
     rows = []
     for place in range(chosen.sizes["claim"]):
-        row = {name: values[place].item() for name, values in chosen.variables.items()}
+        row = {name: chosen[name].values[place].item() for name in chosen.variables}
         printed = row["printed_text"]
         row["computed"] = computed_text(row["found"], printed) if printed else ""
         row["distance"] = distance_text(row["deviation_units"], row["deviation"])

@@ -9,12 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from bouncing_ball import restitution
 from bouncing_ball.orbits import Family
+from bouncing_ball.restitution import Numbers
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
@@ -47,7 +48,7 @@ class NoOrbit(ValueError):
     """There is no such orbit, or Newton's method does not find it."""
 
 
-def at_amplitude(amplitude: ArrayLike) -> Condition:
+def at_amplitude(amplitude: Numbers) -> Condition:
     """The condition of an amplitude Λ."""
 
     def condition(family, y):
@@ -56,7 +57,7 @@ def at_amplitude(amplitude: ArrayLike) -> Condition:
     return condition
 
 
-def at_duration(angle: ArrayLike) -> Condition:
+def at_duration(angle: Numbers) -> Condition:
     """The condition of a duration θ = ϖ τ_b of the contact."""
 
     def condition(family, y):
@@ -144,7 +145,7 @@ def _solve(matrix: NDArray, values: NDArray) -> NDArray:
     return np.moveaxis(np.linalg.solve(rows, columns)[..., 0], -1, 0)
 
 
-def stiff_guess(family: Family, x: ArrayLike, lift: ArrayLike) -> NDArray:
+def stiff_guess(family: Family, x: Numbers, lift: Numbers) -> NDArray:
     """The orbit of the restitution model with X and Y as a guess for a stiff contact.
 
     The contact lasts half a free oscillation, or less with the force release.
@@ -212,16 +213,16 @@ def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
         return np.where(near & family.possible(y), y, np.nan)
 
 
-def _at_ratio(family: Family, ratio: ArrayLike) -> Family:
+def _at_ratio(family: Family, ratio: Numbers) -> Family:
     """The same family on contacts of another frequency ratio."""
     return replace(family, contact=replace(family.contact, frequency_ratio=ratio))
 
 
 def stable_orbits(
     n: int,
-    r: ArrayLike,
-    amplitude: ArrayLike,
-    ratios: ArrayLike,
+    r: Numbers,
+    amplitude: Numbers,
+    ratios: Numbers,
     release: str = "displacement",
 ) -> NDArray:
     """The orbits on the stable side of the saddle-node at given amplitudes along ϖ.
@@ -261,7 +262,7 @@ def stable_orbits(
     return walk(family, np.atleast_1d(ratios), at_amplitude(amplitude), x, lift)
 
 
-def bifurcations(n: ArrayLike, kind: str, ratios: ArrayLike, contact: Contact) -> NDArray:
+def bifurcations(n: Numbers, kind: str, ratios: Numbers, contact: Contact) -> NDArray:
     """The saddle-nodes, or the period doublings, that bound the stable orbits, along ϖ.
 
     Parameters
@@ -337,7 +338,7 @@ def branch(
         If there is no orbit to begin with, or the continuation fails.
     """
     ratio = float(family.contact.frequency_ratio)
-    start = stable_orbits(family.n, r, amplitude_max, ratio, family.contact.release)[:, 0, 0]
+    start = stable_orbits(int(family.n), r, amplitude_max, ratio, family.contact.release)[:, 0, 0]
     if np.isnan(start).any():
         raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
     reached = f"amplitude = {amplitude_max:g} is reached"
@@ -369,7 +370,7 @@ def _follow(
     """Pseudo-arclength continuation from an orbit towards smaller Λ, and round the saddle-node.
 
     A step is halved if the corrector fails or the tangent turns by more than about 14 degrees, and
-    grows otherwise. The branches of undamped contacts end before they reach Λ = 0. Returns the orbits, shape (4, steps), and why the branch ends where it does not
+    grows otherwise. Returns the orbits, shape (4, steps), and why the branch ends where it does not
     end at the amplitude.
     """
     path = [start]

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from bouncing_ball import restitution
@@ -22,6 +22,7 @@ from bouncing_ball.continuation import (
     stable_orbits,
 )
 from bouncing_ball.orbits import Family
+from bouncing_ball.restitution import Numbers
 from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
 
 
@@ -48,7 +49,7 @@ class Threshold(NamedTuple):
     status: str
 
 
-def relative_error(value: ArrayLike, reference: ArrayLike) -> NDArray:
+def relative_error(value: Numbers, reference: Numbers) -> NDArray:
     """Relative error of the restitution model, whose value is the reference (Eqs. 37 and 38).
 
     >>> float(relative_error(0.99, 1.0).round(12))
@@ -83,7 +84,7 @@ def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
     return Threshold(float(np.exp(place)), "found")
 
 
-def permanent_contact_error(ratios: NDArray, zeta: float, release: str) -> Error:
+def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Error:
     """The error of the threshold of permanent contact (Eq. 38)."""
 
     def error(ratio):
@@ -99,7 +100,7 @@ def orbit_errors(
     """The errors of quantities of the stable n-T orbit at an amplitude (Eq. 37), by their names."""
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     phase = restitution.impact_phase(n, r, amplitude)
-    quantities = {
+    quantities: dict[str, tuple[Callable[[Family, NDArray], NDArray], Numbers]] = {
         "max_height": (Family.max_height, restitution.max_height(n, r, amplitude)),
         "bounce_velocity": (Family.bounce_velocity, restitution.bounce_velocity(n)),
         "phase": (lambda family, y: y[1], phase),
@@ -140,9 +141,9 @@ def _along(
     orbits: NDArray,
     condition: Condition,
     value: Callable[[Family, NDArray], NDArray],
-    reference: float,
+    reference: Numbers,
 ) -> Error:
-    """The error of a quantity of orbits that are known at the ratios of a scan, shape (4, ratios)."""
+    """The error of a quantity of the orbits at the ratios of a scan, shape (4, ratios)."""
     zeta = damping_ratio(r)
 
     def error(ratio, y):
@@ -163,7 +164,7 @@ def errors(
     quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
 ) -> dict[str, Error]:
     """The errors of the quantities with these names, of all that can be compared."""
-    known = {}
+    known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
         known |= orbit_errors(n, r, amplitude, ratios, release)
     if {"saddle_node", "period_doubling"} & set(quantities):
@@ -173,7 +174,7 @@ def errors(
 
 
 def lowest_period_doublings(
-    n: ArrayLike, r: float, ratios: NDArray, release: str
+    n: Numbers, r: float, ratios: NDArray, release: str
 ) -> tuple[NDArray, NDArray]:
     """The frequency ratio at which the period doubling of each family is lowest, and its amplitude.
 
@@ -182,13 +183,14 @@ def lowest_period_doublings(
     """
     contact = Contact(ratios, damping_ratio(r), release)
     orbits = bifurcations(n, "period doubling", ratios, contact)
-    turns = np.full(len(orbits[0]), np.nan)
+    families = np.atleast_1d(n)
+    turns = np.full(families.size, np.nan)
     amplitudes = np.full_like(turns, np.nan)
     for k, lowest in enumerate(np.nanargmin(orbits[0], axis=1)):
         if lowest in (0, ratios.size - 1):
             continue
 
-        def amplitude(logarithm, n=np.atleast_1d(n)[k], guess=orbits[:, k, lowest]):
+        def amplitude(logarithm, n=families[k], guess=orbits[:, k, lowest]):
             family = Family(n, replace(contact, frequency_ratio=np.exp(logarithm)))
             return float(correct(family, guess, at_bifurcation(Family.period_doubling))[0])
 

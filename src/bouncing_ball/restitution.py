@@ -10,8 +10,11 @@ Y = Λ sin φ its height, here called the lift.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
+
+Numbers = float | NDArray
+"""A number, or an array of them."""
 
 PERMANENT_CONTACT = 1.0
 """Λ_CR: a ball at rest stays on the table up to this amplitude (Eq. 9)."""
@@ -21,7 +24,7 @@ STICKING = 1e-9
 each other faster and faster, and their velocities fall geometrically."""
 
 
-def bounce_velocity(n: ArrayLike) -> NDArray:
+def bounce_velocity(n: Numbers) -> NDArray:
     """Velocity nπ of the ball just after the impact of an n-T orbit (Eq. 6).
 
     >>> round(float(bounce_velocity(1)), 6)
@@ -30,7 +33,7 @@ def bounce_velocity(n: ArrayLike) -> NDArray:
     return np.pi * np.asarray(n)
 
 
-def saddle_node(n: ArrayLike, r: ArrayLike) -> NDArray:
+def saddle_node(n: Numbers, r: Numbers) -> NDArray:
     """Amplitude nπ(1 - r)/(1 + r) from which on the n-T orbits exist (Eq. 7).
 
     It is also the velocity X of the table at the impact of every n-T orbit (Eq. 6).
@@ -42,7 +45,7 @@ def saddle_node(n: ArrayLike, r: ArrayLike) -> NDArray:
     return bounce_velocity(n) * (1 - r) / (1 + r)
 
 
-def impact_phase(n: ArrayLike, r: ArrayLike, amplitude: ArrayLike) -> NDArray:
+def impact_phase(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
     """Phase φ of the impact of the stable n-T orbit (Eq. 6); that of the unstable orbit is -φ.
 
     It is NaN below the saddle-node.
@@ -54,7 +57,7 @@ def impact_phase(n: ArrayLike, r: ArrayLike, amplitude: ArrayLike) -> NDArray:
         return np.arccos(saddle_node(n, r) / np.asarray(amplitude))
 
 
-def trace(r: ArrayLike, lift: ArrayLike) -> NDArray:
+def trace(r: Numbers, lift: Numbers) -> NDArray:
     """Trace 1 + r² - (1 + r)² Y of the linearised map (Eq. 5) at an n-T orbit; its determinant
     is r².
     """
@@ -62,13 +65,13 @@ def trace(r: ArrayLike, lift: ArrayLike) -> NDArray:
     return 1 + r**2 - (1 + r) ** 2 * np.asarray(lift)
 
 
-def period_doubling_lift(r: ArrayLike) -> NDArray:
+def period_doubling_lift(r: Numbers) -> NDArray:
     """Lift Y = 2(1 + r²)/(1 + r)² at the period doubling, where 1 + trace + determinant = 0."""
     r = np.asarray(r)
     return 2 * (1 + r**2) / (1 + r) ** 2
 
 
-def period_doubling(n: ArrayLike, r: ArrayLike) -> NDArray:
+def period_doubling(n: Numbers, r: Numbers) -> NDArray:
     """Amplitude at which the n-T orbit of the map of Eq. 5 loses its stability.
 
     >>> round(float(period_doubling(1, 0.85)), 4)
@@ -77,7 +80,7 @@ def period_doubling(n: ArrayLike, r: ArrayLike) -> NDArray:
     return np.hypot(period_doubling_lift(r), saddle_node(n, r))
 
 
-def holmes_period_doubling(n: ArrayLike, r: ArrayLike) -> NDArray:
+def holmes_period_doubling(n: Numbers, r: Numbers) -> NDArray:
     """The period doubling as printed, Λ² = 1 + [nπ(1 - r)/(1 + r)]² (Eq. 8).
 
     It belongs to Holmes' map, which neglects the height of the table against that of the flight;
@@ -89,12 +92,12 @@ def holmes_period_doubling(n: ArrayLike, r: ArrayLike) -> NDArray:
     return np.hypot(1, saddle_node(n, r))
 
 
-def stable(r: ArrayLike, lift: ArrayLike) -> NDArray[np.bool_]:
+def stable(r: Numbers, lift: Numbers) -> NDArray[np.bool_]:
     """Whether both Floquet multipliers of an n-T orbit lie inside the unit circle."""
     return is_stable(trace(r, lift), np.asarray(r) ** 2)
 
 
-def is_stable(trace: ArrayLike, determinant: ArrayLike) -> NDArray[np.bool_]:
+def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
     """Whether both eigenvalues of a 2 × 2 matrix lie inside the unit circle.
 
     An orbit within 1e-9 of a bifurcation counts as not stable, so that rounding errors do not
@@ -105,19 +108,19 @@ def is_stable(trace: ArrayLike, determinant: ArrayLike) -> NDArray[np.bool_]:
     return (np.abs(trace) < 1 + determinant - margin) & (determinant < 1 - margin)
 
 
-def max_height(n: ArrayLike, r: ArrayLike, amplitude: ArrayLike) -> NDArray:
+def max_height(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
     """Greatest height Λ sin φ + (nπ)²/2 of the ball over a cycle of the stable n-T orbit."""
     lift = np.asarray(amplitude) * np.sin(impact_phase(n, r, amplitude))
     return lift + bounce_velocity(n) ** 2 / 2
 
 
-def height(n: int, lift: ArrayLike, time: ArrayLike) -> NDArray:
+def height(n: int, lift: Numbers, time: Numbers) -> NDArray:
     """Height of the ball at times since an impact, for an n-T orbit with the lift Y (Eq. 4)."""
     since = np.mod(time, 2 * np.pi * n)
     return lift + bounce_velocity(n) * since - since**2 / 2
 
 
-def velocity(n: int, time: ArrayLike) -> NDArray:
+def velocity(n: int, time: Numbers) -> NDArray:
     """Velocity of the ball at times since an impact of an n-T orbit (Eq. 3)."""
     return bounce_velocity(n) - np.mod(time, 2 * np.pi * n)
 

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from bouncing_ball.restitution import Numbers
 
 RELEASES = ("displacement", "force")
 
 
-def damping_ratio(r: ArrayLike) -> NDArray:
+def damping_ratio(r: Numbers) -> NDArray:
     """Damping ratio ζ of the contact on which a free impact has the restitution r (Eq. 16).
 
     Free means without weight, and with a contact that ends at δ = 0.
@@ -29,7 +31,7 @@ def damping_ratio(r: ArrayLike) -> NDArray:
     return -logarithm / np.hypot(np.pi, logarithm)
 
 
-def free_restitution(zeta: ArrayLike) -> NDArray:
+def free_restitution(zeta: Numbers) -> NDArray:
     """Restitution exp(-πζ/√(1 - ζ²)) of a free impact, the inverse of Eq. 16.
 
     >>> round(float(free_restitution(damping_ratio(0.85))), 12)
@@ -39,7 +41,7 @@ def free_restitution(zeta: ArrayLike) -> NDArray:
     return np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
 
 
-def force_release_restitution(zeta: ArrayLike) -> NDArray:
+def force_release_restitution(zeta: Numbers) -> NDArray:
     """Restitution of a free impact whose contact ends where its force vanishes, for ζ < 1.
 
     Schwager and Pöschel (2007): the contact is shorter than half a free oscillation, by the angle
@@ -86,10 +88,10 @@ class Contact:
         The weight in contact, 1 but for the reading of Table 1 without gravity in contact.
     """
 
-    frequency_ratio: ArrayLike
-    damping_ratio: ArrayLike
+    frequency_ratio: float | NDArray
+    damping_ratio: float | NDArray
     release: str = "displacement"
-    weight: ArrayLike = 1.0
+    weight: float | NDArray = 1.0
 
     def __post_init__(self):
         if self.release not in RELEASES:
@@ -109,13 +111,13 @@ class Contact:
             return free_restitution(self.damping_ratio)
         return force_release_restitution(self.damping_ratio)
 
-    def responses(self, s: ArrayLike) -> Responses:
+    def responses(self, s: Numbers) -> Responses:
         """The responses I, I′, J, P and Q at times s, from which the motion in contact is made.
 
         I and I′ are displacement and velocity after a unit impulse; J, P and Q the displacements
         under the forces 1, sin s and cos s. They are integrals of products of exponentials, written
         with (e^{as} - e^{bs})/(a - b) in a form that is finite for a = b, so that there is no
-        singularity at the resonance ζ = 0, ϖ = 1, where the coefficients of Eqs. 12 and 13 have one.
+        singularity at the resonance ζ = 0, ϖ = 1, as Eqs. 12 and 13 have one.
         """
         s = np.asarray(s)
         zeta = np.asarray(self.damping_ratio)
@@ -132,7 +134,7 @@ class Contact:
             cosine=wave.real,
         )
 
-    def motion(self, s: ArrayLike, u: ArrayLike, x: ArrayLike, y: ArrayLike) -> Motion:
+    def motion(self, s: Numbers, u: Numbers, x: Numbers, y: Numbers) -> Motion:
         """Motion in contact (Eqs. 12 and 13) at times s, from δ = 0 and δ′ = u.
 
         x and y are Λ cos φ and Λ sin φ at the start of the contact.
@@ -167,7 +169,7 @@ def _quotient(a, b, s):
         return s * np.exp((a + b) * s / 2) * ratio
 
 
-def permanent_contact(ratio: ArrayLike, zeta: ArrayLike, release: str = "displacement") -> NDArray:
+def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacement") -> NDArray:
     """Λ_SD: the amplitude up to which the steady motion stays in contact (Eq. 33).
 
     Its displacement must not become positive or, with the force release, its force not negative.

@@ -2,6 +2,8 @@
 13).
 """
 
+import sys
+
 import numpy as np
 import xarray as xr
 
@@ -61,7 +63,7 @@ def fig10(parameters: dict, release: str) -> xr.Dataset:
 
 
 def fig13(parameters: dict, release: str) -> xr.Dataset:
-    """As Fig. 10, with the round frequency ratios 2, 5 and the decades added, which are labelled."""
+    """As Fig. 10, with the frequency ratios 2, 5 and the decades added, which are labelled."""
     n = parameters["n"]
     amplitude = np.array(parameters["amplitude"])
     r = np.full(amplitude.shape, parameters["restitution"])
@@ -87,6 +89,7 @@ STAGE = {
 }
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     release = snakemake.params.release
     for name, (compute, title) in STAGE.items():
         parameters = snakemake.params.config[name]

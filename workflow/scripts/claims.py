@@ -1,11 +1,13 @@
 """The verdicts on the claims of the paper, from all datasets, and their texts."""
 
+import sys
 from pathlib import Path
 
 from bouncing_ball import claims
 from bouncing_ball.datasets import read, save
 from bouncing_ball.tables import comma_separated
 
+sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 verdicts = claims.judge(datasets, claims.printed_table(snakemake.input.printed))
 title = "Verdicts on the paper's claims"

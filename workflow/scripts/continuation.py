@@ -1,6 +1,7 @@
 """Stage: branches of n-T orbits along Λ, and their bifurcations (Figs. 8, 9 and 15, Table 1)."""
 
 import csv
+import sys
 
 import numpy as np
 import xarray as xr
@@ -16,7 +17,7 @@ BOUNDS = ("saddle-node", "period doubling")
 
 
 def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
-    """The branch of a family; if it cannot be followed, NaN, with the reason as that of its ends."""
+    """The branch of a family; if it cannot be followed, NaN, with the reason at its ends."""
     r = parameters["restitution"]
     points = parameters["points"]
     try:
@@ -154,7 +155,7 @@ def read_printed(path: str) -> dict[tuple[float, int], list[float]]:
 
 
 def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
-    """The frequency ratio at which the period doubling of each family is lowest, and its Λ there."""
+    """The ϖ at which the period doubling of each family is lowest, and its Λ there."""
     n = parameters["n"]
     ratios = grid(parameters["frequency_ratio"])
     turns, amplitudes = lowest_period_doublings(n, parameters["restitution"], ratios, release)
@@ -173,6 +174,7 @@ TITLES = {
 }
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     config = snakemake.params.config
     release = snakemake.params.release
     step = snakemake.params.largest_step

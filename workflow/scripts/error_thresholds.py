@@ -1,6 +1,7 @@
 """Stage: from which frequency ratio on the restitution model is right (Fig. 14 and thresholds)."""
 
-import numpy as np
+import sys
+
 import xarray as xr
 
 from bouncing_ball import restitution
@@ -73,6 +74,7 @@ STAGE = {
 }
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     release = snakemake.params.release
     for name, (compute, title) in STAGE.items():
         parameters = snakemake.params.config[name]

@@ -1,6 +1,7 @@
 """Stage: the threshold of permanent contact along the frequency ratio (Figs. 11 and 16)."""
 
-import numpy as np
+import sys
+
 import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
@@ -27,7 +28,7 @@ def fig11(parameters: dict, release: str) -> xr.Dataset:
 
 
 def fig16(parameters: dict, release: str) -> xr.Dataset:
-    """As Fig. 11, with the relative error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
+    """As Fig. 11, with the error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
     zeta = float(spring_damper.damping_ratio(parameters["restitution"]))
     ratios = grid(parameters["frequency_ratio"])
     error = permanent_contact_error(ratios, zeta, release)
@@ -45,6 +46,7 @@ STAGE = {
 }
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     release = snakemake.params.release
     for name, (compute, title) in STAGE.items():
         parameters = snakemake.params.config[name]

@@ -1,5 +1,7 @@
 """Stage: the restitution model alone (Figs. 2 and 3, and three balls)."""
 
+import sys
+
 import numpy as np
 import xarray as xr
 
@@ -94,6 +96,7 @@ STAGE = {
 }
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     for name, (compute, title) in STAGE.items():
         parameters = snakemake.params.config[name]
         dataset = compute(parameters)

@@ -6,6 +6,7 @@ contact, another stability, digits that were cut off, or the formulas of the res
 """
 
 import csv
+import sys
 
 import numpy as np
 import xarray as xr
@@ -165,8 +166,9 @@ def paper_equations(n: int, ratio: float, zeta: float, unknowns: np.ndarray) -> 
 def needed_tolerance(
     n: int, ratio: float, zeta: float, node: np.ndarray, amplitude: float
 ) -> float:
-    """The smallest norm of the defects of Eqs. 21 to 26 at a Λ below the saddle-node, to first order
-    in the distance from it; 0 above, where orbits exist.
+    """The smallest norm of the defects of Eqs. 21 to 26 at a Λ below the saddle-node.
+
+    It is given to first order in the distance from the saddle-node; 0 above, where orbits exist.
 
     At the saddle-node the derivative of the defects by the unknowns has a left null vector. No
     change of the unknowns removes the part of the defects along it.
@@ -269,6 +271,7 @@ def table1_readings(printed: xr.DataArray) -> xr.Dataset:
 
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     save(
         table1_readings(read_printed(snakemake.input.printed)),
         snakemake.output.table1_readings,

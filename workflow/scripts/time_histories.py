@@ -1,5 +1,7 @@
 """Stage: heights of ball and table over a cycle (Figs. 7 and 12)."""
 
+import sys
+
 import numpy as np
 import xarray as xr
 
@@ -91,6 +93,7 @@ STAGE = {
 }
 
 if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     release = snakemake.params.release
     for name, (compute, title) in STAGE.items():
         parameters = snakemake.params.config[name]

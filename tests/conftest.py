@@ -1,54 +1,101 @@
-"""Shared by the root's tests: the accepted record, what variables are declared, settings.
+"""Copies of the workflow, in which a script only writes its outputs: a whole run takes seconds."""
 
-What the tests of all houses share is in :mod:`shared_fixtures`.
-"""
-
+import contextlib
+import io
+import os
+import re
+import shutil
+import warnings
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import pytest
-from declared_variables import variables_of
-
-import bouncing_ball
-from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.paper.exhibits.continuation_of_orbits import Continuation
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsOfContacts
-from bouncing_ball.pipeline.yaml_files import read_yaml
+from snakemake import cli
 
 ROOT = Path(__file__).resolve().parents[1]
-pytest_plugins = ["shared_fixtures", "article_texts"]
+STUB = """from pathlib import Path
+for file in snakemake.output:
+    Path(file).write_text("made by a stub")
+"""
+
+
+@dataclass(frozen=True)
+class Checkout:
+    """A copy of the workflow, with shortcuts to run and to change it."""
+
+    path: Path
+
+    def run(self, *arguments: str, folder: Path | None = None) -> tuple[int | str, str]:
+        """Snakemake's command in the copy or another folder: its exit status and what it prints.
+
+        It runs in this process, which has imported Snakemake; scripts have their own as always. The
+        status of a refused configuration is the line with which it is refused.
+        """
+        printed = io.StringIO()
+        variables = dict(os.environ)
+        with (
+            # Those of Snakemake's code: files left open, deprecated arguments.
+            warnings.catch_warnings(action="ignore"),
+            contextlib.chdir(folder or self.path),
+            contextlib.redirect_stdout(printed),
+            contextlib.redirect_stderr(printed),
+            pytest.raises(SystemExit) as ended,
+        ):
+            cli.main([*arguments])
+        os.environ.clear()
+        os.environ.update(variables)
+        return ended.value.code, printed.getvalue()
+
+    def plan(self, *arguments: str) -> str:
+        """What a dry run prints."""
+        options = ["--dry-run", "--cores", "1", "--quiet", "host", "--"]
+        status, printed = self.run(*options, *arguments)
+        assert status == 0, printed
+        return printed
+
+    def planned(self, *arguments: str) -> set[str]:
+        """The rules whose jobs a run would execute."""
+        jobs = re.findall(r"^(\w+) +\d+$", self.plan(*arguments), re.MULTILINE)
+        return {*jobs} - {"total"}
+
+    def append(self, file: str, line: str) -> None:
+        """Add a line to a file."""
+        with (self.path / file).open("a", encoding="utf-8") as opened:
+            opened.write(f"{line}\n")
 
 
 @pytest.fixture(scope="session")
-def recorded():
-    """The accepted datasets by name."""
-    return {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
+def stubs(tmp_path_factory) -> Checkout:
+    """The workflow with scripts that only write their outputs, not run yet."""
+    folder = tmp_path_factory.mktemp("stubs") / "checkout"
+    without = shutil.ignore_patterns("__pycache__")
+    for name in ("config", "profiles", "src", "workflow"):
+        shutil.copytree(ROOT / name, folder / name, ignore=without)
+    shutil.copyfile(ROOT / "Snakefile", folder / "Snakefile")
+    for script in (folder / "workflow/scripts").glob("*.py"):
+        script.write_text(STUB, encoding="utf-8")
+    return Checkout(folder)
 
 
 @pytest.fixture(scope="session")
-def declared():
-    """The variables of all datasets: those that stages share, and those of each stage."""
-    return variables_of(bouncing_ball)
+def complete(stubs, tmp_path_factory) -> Checkout:
+    """The same after a whole run. Tests may plan further runs here, and change nothing."""
+    folder = tmp_path_factory.mktemp("complete") / "checkout"
+    shutil.copytree(stubs.path, folder)
+    status, printed = Checkout(folder).run("--cores", "2")
+    assert status == 0, printed
+    return Checkout(folder)
 
 
-@pytest.fixture(scope="session")
-def continuation_settings():
-    """The ``continuation`` section of the configuration."""
-    return Continuation(**read_yaml(ROOT / "config" / "config.yaml")["continuation"])
+@pytest.fixture
+def fresh(stubs, tmp_path) -> Checkout:
+    """A copy for one test, not run yet."""
+    shutil.copytree(stubs.path, tmp_path / "checkout")
+    return Checkout(tmp_path / "checkout")
 
 
-@pytest.fixture(scope="module")
-def searched_once():
-    """Checks of the configuration search the orbits of the same parameters once."""
-    search = OrbitsOfContacts.exists
-    known = {}
-
-    def exists(self, ratios):
-        question = (*self._replace(amplitudes=tuple(self.amplitudes)), *np.asarray(ratios))
-        if question not in known:
-            known[question] = search(self, ratios)
-        return known[question]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(OrbitsOfContacts, "exists", exists)
-        yield
+@pytest.fixture
+def used(complete, tmp_path) -> Checkout:
+    """A copy for one test, after a whole run."""
+    shutil.copytree(complete.path, tmp_path / "checkout")
+    return Checkout(tmp_path / "checkout")

@@ -1,80 +1,50 @@
-"""Two models of a ball bouncing on a vibrating table, and their periodic orbits.
+"""A ball on a vibrating table: a restitution coefficient, or a spring and a damper.
 
-A replication of Carbonelli, Perret-Liaudet, Rigaud and Feki, "Investigation
-of restitution coefficient and spring-damper models for the bouncing ball
-problem", ASME IDETC/CIE 2011, DETC2011-47870.
+A replication of A. Carbonelli, J. Perret-Liaudet, E. Rigaud and M.-S. Feki, *Investigation of
+restitution coefficient and spring-damper models for the bouncing ball problem*, DETC2011-47870
+(2011). The chapters, in the order in which one reads them:
 
-A ball is made once and handed to functions. The impacts of a rigid ball are instants; a ball on a
-spring and a damper has contacts of finite duration::
+`restitution`
+    the map of the restitution model, its n-T orbits and their stability
+`spring_damper`
+    the contact, its two conditions of release, and permanent contact
+`orbits`
+    the n-T orbits of the spring-damper model and their stability
+`continuation`
+    how these orbits are found and followed
+`errors`
+    relative errors of the restitution model, and from which stiffness on they are tolerable
+`datasets`
+    what the variables mean, how they are saved, and from which code they come
+`drawing`, `figures`, `tables`
+    what is made of the datasets
+`claims`, `article`
+    what the paper claims, what we find, and the texts that say so
+`compare`
+    the comparison of results with the reference
 
-    simple = bouncing_ball.rigid(restitution=0.85)
-    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
-    bouncing_ball.orbit(ball, n=1, amplitude=1.0)
-    bouncing_ball.limits(ball, n=1)
-    bouncing_ball.simulate(ball, amplitude=1.0)
+From the equations of the paper to the code:
 
-A list or an array in place of a number becomes an axis of the result, which is then a labelled
-dataset. Its ``plot()`` draws its figure: a ball over time, a ball that is dropped from a height,
-the branch of orbits over Λ::
-
-    bouncing_ball.history(ball, amplitude=[0.5, 1.0]).plot()
-    bouncing_ball.drop(simple, height=10.0).plot()
-    bouncing_ball.branch(ball, n=[1, 2]).plot()
-
-Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
-radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
-saddle-node.
-
-The package is a library, from ``numerics`` to ``accuracy``, and the replication on it, ``paper``.
-The docstring of each subpackage says what is in it; ``CONTRIBUTING.md`` describes them, and
-``pyproject.toml`` states which imports from which.
+=========  =====================================================================================
+Eq. 2      `restitution.impact_map`, the velocity after an impact
+Eqs. 1, 3  `restitution.velocity`, velocity in flight
+Eq. 4      `restitution.height`, height in flight
+Eq. 5      `restitution.flight_time`, `restitution.impact_map`
+Eq. 6      `restitution.bounce_velocity`, `restitution.impact_phase`
+Eq. 7      `restitution.saddle_node`
+Eq. 8      `restitution.holmes_period_doubling`; of Eq. 5 it is `restitution.period_doubling`
+Eq. 9      `restitution.PERMANENT_CONTACT`
+Eqs. 10-11 `spring_damper.Contact`, the equation of motion in contact
+Eqs. 12-13 `spring_damper.Contact.motion`
+Eqs. 14-15 `orbits.Family.motion`, height and velocity in flight
+Eq. 16     `spring_damper.damping_ratio`
+Eq. 17     `orbits.Family.apparent_restitution`
+Eqs. 18-27 `orbits.Family.equations`
+Eqs. 28-33 `spring_damper.permanent_contact`
+Eq. 34     `spring_damper.permanent_contact_ratios`
+Eqs. 35-36 `spring_damper.lowest_permanent_contact`
+Eqs. 37-38 `errors.relative_error`, `errors.threshold`
+=========  =====================================================================================
 """
 
-from typing import TYPE_CHECKING
-
-from bouncing_ball.first_use import first_use
-
-# What type checkers, editors and the linter of imports see.
-if TYPE_CHECKING:
-    from bouncing_ball.accuracy.thresholds import error_thresholds as error_thresholds
-    from bouncing_ball.drawing.result import open as open
-    from bouncing_ball.errors import ModelError as ModelError
-    from bouncing_ball.errors import NoOrbitError as NoOrbitError
-    from bouncing_ball.models.history import drop as drop
-    from bouncing_ball.models.history import history as history
-    from bouncing_ball.models.history import simulate as simulate
-    from bouncing_ball.models.permanent_contact import permanent_contact as permanent_contact
-    from bouncing_ball.models.restitution import RestitutionModel as RestitutionModel
-    from bouncing_ball.models.restitution import rigid as rigid
-    from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
-    from bouncing_ball.models.spring_damper import spring_damper as spring_damper
-    from bouncing_ball.periodic.branches import branch as branch
-    from bouncing_ball.periodic.calls import limits as limits
-    from bouncing_ball.periodic.calls import orbit as orbit
-    from bouncing_ball.periodic.calls import orbits as orbits
-
 __version__ = "0.1.0"
-
-# The public names and the modules in which they are defined.
-_MODULES = {
-    "ModelError": "errors",
-    "NoOrbitError": "errors",
-    "RestitutionModel": "models.restitution",
-    "SpringDamper": "models.spring_damper",
-    "branch": "periodic.branches",
-    "drop": "models.history",
-    "error_thresholds": "accuracy.thresholds",
-    "history": "models.history",
-    "limits": "periodic.calls",
-    "open": "drawing.result",
-    "orbit": "periodic.calls",
-    "orbits": "periodic.calls",
-    "permanent_contact": "models.permanent_contact",
-    "rigid": "models.restitution",
-    "simulate": "models.history",
-    "spring_damper": "models.spring_damper",
-}
-
-__all__ = list(_MODULES)
-
-__getattr__, __dir__ = first_use(__name__, _MODULES, globals())

@@ -1,312 +1,203 @@
-"""The errors that a user can cause, with messages of one line.
+"""How wrong the restitution model is, and from which stiffness on it is right (Eqs. 37 and 38).
 
-All of them derive from :class:`ValueError`, so that callers can catch them without a distinction.
+The relative error of a quantity is |spring-damper - restitution| / |restitution|, as the paper has
+it. The threshold of a tolerance is the frequency ratio ϖ from which on the error stays within it.
 """
 
-import difflib
-import functools
-import inspect
-import math
-import re
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-_Known = TypeVar("_Known")
-_Call = TypeVar("_Call", bound=Callable[..., Any])
-# Characters of a value in a message.
-_VALUE = 80
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import (
+    Condition,
+    at_amplitude,
+    at_bifurcation,
+    bifurcations,
+    correct,
+    stable_orbits,
+)
+from bouncing_ball.orbits import Family
+from bouncing_ball.restitution import Numbers
+from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
 
 
-class ModelError(ValueError):
-    """A parameter outside the range in which the model is defined."""
+class Error(NamedTuple):
+    """The relative error of one quantity along ϖ.
 
-
-class ParameterError(ModelError):
-    """A parameter of a call that is missing, not allowed, or in contradiction to another.
-
-    ``{name}`` in the text stands for a parameter, which the command line shows as its option, and
-    each ``{}`` for one of the values that follow the text. A value may contain braces.
-
-    Examples
-    --------
-    >>> str(ParameterError("{duration} needs {law}, not {}", "{a}"))
-    'duration needs law, not {a}'
+    ``values`` are those at the ratios of a scan, and ``between(ratio, i)`` computes one between
+    the ratios i and i + 1.
     """
 
-    def __str__(self) -> str:
-        return self.shown(str)
-
-    def shown(self, named: Callable[[str], str]) -> str:
-        """The message with ``named(name)`` for each parameter."""
-        text, *values = self.args
-        rest = iter(values)
-
-        def entry(found: re.Match) -> str:
-            if found[1]:
-                return named(found[1])
-            # A value of a user may be an array or an object of many lines.
-            return printable(" ".join(str(next(rest, found[0])).split()), _VALUE)
-
-        return re.sub(r"{(\w*)}", entry, text)
+    values: NDArray
+    between: Callable[[float, int], float]
 
 
-class NoOrbitError(ValueError):
-    """The requested periodic orbit does not exist; the message gives the reason."""
+class Threshold(NamedTuple):
+    """A frequency ratio, and how it was found.
 
-
-@contextmanager
-def extra(name: str) -> Iterator[None]:
-    """A context for imports that need an extra of the package.
-
-    If a package is missing, the error is one line that tells how to install the extra.
-
-    Raises
-    ------
-    ModelError
-        If a package of this extra is not installed.
-
-    Examples
-    --------
-    >>> with extra("plot"):
-    ...     import no_such_package
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ModelError: no_such_package is not installed: \
-install the extra 'plot', for example pip install ".[plot]"
+    The status is ``found``; ``within`` if the error is within the tolerance at every ratio of the
+    scan; and ``outside`` if it is not at the largest, or if there is no orbit right below those at
+    which it is. The ratio is NaN if it is not found.
     """
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        package = str(error.name).partition(".")[0]
-        raise ModelError(
-            f"{package} is not installed: "
-            f'install the extra {name!r}, for example pip install ".[{name}]"'
-        ) from None
+
+    ratio: float
+    status: str
 
 
-def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> None:
-    """Raise :class:`ModelError` with the first value that is not valid, if there is one.
+def relative_error(value: Numbers, reference: Numbers) -> NDArray:
+    """Relative error of the restitution model, whose value is the reference (Eqs. 37 and 38).
 
-    Examples
-    --------
-    >>> require([True, False], [0.5, 1.5], "restitution coefficient r", "in (0, 1]")
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ModelError: restitution coefficient r = 1.5 is not in (0, 1]
+    >>> float(relative_error(0.99, 1.0).round(12))
+    0.01
     """
-    # Imported here, because the command line imports this module, and --help needs no numpy.
-    import numpy as np
-
-    if not np.asarray(valid).all():
-        valid, value = np.broadcast_arrays(valid, value)
-        first = value[~valid][0]
-        raise ModelError(f"{name} = {first} is not {allowed}")
+    return np.abs(np.asarray(value) - reference) / np.abs(reference)
 
 
-def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
-    """The entry of a mapping under a name that a user gave.
+def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
+    """The frequency ratio from which on an error stays within a tolerance.
 
-    Raises
-    ------
-    ModelError
-        If the name is unknown; the error lists the names that are known.
+    The last ratio of the scan whose error exceeds the tolerance begins the interval in which the
+    threshold is located. Two crossings between two neighbours are not noticed.
 
-    Examples
-    --------
-    >>> one_of("side", "left", {"stable": 1, "unstable": -1})
-    Traceback (most recent call last):
-    bouncing_ball.errors.ModelError: unknown side 'left': one of stable, unstable
+    >>> grid = np.geomspace(1, 1000, 7)
+    >>> found = threshold(grid, Error(1 / grid, lambda ratio, i: 1 / ratio), 0.02)
+    >>> round(found.ratio, 9), found.status
+    (50.0, 'found')
     """
-    if not isinstance(name, str) or name not in known:
-        meant = did_you_mean(name, known) if isinstance(name, str) else ""
-        listed = ", ".join(known)
-        raise ModelError(f"unknown {kind} {shortened(name)}: one of {listed}{meant}")
-    return known[name]
-
-
-# How alike a name and a known one must be for the known one to be suggested.
-_ALIKE = 0.8
-
-
-def did_you_mean(name: object, known: Iterable[str]) -> str:
-    """A clause that suggests the known name that a wrong one resembles; empty if none does.
-
-    Examples
-    --------
-    >>> did_you_mean("MuJoCo", ["generic", "mujoco"]), did_you_mean("unreal", ["generic"])
-    ('; did you mean mujoco?', '')
-    >>> did_you_mean("hunt_crossley", ["hunt-crossley"])
-    '; did you mean hunt-crossley?'
-    """
-    names = {each.replace("_", "-"): each for each in known}
-    typed = str(name).casefold().replace("_", "-")
-    close = difflib.get_close_matches(typed, names, n=1, cutoff=_ALIKE)
-    return f"; did you mean {names[close[0]]}?" if close else ""
-
-
-def suggesting(call: _Call) -> _Call:
-    """A function or class that answers an unknown keyword argument with the one that it resembles.
-
-    It is called with the settings of numpy with which it was tested, the default ones: a caller who
-    makes numpy raise errors does so for code of his own.
-
-    Examples
-    --------
-    >>> @suggesting
-    ... def rise(*, restitution, height=1.0):
-    ...     return restitution**2 * height
-    >>> rise(restituton=0.5)
-    Traceback (most recent call last):
-    TypeError: rise() got an unexpected keyword argument 'restituton'; did you mean restitution?
-    >>> rise(speed=2.0)
-    Traceback (most recent call last):
-    TypeError: rise() got an unexpected keyword argument 'speed': it has restitution and height
-    """
-    if not isinstance(call, type):
-        return cast("_Call", _suggesting(call, call.__name__))
-    kind: Any = call
-    kind.__init__ = _suggesting(kind.__init__, call.__name__)
-    return call
-
-
-def _default_settings_of_numpy() -> AbstractContextManager:
-    # What computes has imported numpy; what only reads arguments does not need it.
-    numpy: Any = sys.modules.get("numpy")
-    return numpy.errstate(all="warn", under="ignore") if numpy else nullcontext()
-
-
-def _suggesting(call: Callable[..., Any], name: str) -> Callable[..., Any]:
-    parameters = inspect.signature(call).parameters
-    # A call that takes any keyword refuses unknown ones itself, as that of contact laws does.
-    if any(each.kind is each.VAR_KEYWORD for each in parameters.values()):
-        return call
-    known = [each for each in parameters if each != "self"]
-
-    @functools.wraps(call)
-    def checked(*given: Any, **named: Any) -> Any:
-        unknown = next((each for each in named if each not in known), None)
-        if unknown is None:
-            with _default_settings_of_numpy():
-                return call(*given, **named)
-        begins = [each for each in known if each.startswith(unknown)]
-        meant = f"; did you mean {begins[0]}?" if len(begins) == 1 else ""
-        *others, last = known
-        has = f": it has {' and '.join(filter(None, [', '.join(others), last]))}"
-        hint = meant or did_you_mean(unknown, known) or has
-        raise TypeError(f"{name}() got an unexpected keyword argument {unknown!r}{hint}")
-
-    return checked
-
-
-def escaped(text: str) -> str:
-    """Text with escapes for control characters and for marks that hide or reverse text.
-
-    Examples
-    --------
-    >>> escaped("ϖ\\t= 2\\x1b[2J")
-    'ϖ\\\\t= 2\\\\x1b[2J'
-    """
-    if text.isprintable():
-        return text
-    return "".join(
-        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    outside = np.flatnonzero(~(error.values <= tolerance))
+    if outside.size == 0:
+        return Threshold(np.nan, "within")
+    last = int(outside[-1])
+    if last + 1 == ratios.size or np.isinf(error.values[last]):
+        return Threshold(np.nan, "outside")
+    place = brentq(
+        lambda logarithm: error.between(np.exp(logarithm), last) - tolerance,
+        np.log(ratios[last]),
+        np.log(ratios[last + 1]),
+        xtol=1e-14,
     )
+    return Threshold(float(np.exp(place)), "found")
 
 
-def printable(text: object, width: int | None = 300) -> str:
-    """Text in one line, escaped as by :func:`escaped`; a longer text than ``width`` is cut off.
+def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Error:
+    """The error of the threshold of permanent contact (Eq. 38)."""
 
-    Examples
-    --------
-    >>> printable("fig\\x1b[2J\\n\\u202e08\\udcff")
-    'fig\\\\x1b[2J\\\\n\\\\u202e08\\\\udcff'
-    >>> printable("Λ = 1 → 2, 1e-13", width=7)
-    'Λ = 1 …'
+    def error(ratio):
+        found = permanent_contact(ratio, zeta, release)
+        return relative_error(found, restitution.PERMANENT_CONTACT)
+
+    return Error(error(ratios), lambda ratio, i: float(error(ratio)))
+
+
+def orbit_errors(
+    n: int, r: float, amplitude: float, ratios: NDArray, release: str
+) -> dict[str, Error]:
+    """The errors of quantities of the stable n-T orbit at an amplitude (Eq. 37), by their names."""
+    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+    phase = restitution.impact_phase(n, r, amplitude)
+    quantities: dict[str, tuple[Callable[[Family, NDArray], NDArray], Numbers]] = {
+        "max_height": (Family.max_height, restitution.max_height(n, r, amplitude)),
+        "bounce_velocity": (Family.bounce_velocity, restitution.bounce_velocity(n)),
+        "phase": (lambda family, y: y[1], phase),
+        "apparent_restitution": (Family.apparent_restitution, r),
+    }
+    return {
+        name: _along(n, r, ratios, release, orbits, at_amplitude(amplitude), value, reference)
+        for name, (value, reference) in quantities.items()
+    }
+
+
+def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
+    """The errors of the amplitudes of both bifurcations, by their names."""
+    kinds = {
+        "saddle_node": ("saddle-node", Family.saddle_node, restitution.saddle_node(n, r)),
+        "period_doubling": (
+            "period doubling",
+            Family.period_doubling,
+            restitution.period_doubling(n, r),
+        ),
+    }
+    contact = Contact(ratios, damping_ratio(r), release)
+    found = {}
+    for name, (kind, test, reference) in kinds.items():
+        orbits = bifurcations(n, kind, ratios, contact)[:, 0]
+        condition = at_bifurcation(test)
+        found[name] = _along(
+            n, r, ratios, release, orbits, condition, lambda family, y: y[0], reference
+        )
+    return found
+
+
+def _along(
+    n: int,
+    r: float,
+    ratios: NDArray,
+    release: str,
+    orbits: NDArray,
+    condition: Condition,
+    value: Callable[[Family, NDArray], NDArray],
+    reference: Numbers,
+) -> Error:
+    """The error of a quantity of the orbits at the ratios of a scan, shape (4, ratios)."""
+    zeta = damping_ratio(r)
+
+    def error(ratio, y):
+        return relative_error(value(Family(n, Contact(ratio, zeta, release)), y), reference)
+
+    def between(ratio, i):
+        family = Family(n, Contact(ratio, zeta, release))
+        part = np.log(ratio / ratios[i]) / np.log(ratios[i + 1] / ratios[i])
+        guess = orbits[:, i] + part * (orbits[:, i + 1] - orbits[:, i])
+        return float(error(ratio, correct(family, guess, condition)))
+
+    # Where there is no orbit, the restitution model is as wrong as can be.
+    values = error(ratios, orbits)
+    return Error(np.where(np.isnan(values), np.inf, values), between)
+
+
+def errors(
+    quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
+) -> dict[str, Error]:
+    """The errors of the quantities with these names, of all that can be compared."""
+    known: dict[str, Error] = {}
+    if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
+        known |= orbit_errors(n, r, amplitude, ratios, release)
+    if {"saddle_node", "period_doubling"} & set(quantities):
+        known |= bifurcation_errors(n, r, ratios, release)
+    known["permanent_contact"] = permanent_contact_error(ratios, damping_ratio(r), release)
+    return {name: known[name] for name in quantities}
+
+
+def lowest_period_doublings(
+    n: Numbers, r: float, ratios: NDArray, release: str
+) -> tuple[NDArray, NDArray]:
+    """The frequency ratio at which the period doubling of each family is lowest, and its amplitude.
+
+    Both are NaN if it is lowest at an end of the ratios. The place of a minimum has half of the
+    digits of its value.
     """
-    text = str(text)
-    return escaped(text if width is None or len(text) <= width else text[: width - 1] + "…")
+    contact = Contact(ratios, damping_ratio(r), release)
+    orbits = bifurcations(n, "period doubling", ratios, contact)
+    families = np.atleast_1d(n)
+    turns = np.full(families.size, np.nan)
+    amplitudes = np.full_like(turns, np.nan)
+    for k, lowest in enumerate(np.nanargmin(orbits[0], axis=1)):
+        if lowest in (0, ratios.size - 1):
+            continue
 
+        def amplitude(logarithm, n=families[k], guess=orbits[:, k, lowest]):
+            family = Family(n, replace(contact, frequency_ratio=np.exp(logarithm)))
+            return float(correct(family, guess, at_bifurcation(Family.period_doubling))[0])
 
-def shortened(value: object) -> str:
-    """A value as a message shows it: in one line, and cut off if it is long.
-
-    Examples
-    --------
-    >>> shortened("x"), shortened([[1.0], [2.0, 3.0]])
-    ("'x'", '[[1.0], [2.0, 3.0]]')
-    >>> len(shortened(list(range(1000)))), shortened(10**5000)
-    (80, 'a whole number of more than 4300 digits')
-    """
-    try:
-        text = repr(value)
-    # Python does not convert longer numbers to text.
-    except ValueError:
-        if isinstance(value, int):
-            return f"a whole number of more than {sys.get_int_max_str_digits()} digits"
-        return f"a {type(value).__name__}"
-    return printable(" ".join(text.split()), _VALUE)
-
-
-class Range(NamedTuple):
-    """The range of the numbers allowed, as an annotation; ``ends`` are the interval's brackets.
-
-    If ``or_zero`` is true, 0 is allowed beside the interval.
-
-    Examples
-    --------
-    >>> print(Range(0, 1, "(]"), 0 in Range(0, 1, "(]"), 1 in Range(0, 1, "(]"))
-    a number in (0, 1] False True
-    >>> print(Range(0), "|", count(3), 2.5 in count(3), 10**400 in Range(0))
-    a finite number > 0 | a whole number from 1 to 3 False False
-    """
-
-    low: float = -math.inf
-    high: float = math.inf
-    ends: str = "()"
-    whole: bool = False
-    or_zero: bool = False
-
-    def __contains__(self, value: Any) -> bool:
-        # A whole number may be larger than every float, and would not be converted.
-        if not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
-            return False
-        if self.or_zero and value == 0:
-            return True
-        above = value > self.low if self.ends[0] == "(" else value >= self.low
-        below = value < self.high if self.ends[1] == ")" else value <= self.high
-        return above and below and (not self.whole or value == int(value))
-
-    def __str__(self) -> str:
-        if self.whole:
-            return f"a whole number from {self.low:g} to {self.high:.0f}"
-        if math.isinf(self.high):
-            sign = ">" if self.ends[0] == "(" else "≥"
-            return "a finite number" + ("" if math.isinf(self.low) else f" {sign} {self.low:g}")
-        interval = f"a number in {self.interval}"
-        return f"0 or {interval}" if self.or_zero else interval
-
-    @property
-    def interval(self) -> str:
-        """The interval with its brackets, for example "(0, 1]"."""
-        return f"{self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
-
-
-def count(high: int, low: int = 1) -> Range:
-    """The range of the whole numbers from ``low`` to ``high``."""
-    return Range(low, high, "[]", whole=True)
-
-
-# The ranges of the arguments of public functions. Beyond these limits the squares of ϖ and Λ leave
-# no digits, and a table that moves by less than the smallest Λ is at rest within the rounding of a
-# flight.
-FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
-AMPLITUDE = Range(1e-12, 1e8, "[]", or_zero=True)
-RESTITUTION = Range(0, 1, "(]")
-RIGID_RESTITUTION = Range(0, 1, "[]")
-"""The range of r of impacts that are instants; no contact with a spring and a damper has r = 0."""
-DAMPING_RATIO = Range(0, 1, "[)")
-FAMILY = count(1000)
+        around = np.log(ratios[[lowest - 1, lowest + 1]])
+        found = minimize_scalar(
+            amplitude, bounds=tuple(around), method="bounded", options={"xatol": 1e-9}
+        )
+        turns[k] = np.exp(found.x)
+        amplitudes[k] = found.fun
+    return turns, amplitudes

@@ -1,103 +1,145 @@
-# Names and functions shared by the rules. The Snakefile of a house names before it includes them:
-# ARTIFACTS and BUDGETS of its package, and HOUSE, its folder with the configuration and the accepted
-# record; this is the root if no other house is named.
+# Names and paths that the rules share.
 
 import os
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
-from bouncing_ball.pipeline.run import remove_reports
-from bouncing_ball.pipeline.yaml_files import ConfigurationError, read_yaml
+# The checkout. Runs in another folder (--directory), or as a module of another workflow, read its
+# configuration, code and reference, and write their results below the folder of the run.
+CHECKOUT = Path(workflow.current_basedir).parents[1].resolve()
+# Scripts import the package of this checkout, whatever else is installed.
+paths = [str(CHECKOUT / "src"), os.environ.get("PYTHONPATH", "")]
+os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, paths)))
 
-# The repository, for all Snakefiles.
-ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
-HOUSE = globals().get("HOUSE", ROOT)
-# The package may belong to another checkout whose environment is active.
-HERE = Path(ROOT, "src", "bouncing_ball")
-found = Path(getattr(find_spec("bouncing_ball"), "origin", "nowhere/at/all")).parent
-if found.resolve() != HERE.resolve():
-    sys.exit(
-        f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
-    )
+# The datasets of each stage.
+STAGES = {
+    "restitution_model": ["fig02", "fig03", "three_balls"],
+    "apparent_restitution": ["fig05", "fig06", "fig10", "fig13"],
+    "continuation": ["fig08", "fig09", "fig15", "table1", "lowest_doubling"],
+    "table1_readings": ["table1_readings"],
+    "permanent_contact": ["fig11", "fig16"],
+    "error_thresholds": ["fig14", "thresholds"],
+    "time_histories": ["fig07", "fig12"],
+}
+DATASETS = [name for names in STAGES.values() for name in names]
+# Figures of the models, which show no data.
+SCHEMATICS = ["fig01", "fig04"]
+FIGURES = sorted(name for name in DATASETS + SCHEMATICS if name.startswith("fig"))
+TABLES = ["table1", "thresholds", "table1_readings"]
+ARTIFACTS = sorted([*DATASETS, *SCHEMATICS, "claims"])
 
-# A link to a folder that does not exist is no folder either.
-if os.path.lexists("results") and not os.path.isdir("results"):
-    sys.exit("results is no folder, but the run writes its files there: move it away")
+# Settings of the whole run on which the datasets of a stage depend.
+SETTINGS = {
+    "restitution_model": [],
+    "apparent_restitution": ["release"],
+    "continuation": ["release", "largest_step"],
+    "table1_readings": [],
+    "permanent_contact": ["release"],
+    "error_thresholds": ["release"],
+    "time_histories": ["release"],
+}
 
-# Snakemake writes these lines before and after every job, and they do not name what it makes.
-IDLE = ("Select jobs", "Execute ", "Finished jobid")
-logger.addFilter(lambda record: not str(record.msg).startswith(IDLE))
-
-
-# A file in `config`: that of the working directory if there is one, otherwise that of the house, so
-# that `--directory` makes a run of its own beside others. Snakemake reads it next, and a file that is
-# no text of YAML would give a traceback.
-def here(path):
-    if not os.path.exists(path):
-        return os.path.relpath(Path(HOUSE, path))
-    try:
-        read_yaml(path)
-    except ConfigurationError as error:
-        remove_reports()
-        sys.exit(f"{path}: {error}")
-    return path
-
-
-# The configuration is checked before any rule reads it, against its type. Jobs do not check it again.
-def check(model):
-    from bouncing_ball.pipeline.configuration_check import check_configuration
-
-    try:
-        check_configuration(map(os.path.relpath, workflow.configfiles), config, model)
-    except ConfigurationError as error:
-        from bouncing_ball.pipeline.diff.causes import code_in_place_of
-
-        remove_reports()
-        typed = workflow.config_settings.config
-        sys.exit(f"{'' if typed else code_in_place_of(workflow.configfiles)}{error}")
+# The modules of the package that each script imports, directly or by another module. A change of
+# one of them runs the script again. A test compares these lists with the imports.
+ORBITS = ["restitution", "spring_damper", "orbits", "continuation"]
+CLAIMS = ["restitution", "spring_damper", "claims", "tables"]
+COMPARISON = [*CLAIMS, "article", "drawing", "figures", "compare", "datasets"]
+MODULES = {
+    "restitution_model": ["restitution", "datasets"],
+    "apparent_restitution": [*ORBITS, "datasets"],
+    "continuation": [*ORBITS, "errors", "datasets"],
+    "table1_readings": [*ORBITS, "datasets"],
+    "permanent_contact": [*ORBITS, "errors", "datasets"],
+    "error_thresholds": [*ORBITS, "errors", "datasets"],
+    "time_histories": [*ORBITS, "datasets"],
+    "draw": ["drawing", "figures", "datasets"],
+    "tables": [*CLAIMS, "datasets"],
+    "claims": [*CLAIMS, "datasets"],
+    "article": [*CLAIMS, "article", "datasets"],
+    "compare": COMPARISON,
+    "accept": COMPARISON,
+}
 
 
-# What the dataset of an artifact says of itself.
-def about(name):
-    artifact = ARTIFACTS[name]
+def checkout(path):
+    """A file of the checkout, as a path from the working directory.
+
+    The mark `local` keeps it as it is if this workflow is a module with a prefix.
+    """
+    return local(os.path.relpath(CHECKOUT / path))
+
+
+def code(script):
+    """The files of code that decide what a script makes: itself and what it imports."""
+    modules = [f"src/bouncing_ball/{module}.py" for module in ["__init__", *MODULES[script]]]
+    return [checkout(path) for path in [f"workflow/scripts/{script}.py", *modules]]
+
+
+def datasets(stage):
+    """The files of the datasets of a stage, by name."""
+    return {name: f"results/figures/{name}.nc" for name in STAGES[stage]}
+
+
+def figure_datasets(stage):
+    """The datasets that the figures of a stage show."""
+    return [file for name, file in datasets(stage).items() if name in FIGURES]
+
+
+def pictures(stage):
+    """The pictures of a stage, with what the report says of them."""
+    names = [name for name in STAGES.get(stage, SCHEMATICS) if name in FIGURES]
+    png = [f"results/figures/{name}.png" for name in names]
+    about = {"caption": f"../report/{stage}.rst", "category": "Figures"}
     return {
-        "title": artifact.title,
-        "drawing": artifact.drawing,
-        "budgets": BUDGETS.get(name, {}),
+        "png": [report(file, labels={"figure": Path(file).stem}, **about) for file in png],
+        "svg": [f"results/figures/{name}.svg" for name in names],
     }
 
 
-# The one input that stands for the code of a job: its note, see the module `sources`, with the digests
-# of the script of the house, of what the script imports, and of other files that it reads. It is found
-# when the job is planned. `--touch` leaves it as it is, so that a digest that has changed is written
-# by the next run.
-def code(script, *files):
-    def note(wildcards):
-        path = Path("results", "code", Path(script).stem)
-        if path.exists() and (workflow.touch or not workflow.is_main_process):
-            return str(path)
-        from bouncing_ball.pipeline.sources import sources, write_note
-
-        read = [Path(file).resolve() for file in (Path(HOUSE, "workflow/scripts", script), *files)]
-        try:
-            write_note(path, sources(read), os.path.relpath(HOUSE))
-        except OSError as error:
-            sys.exit(f"{path} cannot be written: {error.strerror}")
-        return str(path)
-
-    return note
+def files(name):
+    """All files of a figure, a table or a dataset."""
+    kinds = ["nc"] if name in [*DATASETS, "claims"] else []
+    if name in FIGURES:
+        kinds += ["png", "svg"]
+    if name in [*TABLES, "claims"]:
+        kinds += ["md", "csv"]
+    return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
-# Run the script of a job. The processes that run scripts belong to that of Snakemake, so that the
-# profile has `force-use-threads`: without it, Snakemake starts itself again for each job with `run`.
-def work(script, rule, input, output, params, log):
-    from bouncing_ball.pipeline.workers import run_script
-    from snakemake.exceptions import SpawnedJobError
-    from snakemake.script import Snakemake
+def requested(wildcards):
+    """The figures and tables that the command line names together with `diff` or `accept`."""
+    targets = workflow.dag_settings.targets
+    names = [name for stage in STAGES if stage in targets for name in STAGES[stage]]
+    return sorted({*names, *(name for name in ARTIFACTS if name in targets)}) or ARTIFACTS
 
-    path = Path(HOUSE, "workflow/scripts", script)
-    folder = str(path.parent)
-    job = Snakemake(input, output, params, None, 1, None, log, config, rule, None, folder)
-    if not run_script(path, job):
-        raise SpawnedJobError()
+
+def requested_files(wildcards):
+    """The files to compare: those of the figures and tables named, or everything."""
+    if requested(wildcards) == ARTIFACTS:
+        return rules.all.input
+    return [file for name in requested(wildcards) for file in files(name)]
+
+
+def description(name):
+    """The parameters and the code from which a figure or table is made."""
+    for stage, names in STAGES.items():
+        if name in names:
+            given = config.get(stage, {}).get(name, {})
+            settings = {key: config[key] for key in SETTINGS[stage]}
+            return {"parameters": {**given, **settings}, "code": code(stage)}
+    script = "draw" if name in SCHEMATICS else name
+    return {"parameters": {}, "code": code(script)}
+
+
+# Results must not be written over the reference, for example through a link.
+for folder in (Path("results"), Path("results/figures")):
+    place = folder.resolve()
+    linked = place != folder.absolute() and place.is_relative_to(CHECKOUT)
+    if linked or place.is_relative_to(CHECKOUT / "figures"):
+        sys.exit(f"{folder} is {place}: results must not be written over the checkout")
+    if place.exists() and not place.is_dir():
+        sys.exit(f"{folder} is no folder, but results are written there")
+
+
+wildcard_constraints:
+    table="|".join(TABLES),

@@ -1,17 +1,12 @@
-"""Copy results over the accepted record."""
+"""Make results the reference: those of the figures and tables named, or all that differ."""
 
-import os
-from pathlib import Path
+import sys
 
-from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.diff.accept import accept
-from bouncing_ball.pipeline.job import conclude, logged
+from bouncing_ball import compare
 
-with logged(snakemake) as lines:
-    only = os.environ.get("ONLY", "").replace(",", " ").split()
-    files = [str(file) for file in snakemake.input]
-    try:
-        lines += accept(Path(snakemake.params.house), Path("results"), files, only)
-        print(*lines, sep="\n", flush=True)
-    except ModelError as error:
-        conclude(f"accept: {error}")
+options = snakemake.params
+try:
+    files = compare.accept("results", options.reference, options.artifacts, options.names)
+except ValueError as error:
+    sys.exit(str(error))
+print("\n".join([*files, f"{len(files)} files of the reference were written."]))

@@ -1,0 +1,199 @@
+"""The article, its supplement and the list of figures: templates filled in from datasets.
+
+A template has text and names of numbers, and no numbers; `filters` below are what it can do with a
+number. Numbers are rounded correctly, and a number that lies exactly between two roundings goes to
+the even digit, as everywhere in Python. Bounds are rounded up. A number that a dataset does not
+have, because it was computed with other parameters, is a dash.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
+from itertools import product
+from pathlib import Path
+from types import SimpleNamespace
+
+import jinja2
+import numpy as np
+import xarray as xr
+
+from bouncing_ball import claims, restitution, spring_damper
+from bouncing_ball.tables import TABLES
+
+TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
+
+STIFF_CURVES = ("fig05", "fig06", "fig10")
+"""The figures along ϖ on whose curves the errors of the restitution model are compared."""
+
+Datasets = Mapping[str, xr.Dataset]
+
+
+def paper(datasets: Datasets) -> str:
+    """The article, Markdown, from the datasets of all figures, tables and claims by their names."""
+    return filled_in("paper", datasets)
+
+
+def supplement(datasets: Datasets) -> str:
+    """The supplement of the article, Markdown."""
+    return filled_in("supplement", datasets)
+
+
+def figure_list(datasets: Datasets) -> str:
+    """The page of all figures and tables, with what the paper says and what we find, Markdown."""
+    return filled_in("figures", datasets)
+
+
+def filled_in(name: str, datasets: Datasets) -> str:
+    """The text of a template; it knows the datasets by their names."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters.update(
+        fixed=fixed, percent=percent, at_most=at_most, short=short, listed=listed, at=at, zip=zip
+    )
+    given = {key: json.loads(data.attrs["parameters"]) for key, data in datasets.items()}
+    judged = [row for group in claims.GROUPS for row in claims.each(datasets["claims"], group)]
+    return environment.get_template(f"{name}.md.j2").render(
+        **datasets,
+        titles={key: data.attrs["title"] for key, data in datasets.items()},
+        given=given,
+        judged=judged,
+        claim={row["claim"]: row for row in judged},
+        error_limit=claims.LIMIT,
+        stiff=claims.STIFF,
+        stiff_errors=stiff_errors(datasets),
+        stable_ranges=stable_ranges,
+        table1_ends=table1_ends(datasets["table1"]),
+        permanent_contact=spring_damper.permanent_contact,
+        holmes_period_doubling=restitution.holmes_period_doubling,
+        period_doubling=restitution.period_doubling,
+        summary=claims.markdown(claims.summary(datasets["claims"])),
+        tables={name: claims.markdown(table(datasets[name])) for name, table in TABLES.items()},
+    )
+
+
+# Numbers as text
+
+
+def rounded(value: Decimal, digits: int, rounding: str) -> str:
+    """A number with a number of decimals; its sign is a minus and no hyphen."""
+    # Zero has no sign.
+    number = value.quantize(Decimal(1).scaleb(-digits), rounding=rounding) + 0
+    return str(number).replace("-", "−")
+
+
+def fixed(value: float, digits: int) -> str:
+    """A number with a number of decimals.
+
+    >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-0.001, 2), fixed(np.nan, 2)
+    ('82.18', '−0.2', '0.00', '–')
+    """
+    number = float(value)
+    return rounded(Decimal(number), digits, ROUND_HALF_EVEN) if np.isfinite(number) else "–"
+
+
+def percent(value: float, digits: int = 0) -> str:
+    """A share in per cent.
+
+    >>> percent(0.01), percent(0.02673, 1)
+    ('1 %', '2.7 %')
+    """
+    number = float(value)
+    if not np.isfinite(number):
+        return "–"
+    # The shortest decimal number that is this binary one: 0.01 is 1 % and no other share.
+    return rounded(100 * Decimal(repr(number)), digits, ROUND_HALF_EVEN) + " %"
+
+
+def at_most(value: float, digits: int) -> str:
+    """A bound in per cent, rounded up.
+
+    >>> at_most(0.00861, 2), at_most(0.008604, 2)
+    ('0.87 %', '0.87 %')
+    """
+    number = float(value)
+    if not np.isfinite(number):
+        return "–"
+    return rounded(100 * Decimal(repr(number)), digits, ROUND_CEILING) + " %"
+
+
+def short(value: float) -> str:
+    """A parameter with as many digits as it has; large powers of ten as such.
+
+    >>> short(0.85), short(10.0), short(1e4)
+    ('0.85', '10', '10⁴')
+    """
+    number = float(value)
+    exponent = round(np.log10(number)) if number > 0 else 0
+    if exponent > 3 and number == 10.0**exponent:
+        return "10" + str(exponent).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{number:g}".replace("-", "−")
+
+
+def listed(values: Iterable, digits: int | None = None) -> str:
+    """Words or numbers in a row.
+
+    >>> listed([1.0, 2.5, 4.0]), listed(["one", "two"]), listed([1.234], 2)
+    ('1, 2.5 and 4', 'one and two', '1.23')
+    """
+    texts = [each if isinstance(each, str) else word(each, digits) for each in values]
+    *first, last = texts
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def word(value: float, digits: int | None) -> str:
+    """A number of a list: with a number of decimals, or with as many digits as it has."""
+    return short(value) if digits is None else fixed(value, digits)
+
+
+def at(values: xr.DataArray, **labels) -> xr.DataArray | float:
+    """The values of a variable at labels of its coordinates; NaN if there is no such label."""
+    try:
+        return values.sel(labels)
+    except KeyError:
+        return np.nan
+
+
+# Numbers that several datasets give together
+
+
+def table1_ends(table: xr.Dataset) -> dict[tuple, SimpleNamespace]:
+    """The ends of Table 1 that the paper prints, by ϖ, n and bound, each with its verdict."""
+    ends = {}
+    for place in product(*(table[name].values.tolist() for name in table.computed.dims)):
+        one = table.sel(dict(zip(table.computed.dims, place, strict=True)))
+        if np.isfinite(one.printed):
+            printed = f"{one.printed:.3f}"  # as all numbers of the table
+            found = claims.against_print(float(one.computed), printed)
+            ends[place] = SimpleNamespace(printed=printed, place=place, **found._asdict())
+    return ends
+
+
+def stiff_errors(datasets: Datasets) -> xr.DataArray:
+    """`claims.stiff_errors` on the figures that reach stiff contacts; NaN if none does."""
+    lowest = claims.STIFF * (1 - claims.ROUNDING)
+    sweeps = {name: datasets[name] for name in STIFF_CURVES}
+    stiff = {name: each for name, each in sweeps.items() if each.frequency_ratio.max() >= lowest}
+    if stiff:
+        return claims.stiff_errors(**stiff)
+    return xr.DataArray([[np.nan]], {"orbit": ["–"], "measure": ["–"]}, ("orbit", "measure"))
+
+
+def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
+    """The ranges of Λ in which the orbits of one branch are stable, in the order of the branch.
+
+    Special points bound them, and the ends of the branch.
+    """
+    special = branch.isel(special=branch.special_kind.values != "")
+    places = np.concatenate([[0.0], special.special_arclength, [1.0]])
+    ends = np.concatenate([branch.amplitude[:1], special.special_amplitude, branch.amplitude[-1:]])
+    ranges = []
+    for k in range(places.size - 1):
+        middle = (places[k] + places[k + 1]) / 2
+        if branch.stable[round(middle * (branch.sizes["point"] - 1))]:
+            ranges.append((min(ends[k : k + 2]), max(ends[k : k + 2])))
+    return ranges

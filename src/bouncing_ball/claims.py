@@ -1,0 +1,1582 @@
+"""The claims of the paper, and the verdict on each, from the datasets of figures and tables.
+
+A claim is a printed number or a statement. A printed number is compared with the computed one:
+*reproduced* if this rounds to it, *not to the digit* if it does not but differs by at most 1 %, and
+*contradicted* beyond. A statement is turned into one condition for each way in which its words can
+be read. It is *reproduced* or *contradicted* if all of these readings agree, and *by reading* if
+they do not: then the verdict names those for which it is right and those for which it is not. It is
+*undecidable* if the text lacks what would choose among the readings, and a *definition* if it could
+not have failed. The formulas of the paper were *restored* from a damaged text by deriving them
+again, and are listed and not counted. A claim is *not asked* if a dataset was computed with other
+parameters than the claim needs, and *not computed* if a dataset or a number is missing.
+"""
+
+import csv
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from bouncing_ball import restitution
+from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
+
+LIMIT = 0.01
+"""The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
+STIFF = 100.0
+"""The frequency ratio above which the paper calls both models equal."""
+ROUNDING = 1e-9
+"""Numbers that differ by less are equal: rounding errors of the datasets are some 1e-12."""
+STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
+"""Frequency ratios from there on."""
+
+LOW_TO_STIFF = {"min": 1.0, "max": 1000.0}
+ROWS_OF_TABLE_1 = [1e4, 10.0, 2.0]
+PAPER = {
+    "fig03": {"n": [1, 2, 3, 4, 5], "restitution": 0.85},
+    "fig05": {
+        "n": 1,
+        "cases": [
+            {"restitution": 1.0, "amplitude": 0.8},
+            {"restitution": 0.85, "amplitude": 1.0},
+            {"restitution": 0.65, "amplitude": 1.0},
+            {"restitution": 0.1, "amplitude": 2.6},
+        ],
+        "frequency_ratio": LOW_TO_STIFF,
+        "release": "displacement",
+    },
+    "fig06": {
+        "n": 1,
+        "cases": [
+            {"restitution": 0.65, "amplitude": 0.7},
+            {"restitution": 0.65, "amplitude": 1.0},
+            {"restitution": 0.65, "amplitude": 1.2},
+        ],
+        "frequency_ratio": LOW_TO_STIFF,
+        "release": "displacement",
+    },
+    "fig08": {
+        "n": 1,
+        "restitution": 0.85,
+        "frequency_ratio": ROWS_OF_TABLE_1,
+        "release": "displacement",
+    },
+    "fig09": {
+        "n": 2,
+        "restitution": 0.85,
+        "frequency_ratio": ROWS_OF_TABLE_1,
+        "release": "displacement",
+    },
+    "fig10": {
+        "n": 2,
+        "restitution": 0.85,
+        "amplitude": [1.1, 1.0, 0.6],
+        "frequency_ratio": LOW_TO_STIFF,
+        "release": "displacement",
+    },
+    "fig11": {
+        "restitution": 0.65,
+        "frequency_ratio": {"min": 0.5, "max": 100.0},
+        "release": "displacement",
+    },
+    "fig12": {"n": 1, "restitution": 0.65, "amplitude": 1.0, "release": "displacement"},
+    "fig13": {
+        "n": 1,
+        "restitution": 0.65,
+        "amplitude": [1.0],
+        "frequency_ratio": LOW_TO_STIFF,
+        "release": "displacement",
+    },
+    "fig14": {
+        "n": 1,
+        "restitution": 0.65,
+        "amplitude": 1.0,
+        "frequency_ratio": LOW_TO_STIFF,
+        "tolerance": 0.01,
+        "release": "displacement",
+    },
+    "fig15": {"n": 2, "restitution": 0.65, "frequency_ratio": 10.0, "release": "displacement"},
+    "fig16": {
+        "restitution": 0.65,
+        "frequency_ratio": {"min": 0.5, "max": 100.0},
+        "tolerance": 0.01,
+        "release": "displacement",
+    },
+    "table1": {
+        "n": [1, 2, 3],
+        "restitution": 0.85,
+        "frequency_ratio": ROWS_OF_TABLE_1,
+        "release": "displacement",
+    },
+    "thresholds": {
+        "n": 1,
+        "restitution": 0.65,
+        "amplitude": 1.0,
+        "frequency_ratio": {"min": 1.0, "max": 1e4},
+        "release": "displacement",
+    },
+    "lowest_doubling": {"n": [1, 2, 3], "restitution": 0.85, "release": "displacement"},
+}
+"""The parameters that the claims need of each dataset: those of the paper, and where its axes
+cannot be read, the ends of the ranges to which the conditions refer. The three balls may have any.
+"""
+
+QUANTITIES = {
+    "max_height": "greatest height",
+    "bounce_velocity": "bouncing-off velocity",
+    "phase": "phase of impact",
+    "apparent_restitution": "apparent restitution coefficient",
+    "saddle_node": "Λ of the saddle-node",
+    "period_doubling": "Λ of the period doubling",
+    "permanent_contact": "Λ of permanent contact",
+}
+"""Names of the quantities whose error is scanned."""
+
+VERDICTS = (
+    "reproduced",
+    "definition",
+    "by reading",
+    "not to the digit",
+    "contradicted",
+    "undecidable",
+    "not asked",
+    "not computed",
+)
+GROUPS = ("printed number", "statement")
+
+
+# Numbers and conditions
+
+
+class Comparison(NamedTuple):
+    """A computed number beside a printed one: the verdict, and the distance in units of the last
+    printed digit and as a share of the printed number.
+    """
+
+    verdict: str
+    units: float
+    share: float
+
+
+def against_print(found: float, printed: str) -> Comparison:
+    """The verdict on a printed number, of which the text has the digits.
+
+    A number halfway between two roundings counts as rounding to either.
+
+    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2570, 0.2580)]
+    ['reproduced', 'not to the digit', 'contradicted']
+    """
+    decimals = len(printed.partition(".")[2])
+    distance = found - float(printed)
+    units = distance * 10.0**decimals
+    share = distance / abs(float(printed))
+    if np.isnan(found):
+        verdict = "not computed"
+    elif abs(units) <= 0.5 + ROUNDING:
+        verdict = "reproduced"
+    elif abs(share) <= LIMIT + ROUNDING:
+        verdict = "not to the digit"
+    else:
+        verdict = "contradicted"
+    return Comparison(verdict, units, share)
+
+
+def distance_text(units: float, share: float) -> str:
+    """A distance from a printed number in words; empty if there is none.
+
+    >>> distance_text(6.3, 0.0061)
+    '+6.3 units, +0.61 %'
+    """
+    return "" if np.isnan(units) else f"{units:+.1f} units, {100 * share:+.2f} %"
+
+
+def markdown(rows: list[list[str]]) -> str:
+    """Rows as a Markdown table; the first is the header."""
+    header, *body = rows
+    lines = [header, ["---"] * len(header), *body]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def parameters(data: xr.Dataset) -> dict:
+    """The parameters with which a dataset was computed."""
+    return json.loads(data.attrs.get("parameters", "{}"))
+
+
+def other_parameters(name: str, data: xr.Dataset) -> str:
+    """What differs from the parameters that the claims need of a dataset; empty if nothing does."""
+    given = parameters(data)
+    return "; ".join(
+        f"{name}: {key} is {given.get(key)}, and the claim needs {needed}"
+        for key, needed in PAPER.get(name, {}).items()
+        if not agrees(given.get(key), needed)
+    )
+
+
+def agrees(given, needed) -> bool:
+    """Whether a parameter is the needed one; of a range only the needed keys count."""
+    if isinstance(needed, Mapping) and isinstance(given, Mapping):
+        return all(agrees(given.get(key), value) for key, value in needed.items())
+    return given == needed
+
+
+class Reading(NamedTuple):
+    """One way to read a statement: what is meant, whether it holds, the number that decides, NaN
+    if none does, and what is required of it, or the reason without a number.
+    """
+
+    name: str
+    holds: bool
+    found: float
+    required: str
+
+
+def complete(values: ArrayLike) -> NDArray:
+    """Numbers as an array; ValueError if there are none, or one of them is NaN."""
+    numbers = np.asarray(values, dtype=float)
+    missing = int(np.isnan(numbers).sum())
+    if missing or not numbers.size:
+        raise ValueError(f"{missing} of {numbers.size} numbers are missing")
+    return numbers
+
+
+def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
+    """The reading that no number is larger than a bound."""
+    largest = float(complete(values).max())
+    required = "≤ 0 but for rounding" if bound == ROUNDING else f"≤ {bound:.3g}"
+    return Reading(name, largest <= bound, largest, required)
+
+
+def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
+    """The reading that no number is smaller than a bound."""
+    smallest = float(complete(values).min())
+    return Reading(name, smallest >= bound, smallest, f"≥ {bound:.3g}")
+
+
+def above(name: str, values: ArrayLike, bound: float = 0.0) -> Reading:
+    """The reading that every number is larger than a bound."""
+    smallest = float(complete(values).min())
+    return Reading(name, smallest > bound, smallest, f"> {bound:.3g}")
+
+
+def argued(name: str, holds: bool, reason: str) -> Reading:
+    """A reading that no number decides, with the reason."""
+    return Reading(name, holds, np.nan, reason)
+
+
+def steps(data: xr.DataArray) -> NDArray:
+    """Changes from each contact to the next stiffer one."""
+    return data.sortby("frequency_ratio").diff("frequency_ratio").values
+
+
+def rows_of(ends: xr.DataArray) -> xr.DataArray:
+    """Table 1 from the stiffest row to the most compliant one."""
+    return ends.sortby("frequency_ratio", ascending=False)
+
+
+def last_special(branch: xr.Dataset, kind: str, quantity: str = "amplitude") -> float:
+    """Λ, or another quantity, at the last special point of a kind along a branch.
+
+    A branch ends on the stable side of the saddle-node with which Table 1 begins.
+    """
+    found = branch[f"special_{quantity}"].values[branch["special_kind"].values == kind]
+    if not found.size:
+        raise ValueError(f"the branch has no {kind}")
+    return float(found[-1])
+
+
+def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
+    """The branches of figures, one for each frequency ratio."""
+    return [part for figure in figures for _, part in figure.groupby("frequency_ratio")]
+
+
+def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
+    """The ranges of Λ in which the orbits of one branch are stable, in the order of the branch.
+
+    They lie between special points, or between one and an end of the branch.
+    """
+    branch = branch.squeeze("frequency_ratio")
+    special = branch.isel(special=branch["special_kind"].values != "")
+    places = np.concatenate([[0.0], special["special_arclength"], [1.0]])
+    amplitude = branch["amplitude"].values
+    ends = np.concatenate([amplitude[:1], special["special_amplitude"], amplitude[-1:]])
+    middles = (places[:-1] + places[1:]) / 2
+    stable = branch["stable"].values[np.rint(middles * (amplitude.size - 1)).astype(int)]
+    ranges = np.sort(np.stack([ends[:-1], ends[1:]], axis=1), axis=1)
+    return [(low, high) for low, high in ranges[stable].tolist()]
+
+
+def stiff_errors(**sweeps: xr.Dataset) -> xr.DataArray:
+    """The largest relative errors of the restitution model at ϖ ≥ 100, over orbit and measure.
+
+    `sweeps` are the datasets of Figs. 5, 6 and 10 by name. The relative error of a phase depends on
+    the origin of phases, so that it is also given as a share of a cycle.
+    """
+    labels = []
+    errors = []
+    for name, sweep in sweeps.items():
+        stiff = sweep.sel(frequency_ratio=STIFF_CONTACTS)
+        n = parameters(sweep)["n"]
+        r = stiff["restitution"].values[:, np.newaxis]
+        amplitude = stiff["amplitude"].values[:, np.newaxis]
+        phase = restitution.impact_phase(n, r, amplitude)
+        highest = restitution.max_height(n, r, amplitude)
+        differences = {
+            "max_height": stiff["max_height"].values / highest - 1,
+            "bounce_velocity": stiff["bounce_velocity"].values / restitution.bounce_velocity(n) - 1,
+            "apparent_restitution": stiff["apparent_restitution"].values / r - 1,
+            "phase": stiff["phase"].values / phase - 1,
+            "phase in cycles": (stiff["phase"].values - phase) / (2 * np.pi),
+        }
+        pairs = zip(sweep["restitution"].values, sweep["amplitude"].values, strict=True)
+        labels += [f"{name} r={each:g} Λ={size:g}" for each, size in pairs]
+        errors.append([np.abs(values).max(axis=1) for values in differences.values()])
+    coordinates = {"orbit": labels, "measure": list(differences)}
+    return xr.DataArray(np.concatenate(errors, axis=1).T, coordinates, ("orbit", "measure"))
+
+
+def restitution_at_rest(r: float, ratio: float, weight: float = 1.0) -> float:
+    """Restitution of a ball that falls with the velocity π of the 1-T orbit on a table at rest."""
+    contact = Contact(ratio, damping_ratio(r), weight=weight)
+    time = np.pi / (ratio * np.sqrt(1 - contact.damping_ratio**2))
+    for _ in range(20):  # Newton's method for the end of the contact, δ = 0
+        motion = contact.motion(time, -np.pi, 0.0, 0.0)
+        time = time - motion.displacement / motion.velocity
+    return float(contact.motion(time, -np.pi, 0.0, 0.0).velocity / np.pi)
+
+
+# Claims
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim: its name, its place in the paper, what it says in our words, and how it is decided.
+
+    `decide` takes the datasets that are named, and returns the computed number if a number is
+    `printed`, and otherwise the readings. `missing` is what the text lacks to choose among them.
+    """
+
+    name: str
+    place: str
+    text: str
+    datasets: tuple[str, ...]
+    decide: Callable[..., Any]
+    printed: str = ""
+    missing: str = ""
+    definition: bool = False
+    remark: str = ""
+
+
+CLAIMS: list[Claim] = []
+"""The claims in the order of the paper, without the ends of Table 1."""
+
+
+def claim(name: str, place: str, text: str, datasets: str = "", **more) -> Callable:
+    """Makes a claim of the function that decides it, and adds it to `CLAIMS`.
+
+    `datasets` are the names of the datasets that the function takes, in its order.
+    """
+
+    def add(decide: Callable) -> Callable:
+        CLAIMS.append(Claim(name, place, text, tuple(datasets.split()), decide, **more))
+        return decide
+
+    return add
+
+
+# Abstract and introduction
+
+
+@claim(
+    "stiff limit",
+    "Abstract",
+    "for a high contact stiffness the spring-damper model behaves as the restitution model",
+    "thresholds",
+    remark="the map of Eq. 5, to which the spring-damper model tends, has another period doubling "
+    "than Eq. 8",
+)
+def stiff_limit(thresholds):
+    stiffest = thresholds["relative_error"].isel(frequency_ratio=-1)
+    return [
+        at_most("every quantity at ϖ = 10⁴, with the period doubling of Eq. 5", stiffest, LIMIT),
+        at_most("the period doubling of Eq. 8", error_of_eq_8(thresholds), LIMIT),
+    ]
+
+
+def error_of_eq_8(thresholds: xr.Dataset) -> float:
+    """Relative distance of the period doubling of Eq. 8 from that of the map of Eq. 5, to which
+    the spring-damper model tends.
+    """
+    given = parameters(thresholds)
+    limit = restitution.period_doubling(given["n"], given["restitution"])
+    printed = restitution.holmes_period_doubling(given["n"], given["restitution"])
+    return abs(limit / printed - 1)
+
+
+@claim(
+    "compliant divergence",
+    "Abstract",
+    "the predictions of the two models diverge when the stiffness decreases",
+    "thresholds",
+    remark="a step leads from a contact to the next more compliant one, and the error must grow",
+)
+def compliant_divergence(thresholds):
+    errors = thresholds["relative_error"]
+    growth = errors.isel(frequency_ratio=0) - errors.isel(frequency_ratio=-1)
+    readings = [above("every quantity from the stiffest contact to the most compliant", growth)]
+    for line in errors:
+        finite = complete(line) < np.inf  # infinite where the contact has no saddle-node
+        error = line.values[finite]
+        ratio = line["frequency_ratio"].values[finite]
+        is_lowest = (error[1:-1] < error[:-2]) & (error[1:-1] < error[2:])
+        places = ", ".join(f"{place:.2g}" for place in ratio[1:-1][is_lowest])
+        zero = f" (its error passes through zero near ϖ = {places})" if places else ""
+        name = f"each step of the {QUANTITIES[line['quantity'].item()]}{zero}"
+        readings.append(above(name, error[:-1] - error[1:]))
+    return readings
+
+
+@claim(
+    "kinds of motion",
+    "Introduction",
+    "periodic, subharmonic and chaotic motions can be observed",
+    "three_balls",
+    remark="of three balls that start alike in the restitution model, one must repeat after each "
+    "impact, one after several impacts and periods, and one never, without sticking to the table "
+    "and with a Lyapunov exponent that is positive by five standard errors",
+)
+def kinds_of_motion(balls):
+    wild = balls["impacts"] == 0
+    complete(balls["lyapunov_exponent"].where(wild, 0.0))
+    diverging = balls["lyapunov_exponent"] > 5 * balls["lyapunov_error"]
+    periodic = (balls["impacts"] == 1) & (balls["periods"] > 0)
+    subharmonic = (balls["impacts"] > 1) & (balls["periods"] > 1)
+    chaotic = wild & (balls["stickings"] == 0) & diverging
+    kinds = sum(bool(kind.any()) for kind in (periodic, subharmonic, chaotic))
+    return [at_least("kinds of motion found", kinds, 3)]
+
+
+@claim(
+    "direct map",
+    "Introduction and Abstract",
+    "if flights are high against the excitation, the restitution model has a direct iterated map",
+)
+def direct_map():
+    return [
+        argued("the map whose flights end at the height of their start", True, "it is explicit"),
+        argued("the map of Eq. 5", False, "the time of flight is a root of its first line"),
+    ]
+
+
+@claim(
+    "no assumptions",
+    "Introduction",
+    "no assumptions are needed to solve the motion of the spring-damper model",
+    "fig08",
+    remark="before Eq. 16 the paper itself assumes that the damping ratio is constant",
+)
+def no_assumptions(fig08):
+    table = fig08["amplitude"] * np.cos(fig08["release_phase"])
+    rate = fig08["bounce_velocity"] - table
+    pull = 2 * fig08["damping_ratio"] * fig08["frequency_ratio"] * rate
+    return [
+        argued("the height of the flight", True, "Eqs. 21-26 do not neglect the table against it"),
+        at_most("the release, at which a damped contact pulls the ball, in weights", pull, 0.0),
+    ]
+
+
+@claim(
+    "no analytical solution",
+    "Abstract, Introduction and after Eq. 26",
+    "the n-T orbits of the spring-damper model have no analytical solution, and need numerical "
+    "continuation",
+    remark="at a given Λ the duration of the contact is the root of one transcendental equation; "
+    "that it has no formula is not shown in the paper, and we know of none",
+)
+def no_analytical_solution():
+    linear = "at a given duration of the contact Eqs. 21-26 are linear, so that it has a formula"
+    return [
+        argued("the orbits at a given Λ", True, "as far as we know"),
+        argued("the whole branch", False, linear),
+        argued("the need for continuation", False, "roots of one equation in the duration do"),
+    ]
+
+
+@claim(
+    "contact shortens",
+    "Abstract and Introduction",
+    "the contact gets longer as its stiffness decreases",
+    "fig05 fig06 fig10 fig13",
+)
+def contact_gets_longer(*sweeps):
+    shortening = np.concatenate([-steps(sweep["contact_duration"]).ravel() for sweep in sweeps])
+    return [above("the smallest change of the duration to the next contact", shortening)]
+
+
+@claim(
+    "existence changes",
+    "Introduction",
+    "for a lower stiffness the n-T orbits exist under other conditions than in the restitution "
+    "model",
+    "table1",
+)
+def existence_changes(table1):
+    node = rows_of(table1["computed"]).isel(frequency_ratio=-1).sel(bound="saddle-node")
+    rigid = table1["restitution_range"].sel(impact_map="exact", bound="saddle-node")
+    moved = abs(node.values / rigid.values - 1)
+    return [at_least("the smallest relative change of a saddle-node at ϖ = 2", moved, LIMIT)]
+
+
+# The restitution model
+
+
+@claim(
+    "saddle-node",
+    "after Eq. 7, Fig. 3",
+    "the n-T orbits appear in a saddle-node at the Λ of Eq. 7",
+    "fig03",
+    remark="there a stable and an unstable orbit must meet, and no orbit may have a smaller Λ",
+)
+def saddle_node(fig03):
+    node = fig03["saddle_node_amplitude"]
+    amplitude = fig03["amplitude"]
+    complete(amplitude)
+    upper = fig03["phase"] > 0
+    inside = (amplitude > node * (1 + ROUNDING)) & (
+        amplitude < fig03["period_doubling_amplitude"].sel(impact_map="exact") * (1 - ROUNDING)
+    )
+    wrong = (fig03["stable"] != upper) & inside
+    return [
+        at_most(
+            "relative distance of the lowest Λ from Eq. 7",
+            abs(amplitude.min("point") / node - 1),
+            ROUNDING,
+        ),
+        at_most("orbits without the stability of their side", wrong.sum(), 0),
+    ]
+
+
+@claim(
+    "period doubling",
+    "Eq. 8",
+    "the n-T orbits lose their stability in a period doubling at the Λ of Eq. 8",
+    "fig03",
+    remark="the introduction announces flights that are high against the excitation, and Eq. 5 "
+    "does not assume them",
+)
+def period_doubling(fig03):
+    r = parameters(fig03)["restitution"]
+    printed = fig03["period_doubling_amplitude"].sel(impact_map="holmes")
+    exact = fig03["period_doubling_amplitude"].sel(impact_map="exact")
+    lift = np.sqrt(printed**2 - fig03["saddle_node_amplitude"] ** 2)
+    doubling = 1 + (1 + r - 2 * (1 + r) * lift) + r  # 1 + trace + determinant of the reduced map
+    return [
+        at_most("the map whose flights end at the height of their start", abs(doubling), ROUNDING),
+        at_most("the map of Eq. 5", abs(printed / exact - 1), ROUNDING),
+    ]
+
+
+@claim(
+    "stable between",
+    "Fig. 3, Figs. 8 and 9, Table 1",
+    "the stable orbits of a family are those from its saddle-node to its period doubling",
+    "fig03 fig08 fig09",
+    remark="at ϖ = 2 the branch of n = 1 is stable twice more, at its long contacts, the last time "
+    "up to its end in permanent contact",
+)
+def stability_range(fig03, *figures):
+    amplitude = fig03["amplitude"]
+    complete(amplitude)
+    doubling = fig03["period_doubling_amplitude"].sel(impact_map="exact")
+    beyond = fig03["stable"] & ((amplitude > doubling * (1 + ROUNDING)) | (fig03["phase"] < 0))
+    absent = 0
+    others = []
+    for branch in branches(*figures):
+        ends = last_special(branch, "saddle-node"), last_special(branch, "period doubling")
+        ranges = stable_ranges(branch)
+        absent += ends not in ranges
+        others += [f"{low:.4f}-{high:.4f}" for low, high in ranges if (low, high) != ends]
+    extra = f" (Λ = {', '.join(others)})" if others else ""
+    return [
+        at_most("the restitution model, in orbits that break the rule", beyond.sum(), 0),
+        at_most("the stability of this range, in branches without it", absent, 0),
+        at_most(f"the instability of all other orbits, in stable ranges{extra}", len(others), 0),
+    ]
+
+
+# The spring-damper model
+
+
+@claim(
+    "bounces off later",
+    "after Eq. 15",
+    "contrary to the restitution model the ball bounces off later than its impact",
+    "fig05 fig06 fig08 fig09",
+    definition=True,
+    remark="a contact of finite stiffness needs time to stop the ball",
+)
+def bounces_later(*figures):
+    shortest = [figure["contact_duration"].min(skipna=False) for figure in figures]
+    return [above("the shortest contact", shortest)]
+
+
+@claim(
+    "critical damping",
+    "after Eq. 16",
+    "a vanishing restitution coefficient leads to the subcritical case, with a damping ratio of 1",
+    remark="the damping is subcritical for every r > 0, and critical in the limit",
+)
+def critical_damping():
+    r = 10.0 ** -np.arange(1, 301)
+    lack = 1 - damping_ratio(r)
+    return [
+        above("the smallest 1 - ζ down to r = 10⁻³⁰⁰", lack),
+        at_most(
+            "1 - ζ over π²/(2 ln²r), which vanishes",
+            lack * 2 * np.log(r) ** 2 / np.pi**2,
+            1.0,
+        ),
+    ]
+
+
+@claim(
+    "no damping",
+    "after Eq. 16",
+    "a restitution coefficient of 1 leads to no damping",
+    definition=True,
+    remark="an impact without loss is one without damping, whatever the equation is",
+)
+def no_damping():
+    return [at_most("ζ at r = 1", abs(damping_ratio(1.0)), 0.0)]
+
+
+@claim(
+    "static table",
+    "after Eq. 16",
+    "Eq. 16 is perfectly valid for a table at rest",
+    remark="the ball falls with the velocity π of the 1-T orbit, r = 0.65; the weight, which Eq. "
+    "10 has, matters less for a stiffer contact or a faster ball",
+)
+def static_table():
+    def error(ratio: float, weight: float) -> float:
+        return abs(restitution_at_rest(0.65, ratio, weight) / 0.65 - 1)
+
+    return [
+        at_most("a contact without weight", error(10.0, 0.0), ROUNDING),
+        at_most("a contact with weight at ϖ = 100, within 1 %", error(100.0, 1.0), LIMIT),
+        at_most("a contact with weight at ϖ = 10, within 1 %", error(10.0, 1.0), LIMIT),
+    ]
+
+
+@claim(
+    "moving table",
+    "after Eq. 16",
+    "Eq. 16 is not necessarily valid for a vibrating table",
+    "fig05 fig06",
+)
+def moving_table(*sweeps):
+    off = [abs(sweep["apparent_restitution"] / sweep["restitution"] - 1) for sweep in sweeps]
+    largest = max(complete(each).max() for each in off)
+    return [
+        at_least(
+            "the largest relative difference of the apparent restitution from r", largest, LIMIT
+        )
+    ]
+
+
+@claim(
+    "table velocities",
+    "before Eq. 17",
+    "contrary to the restitution model the velocities of the table before and after the impact are "
+    "different",
+    "fig08 fig09",
+    remark="they are equal where φ = -τ_b/2, next to the saddle-node of every branch",
+)
+def table_velocities(*figures):
+    middles = [branch["phase"] + branch["contact_duration"] / 2 for branch in branches(*figures)]
+    equal = [np.count_nonzero(np.diff(np.sign(np.sin(complete(each).ravel())))) for each in middles]
+    return [
+        at_most("all orbits of a branch but one", equal, 1),
+        at_most("every orbit, in orbits with equal velocities", sum(equal), 0),
+    ]
+
+
+@claim(
+    "closer with stiffness",
+    "after Fig. 5",
+    "the higher the frequency ratio, the closer the apparent restitution coefficient is to r",
+    "fig05",
+    remark="the damped curves pass r and come back to it from below",
+)
+def closer_with_stiffness(fig05):
+    off = abs(fig05["apparent_restitution"] - fig05["restitution"])
+    ends = off.isel(frequency_ratio=-1) - off.isel(frequency_ratio=0)
+    readings = [at_most("the ends of every curve", ends, ROUNDING)]
+    for r, curve in zip(fig05["restitution"].values, off, strict=True):
+        readings.append(at_most(f"each step on the curve of r = {r:g}", steps(curve), ROUNDING))
+    return readings
+
+
+@claim(
+    "depends on amplitude",
+    "before Fig. 6",
+    "the apparent restitution coefficient depends on the amplitude",
+    "fig06",
+)
+def depends_on_amplitude(fig06):
+    curves = fig06["apparent_restitution"]
+    complete(curves)
+    apart = (curves.max("case") - curves.min("case")).max()
+    return [at_least("the largest distance of two curves", apart, LIMIT)]
+
+
+@claim(
+    "dip at 1.2",
+    "before Fig. 6",
+    "at Λ = 1.2, as the frequency ratio falls, the apparent restitution coefficient first "
+    "decreases slightly",
+    "fig06",
+    remark="the curve of Λ = 0.7 does; the labels stand in rising order from the top, the curves "
+    "in falling order, so that the labels are probably swapped",
+)
+def dip_at_12(fig06):
+    depth = (fig06["restitution"] - fig06["apparent_restitution"]).max(
+        "frequency_ratio", skipna=False
+    )
+    name = f"the depth below r at Λ = 1.2; it is {float(depth[0]):.2g} at Λ = 0.7"
+    return [above(name, depth[-1])]
+
+
+@claim(
+    "compliant end of 1.2",
+    "before Fig. 6",
+    "at Λ = 1.2 the apparent restitution coefficient tends to this value at ϖ = 1",
+    "fig06",
+    printed="0.81",
+    remark="the two other curves have the same digits there",
+)
+def compliant_end(fig06):
+    return fig06["apparent_restitution"].isel(case=-1).sel(frequency_ratio=1.0)
+
+
+@claim(
+    "negligible above 100",
+    "after Fig. 6",
+    "the difference of the apparent restitution coefficient from r is negligible above ϖ = 100",
+    "fig05 fig06",
+    remark="negligible is taken as 1 %, the limit that the paper sets for errors",
+)
+def negligible_above_100(*sweeps):
+    stiff = [sweep.sel(frequency_ratio=STIFF_CONTACTS) for sweep in sweeps]
+    off = [complete(abs(part["apparent_restitution"] - part["restitution"])) for part in stiff]
+    shares = [
+        each / part["restitution"].values[:, np.newaxis]
+        for each, part in zip(off, stiff, strict=True)
+    ]
+    return [
+        at_most("the difference", max(each.max() for each in off), LIMIT),
+        at_most("the difference as a share of r", max(each.max() for each in shares), LIMIT),
+    ]
+
+
+# n-T orbits of the spring-damper model
+
+
+@claim(
+    "one impact per period",
+    "Conclusion and Introduction",
+    "the periodic orbits that are studied have one impact per period",
+    "fig03 fig05 fig06 fig08 fig09 fig10 fig13 fig14 fig15",
+    remark="no earlier impact or release may occur on the orbits in our versions of the figures",
+)
+def one_impact_per_period(*figures):
+    wrong = sum(int((~figure["admissible"].astype(bool)).sum()) for figure in figures)
+    return [at_most("orbits that are not admissible", wrong, 0)]
+
+
+@claim(
+    "six unknowns",
+    "before Eq. 21",
+    "the orbits have six unknowns, two of them for convenience",
+    remark="at a given duration of the contact the equations are linear, so that one unknown, the "
+    "duration, is enough",
+)
+def six_unknowns():
+    return [argued("z′_i, z′_b, τ_b and φ, with A and B", True, "as many as Eqs. 21-26")]
+
+
+@claim(
+    "damping of 0.85",
+    "Figs. 8-10",
+    "damping ratio for r = 0.85",
+    "fig08",
+    printed="0.052",
+)
+def damping_of_085(fig08):
+    return fig08["damping_ratio"]
+
+
+@claim(
+    "superimposed when stiff",
+    "after Fig. 9",
+    "for the stiff contact the curves of φ and of the phase of release coincide",
+    "fig08 fig09",
+)
+def superimposed_when_stiff(*figures):
+    longest = [
+        figure["contact_duration"].sel(frequency_ratio=1e4).max(skipna=False) for figure in figures
+    ]
+    return [at_most("the longest contact at ϖ = 10⁴, in radians of the table", longest, LIMIT)]
+
+
+@claim(
+    "apart when compliant",
+    "after Fig. 9",
+    "the curves of φ and of the phase of release diverge as the frequency ratio decreases",
+    "fig08 fig09",
+    remark="every contact must be longer than all contacts of the next stiffer branch",
+)
+def apart_when_compliant(*figures):
+    growth = []
+    for figure in figures:
+        duration = figure["contact_duration"].sortby("frequency_ratio", ascending=False)
+        complete(duration)
+        growth.append(duration.min("point").values[1:] - duration.max("point").values[:-1])
+    return [above("the smallest growth from a branch to the next", growth)]
+
+
+@claim(
+    "bifurcations move apart",
+    "after Fig. 9, Table 1",
+    "as the frequency ratio falls the saddle-node moves to lower amplitudes, and the period "
+    "doubling to higher ones",
+    "table1 lowest_doubling",
+    remark="in the printed table the doubling rises at once, from a stiffest row that is that of "
+    "Eq. 8; the moves are called slight",
+)
+def bifurcations_move(table1, lowest):
+    move = rows_of(table1["computed"]).diff("frequency_ratio")
+    node = -move.sel(bound="saddle-node")
+    doubling = move.sel(bound="period doubling")
+    turns = ", ".join(f"{ratio:.4g}" for ratio in complete(lowest["period_doubling_turn"]))
+    return [
+        above("the saddle-node from each row of Table 1 to the next", node),
+        above(
+            "the period doubling from the first row to the last",
+            doubling.sum("frequency_ratio", skipna=False),
+        ),
+        above(
+            f"the period doubling from each row to the next (it is lowest at ϖ = {turns})", doubling
+        ),
+    ]
+
+
+@claim(
+    "range widens",
+    "after Fig. 9, Table 1",
+    "as the frequency ratio falls the stability range is extended",
+    "table1",
+    remark="the range of Table 1; *stable between* has further ones at ϖ = 2",
+)
+def range_widens(table1):
+    width = rows_of(table1["computed"]).diff("bound")
+    return [
+        above("the smallest growth from a row to the next, in Λ", width.diff("frequency_ratio"))
+    ]
+
+
+@claim(
+    "stiff row",
+    "after Table 1",
+    "the stability ranges at the largest frequency ratio are those of the restitution model",
+    "table1",
+    remark="the paper's restitution model has Eqs. 7 and 8, from which its row was made; half a "
+    "unit of the printed digits is allowed",
+)
+def stiff_row(table1):
+    stiffest = table1.sel(frequency_ratio=table1["frequency_ratio"].max())
+    exact = table1["restitution_range"].sel(impact_map="exact")
+    holmes = table1["restitution_range"].sel(impact_map="holmes")
+    off = abs(stiffest["computed"] - holmes)
+    doublings = off.sel(bound="period doubling")
+    apart = ", ".join(f"{value:.4f}" for value in doublings.values)
+    return [
+        at_most("the printed row and Eqs. 7 and 8", abs(stiffest["printed"] - holmes), 0.0005),
+        at_most("the computed row and the map of Eq. 5", abs(stiffest["computed"] - exact), 0.0005),
+        at_most("the computed saddle-nodes and Eq. 7", off.sel(bound="saddle-node"), 0.0005),
+        at_most(f"the computed period doublings and Eq. 8 (apart by {apart})", doublings, 0.0005),
+    ]
+
+
+@claim(
+    "no longer nπ",
+    "before Fig. 10",
+    "the bouncing-off velocity is no longer nπ",
+    "fig10",
+)
+def no_longer_nπ(fig10):
+    return [above("the smallest relative departure from nπ", departure(fig10))]
+
+
+@claim(
+    "departure from nπ",
+    "after Fig. 10",
+    "the bouncing-off velocity starts to depart from nπ below ϖ = 100",
+    "fig10",
+    missing="the departure that counts as a start",
+    remark="the departure falls as the inverse of the frequency ratio, without a step",
+)
+def departs_below_100(fig10):
+    error = departure(fig10)
+    at_100 = error.sel(frequency_ratio=STIFF, method="nearest", tolerance=STIFF * ROUNDING)
+    stiffer = error.sel(frequency_ratio=slice(STIFF * (1 + ROUNDING), None))
+    return [
+        above("a start with the departure at ϖ = 100", complete(at_100).min() - stiffer),
+        at_least("a start with 1 %", at_100, LIMIT),
+    ]
+
+
+def departure(fig10: xr.Dataset) -> xr.DataArray:
+    """Relative departure of the bouncing-off velocity from nπ."""
+    return abs(fig10["bounce_velocity"] / fig10["restitution_bounce_velocity"] - 1)
+
+
+@claim(
+    "amplitude does not matter",
+    "after Fig. 10",
+    "the bouncing-off velocity does not depend on the amplitude",
+    "fig10",
+    missing="the left end of the axis of Fig. 10, which cannot be read",
+    remark="the three curves must lie within 1 % of nπ",
+)
+def amplitude_does_not_matter(fig10):
+    velocity = fig10["bounce_velocity"]
+    complete(velocity)
+    apart = (velocity.max("case") - velocity.min("case")) / fig10["restitution_bounce_velocity"]
+    ratio = fig10["frequency_ratio"].values
+    # The distance falls with ϖ, and np.interp wants it to rise.
+    meeting = np.exp(np.interp(LIMIT, apart.values[::-1], np.log(ratio)[::-1]))
+    return [
+        at_most("an axis from ϖ = 2 on", apart[ratio >= 2], LIMIT),
+        at_most(f"an axis from ϖ = 1 on (they meet at {meeting:.3g})", apart, LIMIT),
+    ]
+
+
+# Permanent contact
+
+
+@claim(
+    "stiff threshold",
+    "after Fig. 11",
+    "the threshold of permanent contact tends to 1 for an infinite frequency ratio",
+    "thresholds",
+)
+def stiff_threshold(thresholds):
+    error = thresholds["relative_error"].sel(quantity="permanent_contact").isel(frequency_ratio=-1)
+    distance = error * error["frequency_ratio"] ** 2
+    return [at_most("ϖ² times the distance from 1 at ϖ = 10⁴", distance, 1.0)]
+
+
+@claim(
+    "compliant threshold",
+    "after Fig. 11",
+    "the threshold of permanent contact grows beyond all bounds for a vanishing frequency ratio",
+    "fig11",
+    remark="Λ_SD differs from 1/ϖ² by the share (1 - 2ζ²)ϖ² to first order",
+)
+def compliant_threshold(fig11):
+    amplitude = permanent_contact(1e-4, fig11["damping_ratio"])
+    return [at_most("relative distance from 1/ϖ² at ϖ = 10⁻⁴", abs(amplitude * 1e-8 - 1), 1e-8)]
+
+
+@claim(
+    "resonant threshold",
+    "after Fig. 11",
+    "the threshold of permanent contact is 2ζ at ϖ = 1",
+    "fig11",
+)
+def resonant_threshold(fig11):
+    zeta = fig11["damping_ratio"]
+    return [at_most("distance from 2ζ", abs(permanent_contact(1.0, zeta) - 2 * zeta), ROUNDING)]
+
+
+@claim(
+    "lowest threshold",
+    "Eq. 36, Fig. 11",
+    "permanent contact remains stable at every frequency ratio up to Λ = 2ζ√(1 - ζ²)",
+    "fig11",
+    remark="Eq. 33, from which Eq. 36 follows, is a condition of existence; that small "
+    "disturbances decay follows from the damping, and that large ones do is not shown",
+)
+def stable_permanent_contact(fig11):
+    zeta = fig11["damping_ratio"]
+    lowest = 2 * zeta * np.sqrt(1 - zeta**2)
+    surplus = fig11["threshold_amplitude"] - lowest
+    decay = 1 - np.exp(-2 * np.pi * zeta * fig11["frequency_ratio"])
+    return [
+        at_least("the smallest distance of Fig. 11 above Eq. 36", surplus, 0.0),
+        above("the decay of a small disturbance in a period", decay),
+    ]
+
+
+# Both models side by side
+
+
+@claim(
+    "damping of 0.65",
+    "Figs. 11-16",
+    "damping ratio for r = 0.65",
+    "fig16",
+    printed="0.1359",
+    remark="printed as 0.136 except at Fig. 16",
+)
+def damping_of_065(fig16):
+    return fig16["damping_ratio"]
+
+
+@claim(
+    "velocity rises",
+    "after Fig. 12",
+    "as the frequency ratio rises the bouncing-off velocity rises",
+    "fig12 fig13",
+)
+def velocity_rises(fig12, fig13):
+    return [
+        above("the smallest rise on the orbits of Fig. 12", steps(fig12["bounce_velocity"])),
+        above("the smallest rise on the same orbits at every ϖ", steps(fig13["bounce_velocity"])),
+    ]
+
+
+@claim(
+    "height rises",
+    "after Fig. 12, Fig. 14",
+    "as the frequency ratio rises the greatest height of the flight rises",
+    "fig12 fig14",
+)
+def height_rises(fig12, fig14):
+    highest = fig12["ball"].max("table_phase", skipna=False)
+    return [
+        above("the smallest rise on the orbits of Fig. 12", steps(highest)),
+        above("the smallest rise on the same orbits at every ϖ", steps(fig14["max_height"])),
+    ]
+
+
+@claim(
+    "phases converge",
+    "after Fig. 12, Fig. 13",
+    "as the frequency ratio rises the phases of impact and of release converge to the phase of the "
+    "restitution model",
+    "fig13",
+)
+def phases_converge(fig13):
+    phases = [fig13["phase"], fig13["release_phase"]]
+    off = [abs(phase / fig13["restitution_phase"] - 1) for phase in phases]
+    ends = [each.isel(frequency_ratio=-1) for each in off]
+    return [
+        at_most("the largest relative distance at the stiffest contact", ends, LIMIT),
+        above(
+            "the smallest fall of the distance to the next contact", [-steps(each) for each in off]
+        ),
+    ]
+
+
+@claim(
+    "height threshold",
+    "after Eq. 37, Fig. 14",
+    "frequency ratio from which on the greatest heights differ by less than 1 %",
+    "fig14",
+    printed="82",
+)
+def height_threshold(fig14):
+    return fig14["error_threshold"]
+
+
+@claim(
+    "threshold ensures",
+    "before Eq. 37",
+    "above this threshold the relative error is less than 1 %",
+    "fig14",
+    remark="the error must fall everywhere, so that it passes 1 % once",
+)
+def threshold_ensures(fig14):
+    fall = -steps(fig14["relative_error"])
+    return [above("the smallest fall of the error to the next stiffer contact", fall)]
+
+
+@claim(
+    "representative",
+    "after Fig. 15",
+    "the restitution model remains representative, with a small error on the stability range",
+    "fig15 table1",
+    missing="the error that counts as small",
+)
+def representative(fig15, table1):
+    (branch,) = branches(fig15)
+    node = abs(last_special(branch, "saddle-node") / fig15["saddle_node_amplitude"] - 1)
+    upper = last_special(branch, "period doubling")
+    eq_5 = abs(upper / fig15["period_doubling_amplitude"] - 1)
+    given = parameters(fig15)
+    printed = restitution.holmes_period_doubling(given["n"], given["restitution"])
+    eq_8 = abs(upper / printed - 1)
+    rows = rows_of(table1["printed"])
+    slight = float(complete(abs(rows / rows.isel(frequency_ratio=0) - 1)).max())
+    return [
+        at_most("both ends, as the moves of Table 1 that are called slight", [node, eq_5], slight),
+        at_most("the upper end and Eq. 8, within 1 %", eq_8, LIMIT),
+        at_most("the upper end and Eq. 5, within 1 %", eq_5, LIMIT),
+        at_most("the lower end, within 1 %", node, LIMIT),
+    ]
+
+
+@claim(
+    "permanent contact threshold",
+    "Fig. 16 and after it",
+    "frequency ratio below which the thresholds of permanent contact differ, by 1 %",
+    "fig16",
+    printed="6",
+    remark="Eq. 34 gives the computed number, too",
+)
+def permanent_contact_threshold(fig16):
+    return fig16["error_threshold"]
+
+
+@claim(
+    "safe above 100",
+    "Conclusion",
+    "the restitution model is good above a frequency ratio of 100",
+    "fig05 fig06 fig10 fig16 thresholds",
+    remark="the paper sets the limit of 1 % for the greatest height and for permanent contact; the "
+    "orbits are those of Figs. 5, 6 and 10",
+)
+def safe_above_100(fig05, fig06, fig10, fig16, thresholds):
+    orbits = stiff_errors(fig05=fig05, fig06=fig06, fig10=fig10)
+    contact = fig16["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
+    ends = thresholds["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
+    return [
+        at_most("the greatest height", orbits.sel(measure="max_height"), LIMIT),
+        at_most("permanent contact", contact, LIMIT),
+        at_most("the saddle-node", ends.sel(quantity="saddle_node"), LIMIT),
+        at_most("the period doubling of Eq. 5", ends.sel(quantity="period_doubling"), LIMIT),
+        at_most("the phase as a share of a cycle", orbits.sel(measure="phase in cycles"), LIMIT),
+        at_most("the period doubling of Eq. 8", error_of_eq_8(thresholds), LIMIT),
+        at_most("the bouncing-off velocity", orbits.sel(measure="bounce_velocity"), LIMIT),
+        at_most("the apparent restitution", orbits.sel(measure="apparent_restitution"), LIMIT),
+        at_most("the phase relative to itself", orbits.sel(measure="phase"), LIMIT),
+    ]
+
+
+# Table 1
+
+
+def printed_table(path: str | Path) -> xr.DataArray:
+    """The printed ends of Table 1 as texts with their digits, from a CSV file.
+
+    The columns are frequency_ratio, n, saddle-node and period doubling; the result has the
+    dimensions frequency_ratio, n and bound.
+    """
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    bounds = [name for name in rows[0] if name not in ("frequency_ratio", "n")]
+    entries = {
+        (float(row["frequency_ratio"]), int(row["n"]), bound): row[bound]
+        for row in rows
+        for bound in bounds
+    }
+    ratios = list(dict.fromkeys(ratio for ratio, _, _ in entries))
+    families = list(dict.fromkeys(n for _, n, _ in entries))
+    texts = [[[entries[ratio, n, bound] for bound in bounds] for n in families] for ratio in ratios]
+    axes = {"frequency_ratio": ratios, "n": families, "bound": bounds}
+    return xr.DataArray(texts, axes, list(axes))
+
+
+def table1_ends(printed: xr.DataArray) -> list[Claim]:
+    """A claim for each printed end of Table 1."""
+    ends = []
+    stiffest = printed["frequency_ratio"].max()
+    for entry in printed.stack(place=printed.dims):
+        ratio, n, bound = entry["place"].item()
+        where = {"frequency_ratio": ratio, "n": n, "bound": bound}
+        of_eq_8 = ratio == stiffest and bound == "period doubling"
+        ends.append(
+            Claim(
+                f"Table 1: {ratio:g}, {n}, {bound}",
+                "Table 1",
+                f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
+                ("table1",),
+                lambda table1, where=where: table1["computed"].sel(where),
+                printed=entry.item(),
+                remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
+            )
+        )
+    return ends
+
+
+# The restored formulas
+
+FORMULAS = [
+    (
+        "Eqs. 1, 3 and 4",
+        "height and velocity in flight",
+        "restitution.height, restitution.velocity",
+        "test_restitution",
+    ),
+    ("Eq. 2", "velocity after an impact", "restitution.impact_map", "test_restitution"),
+    (
+        "Eq. 5",
+        "phase and velocity from one impact to the next",
+        "restitution.impact_map, restitution.flight_time",
+        "test_restitution",
+    ),
+    (
+        "Eq. 6",
+        "velocity and phase of the n-T orbit",
+        "restitution.bounce_velocity, restitution.impact_phase",
+        "test_restitution",
+    ),
+    ("Eq. 7", "saddle-node", "restitution.saddle_node", "test_restitution"),
+    ("Eq. 8", "period doubling", "restitution.holmes_period_doubling", "test_claims"),
+    ("Eq. 9", "threshold of permanent contact", "restitution.PERMANENT_CONTACT", "test_claims"),
+    (
+        "Eqs. 10-13",
+        "equation of contact, and the motion that solves it",
+        "spring_damper.Contact.motion",
+        "test_spring_damper",
+    ),
+    ("Eqs. 14 and 15", "motion in flight", "orbits.Family.motion", "test_orbits"),
+    ("Eq. 16", "damping ratio", "spring_damper.damping_ratio", "test_spring_damper"),
+    (
+        "Eq. 17",
+        "apparent restitution coefficient",
+        "orbits.Family.apparent_restitution",
+        "test_orbits",
+    ),
+    (
+        "Eqs. 18-26",
+        "equations of the n-T orbits",
+        "orbits.Family.release, orbits.Family.equations",
+        "test_orbits",
+    ),
+    ("Eq. 27", "bouncing-off velocity", "orbits.Family.bounce_velocity", "test_orbits"),
+    (
+        "Eqs. 28-33",
+        "displacement in permanent contact, and its threshold",
+        "spring_damper.permanent_contact",
+        "test_spring_damper",
+    ),
+    (
+        "Eqs. 34 and 35",
+        "frequency ratios of a threshold",
+        "spring_damper.permanent_contact_ratios",
+        "test_spring_damper",
+    ),
+    (
+        "Eq. 36",
+        "lowest threshold",
+        "spring_damper.lowest_permanent_contact",
+        "test_spring_damper",
+    ),
+    ("Eqs. 37 and 38", "relative errors", "errors.relative_error", "test_claims"),
+]
+"""Equations of the paper, what they give, the members of this package that compute them, and the
+module of tests that checks them.
+"""
+
+
+# Verdicts
+
+
+def answer(claim: Claim, datasets: Mapping[str, xr.Dataset]) -> dict:
+    """The verdict on a claim, with what belongs to it: the number found and its distance from the
+    printed one, the conditions in words, and the reason for having no other verdict.
+
+    What is missing for one claim changes no other.
+    """
+    absent = [name for name in claim.datasets if name not in datasets]
+    if absent:
+        return {"verdict": "not computed", "reason": f"there is no dataset {', '.join(absent)}"}
+    others = [other_parameters(name, datasets[name]) for name in claim.datasets]
+    if any(others):
+        return {"verdict": "not asked", "reason": "; ".join(filter(None, others))}
+    try:
+        decided = claim.decide(*(datasets[name] for name in claim.datasets))
+        if claim.printed:
+            return of_number(claim, decided)
+        return of_readings(claim, decided)
+    except (KeyError, ValueError, IndexError) as error:
+        return {"verdict": "not computed", "reason": f"{type(error).__name__}: {error}"}
+
+
+def of_number(claim: Claim, computed: ArrayLike) -> dict:
+    """The verdict on a printed number."""
+    found = float(complete(computed))
+    verdict, units, share = against_print(found, claim.printed)
+    return {"verdict": verdict, "found": found, "deviation_units": units, "deviation": share}
+
+
+def of_readings(claim: Claim, readings: list[Reading]) -> dict:
+    """The verdict on a statement from its readings; the number found is that of the first."""
+    right = [reading for reading in readings if reading.holds]
+    wrong = [reading for reading in readings if not reading.holds]
+    found = {"found": readings[0].found, "condition": listed(readings)}
+    if not wrong:
+        return found | {"verdict": "definition" if claim.definition else "reproduced"}
+    if not right:
+        return found | {"verdict": "contradicted"}
+    found["condition"] = f"right for {listed(right)}; not for {listed(wrong)}"
+    if not claim.missing:
+        return found | {"verdict": "by reading"}
+    return found | {"verdict": "undecidable", "reason": f"the text lacks {claim.missing}"}
+
+
+def listed(readings: list[Reading]) -> str:
+    """Readings in words, each with its number and what is required of it."""
+    texts = []
+    for reading in readings:
+        number = "" if np.isnan(reading.found) else f"{rounded(reading.found)}, required "
+        texts.append(f"{reading.name} ({number}{reading.required})")
+    return ", ".join(texts)
+
+
+def rounded(number: float) -> str:
+    """Three digits of a number; zero if it is zero but for rounding."""
+    return f"{number:.3g}" if abs(number) > ROUNDING else "0"
+
+
+SYMBOLS = {"n": "n", "restitution": "r", "amplitude": "Λ", "frequency_ratio": "ϖ"}
+
+
+def parameters_text(names: Iterable[str]) -> str:
+    """The parameters of datasets in words."""
+    return "; ".join(
+        f"{spoken(name)}: {in_symbols(PAPER[name])}" for name in names if name in PAPER
+    )
+
+
+def spoken(name: str) -> str:
+    """The name of a figure or table in words.
+
+    >>> spoken("fig05"), spoken("table1"), spoken("lowest_doubling")
+    ('Fig. 5', 'Table 1', 'lowest doubling')
+    """
+    kind = {"fig": "Fig.", "table": "Table"}.get(name.rstrip("0123456789"))
+    return f"{kind} {int(name.lstrip('figtable'))}" if kind else name.replace("_", " ")
+
+
+def in_symbols(values: Mapping) -> str:
+    """Parameters in symbols.
+
+    >>> in_symbols({"n": [1, 2], "restitution": 0.85, "frequency_ratio": {"min": 0.5, "max": 1e4}})
+    'n = 1, 2, r = 0.85, ϖ = 0.5 to 10000'
+    """
+    texts = []
+    for key, value in values.items():
+        if key == "cases":
+            pairs = (f"({case['restitution']:g}, {case['amplitude']:g})" for case in value)
+            texts.append(f"(r, Λ) = {', '.join(pairs)}")
+        elif isinstance(value, Mapping):
+            texts.append(f"{SYMBOLS[key]} = {value['min']:g} to {value['max']:g}")
+        elif key in SYMBOLS:
+            texts.append(f"{SYMBOLS[key]} = {', '.join(f'{each:g}' for each in np.ravel(value))}")
+    return ", ".join(texts)
+
+
+def judge(datasets: Mapping[str, xr.Dataset], printed: xr.DataArray) -> xr.Dataset:
+    """The verdict on each claim, and the restored formulas, over the dimension `claim`.
+
+    Parameters
+    ----------
+    datasets : mapping
+        The datasets of the figures and tables by name. A claim whose datasets are missing is not
+        computed.
+    printed : xarray.DataArray
+        The printed Table 1 as texts, from `printed_table`.
+    """
+    rows = [
+        NOTHING
+        | {
+            "claim": claim.name,
+            "group": "printed number" if claim.printed else "statement",
+            "item": claim.place,
+            "statement": claim.text,
+            "parameters": parameters_text(claim.datasets),
+            "decided_by": ", ".join(claim.datasets),
+            "printed_text": claim.printed,
+            "remark": claim.remark,
+        }
+        | answer(claim, datasets)
+        for claim in [*CLAIMS, *table1_ends(printed)]
+    ]
+    rows += [
+        NOTHING
+        | {
+            "claim": equations,
+            "group": "restored formula",
+            "item": equations,
+            "statement": text,
+            "decided_by": members,
+            "condition": f"tests/{tests}.py",
+            "verdict": "restored",
+        }
+        for equations, text, members, tests in FORMULAS
+    ]
+    columns = {name: ("claim", [row[name] for row in rows]) for name in rows[0]}
+    return xr.Dataset(columns).set_coords("claim")
+
+
+NOTHING = {
+    "claim": "",
+    "group": "",
+    "item": "",
+    "statement": "",
+    "parameters": "",
+    "decided_by": "",
+    "printed_text": "",
+    "found": np.nan,
+    "deviation_units": np.nan,
+    "deviation": np.nan,
+    "verdict": "",
+    "condition": "",
+    "reason": "",
+    "remark": "",
+}
+"""The variables of the dataset, for what a claim does not have."""
+
+
+def counts(data: xr.Dataset) -> dict[str, dict[str, int]]:
+    """How many claims of each group have each verdict; restored formulas are not counted."""
+    found = Counter(
+        zip(data["group"].values.tolist(), data["verdict"].values.tolist(), strict=True)
+    )
+    return {group: {verdict: found[group, verdict] for verdict in VERDICTS} for group in GROUPS}
+
+
+# The claims as texts
+
+
+def computed_text(found: float, printed: str) -> str:
+    """A computed number with two digits more than the printed one.
+
+    >>> computed_text(1.0383008, "1.032"), computed_text(82.177, "82"), computed_text(np.nan, "6")
+    ('1.03830', '82.18', '–')
+    """
+    decimals = len(printed.partition(".")[2]) + 2
+    return "–" if np.isnan(found) else f"{found:.{decimals}f}"
+
+
+def each(data: xr.Dataset, group: str) -> list[dict]:
+    """The claims of a group, each as a mapping from the variables to its values.
+
+    Besides, `computed` and `distance` have the number found beside a printed one as texts, and
+    `notes` the reason for the verdict and the remark.
+    """
+    chosen = data.isel(claim=data["group"].values == group)
+    rows = []
+    for place in range(chosen.sizes["claim"]):
+        row = {name: chosen[name].values[place].item() for name in chosen.variables}
+        printed = row["printed_text"]
+        row["computed"] = computed_text(row["found"], printed) if printed else ""
+        row["distance"] = distance_text(row["deviation_units"], row["deviation"])
+        row["notes"] = "; ".join(filter(None, (row["reason"], row["remark"])))
+        rows.append(row)
+    return rows
+
+
+SECTIONS = {
+    "printed number": {
+        "claim": "claim",
+        "where": "item",
+        "number": "statement",
+        "printed": "printed_text",
+        "computed": "computed",
+        "distance": "distance",
+        "verdict": "verdict",
+        "remark": "notes",
+    },
+    "statement": {
+        "claim": "claim",
+        "where": "item",
+        "what the paper says": "statement",
+        "verdict": "verdict",
+        "found": "condition",
+        "at": "parameters",
+        "remark": "notes",
+    },
+    "restored formula": {
+        "equations": "item",
+        "what they give": "statement",
+        "computed by": "decided_by",
+        "checked by": "condition",
+        "verdict": "verdict",
+    },
+}
+"""The tables of claims, one for each group, with their columns."""
+EVERYTHING = {
+    "claim": "claim",
+    "group": "group",
+    "where": "item",
+    "what the paper says": "statement",
+    "at": "parameters",
+    "printed": "printed_text",
+    "computed": "computed",
+    "distance": "distance",
+    "verdict": "verdict",
+    "found, or checked by": "condition",
+    "remark": "notes",
+    "decided by, or computed by": "decided_by",
+}
+"""The columns of the CSV file."""
+
+
+def table(data: xr.Dataset, group: str, columns: Mapping[str, str] | None = None) -> list:
+    """Rows of texts for the claims of a group, the header first."""
+    columns = columns or SECTIONS[group]
+    return [[*columns], *([row[name] for name in columns.values()] for row in each(data, group))]
+
+
+def all_rows(data: xr.Dataset) -> list[list[str]]:
+    """Rows of texts for all claims and restored formulas, with all that is known of them."""
+    groups = [table(data, group, EVERYTHING)[1:] for group in SECTIONS]
+    return [[*EVERYTHING], *(row for group in groups for row in group)]
+
+
+def summary(data: xr.Dataset) -> list[list[str]]:
+    """Rows of texts with the number of claims of each group and verdict, the header first."""
+    found = counts(data)
+    used = [verdict for verdict in VERDICTS if any(by[verdict] for by in found.values())]
+    rows = [["group", "claims", *used]]
+    for group, by in found.items():
+        numbers = [sum(by.values()), *(by[verdict] for verdict in used)]
+        rows.append([f"{group}s", *map(str, numbers)])
+    return rows
+
+
+INTRODUCTION = """\
+# The claims of the paper and the verdict on each
+
+A row is one claim of the paper, in our words, with its place in the paper.
+
+- A printed number is *reproduced* if the computed one rounds to it, *not to the digit* if it does
+  not, but differs by at most 1 %, and *contradicted* beyond. The distance is in units of the last
+  printed digit and in per cent of the printed number.
+- A statement is turned into a condition for each way in which its words can be read. It is
+  *reproduced* or *contradicted* if all these readings agree. It is right *by reading* if they do
+  not, and the readings are named for which it is right and for which it is not. It is *undecidable*
+  if the text lacks what would choose among them, and a *definition* if it could not have failed.
+- A claim is *not asked* if this run has other parameters than the claim needs, and *not computed*
+  if a dataset or a number is missing.
+- A formula was *restored* from the damaged text by deriving it again. That the tests confirm it
+  shows that the restored form is right, and not that it was printed. Restored formulas are not
+  counted.
+"""
+
+
+def claims_markdown(data: xr.Dataset) -> str:
+    """The claims with their verdicts as a page."""
+    text = f"{INTRODUCTION}\n## How many\n\n{markdown(summary(data))}"
+    for group in SECTIONS:
+        text += f"\n## {group.capitalize()}s\n\n{markdown(table(data, group))}"
+    return text

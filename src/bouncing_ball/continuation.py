@@ -1,0 +1,459 @@
+"""Continuation of n-T orbits: corrector, walks along the frequency ratio, branches along Λ.
+
+The three equations of a family (`orbits.Family.equations`) for the four numbers of an orbit are
+completed by a condition: a given amplitude, a given duration of the contact, a plane through a
+predicted point, or a bifurcation. Newton's method is the corrector for all of them.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from bouncing_ball import restitution
+from bouncing_ball.orbits import Family
+from bouncing_ball.restitution import Numbers
+from bouncing_ball.spring_damper import Contact, damping_ratio
+
+Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
+"""A function of orbits y, shape (4, ...), whose zero is wanted, and its derivative by y."""
+
+STIFF = 1e3
+"""The frequency ratio at which walks start, from the orbit of the restitution model."""
+
+STEPS_PER_DECADE = 16
+"""Steps of a walk per decade of ϖ: the prediction error is then a percent of the orbit's change."""
+
+SMALLEST_STEP = 1e-6
+"""The step at which a continuation gives up."""
+
+LEAST_FLIGHT = 8e-4
+"""Flight at which a branch counts as merged with permanent contact. Its Λ then exceeds that of
+permanent contact by the square of this, and the multipliers, which are divided by the squared
+velocity of the impact, still have ten digits."""
+
+VANISHES = "the amplitude vanishes, as it does for undamped contacts only"
+"""Why the branch of an undamped contact ends: its phase is not defined at Λ = 0."""
+
+MERGES = "the flight vanishes: the orbit merges with permanent contact"
+
+SPECIAL = ("saddle-node", "period doubling", "grazing")
+"""The kinds of special points of a branch."""
+
+
+class NoOrbit(ValueError):
+    """There is no such orbit, or Newton's method does not find it."""
+
+
+def at_amplitude(amplitude: Numbers) -> Condition:
+    """The condition of an amplitude Λ."""
+
+    def condition(family, y):
+        return y[0] - amplitude, _unit(0, y)
+
+    return condition
+
+
+def at_duration(angle: Numbers) -> Condition:
+    """The condition of a duration θ = ϖ τ_b of the contact."""
+
+    def condition(family, y):
+        return y[3] - angle, _unit(3, y)
+
+    return condition
+
+
+def on_plane(point: NDArray, normal: NDArray) -> Condition:
+    """The condition of the plane through a point, as in pseudo-arclength continuation."""
+
+    def condition(family, y):
+        return np.sum(normal * (y - point), axis=0), normal
+
+    return condition
+
+
+def at_bifurcation(test: Callable[[Family, NDArray], NDArray]) -> Condition:
+    """The condition that a test function of orbits vanishes, such as `Family.saddle_node`.
+
+    Its derivative is by central differences with a step of 1e-6: errors of 1e-9 in it slow
+    Newton's method down a little, and do not change the orbit to which it converges.
+    """
+    step = 1e-6
+    shifts = step * np.hstack([np.eye(4), -np.eye(4)])
+
+    def condition(family, y):
+        around = y[:, np.newaxis] + shifts.reshape(4, 8, *np.ones(y.ndim - 1, dtype=int))
+        values = test(family, around)
+        return test(family, y), (values[:4] - values[4:]) / (2 * step)
+
+    return condition
+
+
+def _unit(k: int, y: NDArray) -> NDArray:
+    """The unit vector of a component, for orbits y."""
+    unit = np.zeros_like(y)
+    unit[k] = 1
+    return unit
+
+
+def correct(
+    family: Family,
+    guess: NDArray,
+    condition: Condition,
+    iterations: int = 12,
+    tolerance: float = 1e-11,
+) -> NDArray:
+    """Orbits near the guesses that meet a condition, by Newton's method; NaN where it fails.
+
+    Parameters
+    ----------
+    family : Family
+    guess : ndarray, shape (4, ...)
+    condition : Condition
+    iterations : int
+        The largest number of steps.
+    tolerance : float
+        The largest last step relative to 1 + |y|. As the steps fall quadratically, the error after
+        a step of 1e-11 is that of rounding.
+    """
+    y = np.array(guess, dtype=float)
+    step = np.full_like(y, np.inf)
+    # A guess that is too far away can lead anywhere; its orbit becomes NaN in the end.
+    with np.errstate(all="ignore"):
+        for _ in range(iterations):
+            value, gradient = condition(family, y)
+            values = np.concatenate([family.equations(y), value[np.newaxis]])
+            matrix = np.concatenate([family.jacobian(y), gradient[np.newaxis]])
+            step = _solve(matrix, values)
+            y = y - step
+            small = np.max(np.abs(step), axis=0) < tolerance * (1 + np.max(np.abs(y), axis=0))
+            if np.all(small | ~np.isfinite(step).all(axis=0)):
+                break
+        small = np.max(np.abs(step), axis=0) < tolerance * (1 + np.max(np.abs(y), axis=0))
+    return np.where(small, y, np.nan)
+
+
+def _solve(matrix: NDArray, values: NDArray) -> NDArray:
+    """Solve systems whose axes come first; NaN for those whose matrix is singular."""
+    rows = np.moveaxis(matrix, (0, 1), (-2, -1))
+    columns = np.moveaxis(values, 0, -1)[..., np.newaxis]
+    singular = np.linalg.det(rows) == 0
+    rows = np.where(singular[..., np.newaxis, np.newaxis], np.nan, rows)
+    return np.moveaxis(np.linalg.solve(rows, columns)[..., 0], -1, 0)
+
+
+def stiff_guess(family: Family, x: Numbers, lift: Numbers) -> NDArray:
+    """The orbit of the restitution model with X and Y as a guess for a stiff contact.
+
+    The contact lasts half a free oscillation, or less with the force release.
+    """
+    contact = family.contact
+    damped = np.sqrt(1 - np.asarray(contact.damping_ratio) ** 2)
+    angle = np.pi / damped
+    if contact.release == "force":
+        zeta = contact.damping_ratio
+        angle = angle - np.arctan2(2 * zeta * damped, 1 - 2 * np.asarray(zeta) ** 2) / damped
+    numbers = np.broadcast_arrays(
+        np.hypot(x, lift), np.arctan2(lift, x), -restitution.bounce_velocity(family.n), angle
+    )
+    return np.stack(numbers).astype(float)
+
+
+def walk(
+    family: Family, ratios: NDArray, condition: Condition, x: NDArray, lift: NDArray
+) -> NDArray:
+    """Orbits under a condition along ϖ, shape (4, cases, ratios), NaN where they are not reached.
+
+    The walk starts at STIFF, or at twice the largest ratio, with the orbit of the restitution
+    model, and goes in equal steps of log ϖ to the most compliant contact; each orbit is predicted
+    from the two before it. The orbits at the given ratios are then corrected side by side, from
+    predictions of the same kind.
+
+    Parameters
+    ----------
+    family : Family
+        With n, ζ and the release of the cases, numbers or of the shape (cases, 1); its frequency
+        ratio is replaced by those of the walk.
+    ratios : ndarray, shape (ratios,)
+    condition : Condition
+        For orbits of the shapes (4, cases, 1) and (4, cases, ratios).
+    x, lift : ndarray, shape (cases, 1)
+        X and Y of the orbits of the restitution model.
+    """
+    stiffest = max(STIFF, 2 * ratios.max())
+    count = 3 + int(STEPS_PER_DECADE * np.log10(stiffest / ratios.min()))
+    nodes = np.geomspace(stiffest, ratios.min(), count)
+    stiff = _at_ratio(family, nodes[0])
+    guess = stiff_guess(stiff, x, lift)
+    path = [guess]
+    for node in nodes:
+        path.append(_reached(_at_ratio(family, node), guess, condition))
+        guess = path[-1] if len(path) == 2 else 2 * path[-1] - path[-2]
+    orbits = np.stack(path[1:])
+    # The node before each ratio, and the one before that.
+    before = np.clip(np.searchsorted(-nodes, -ratios, side="right") - 1, 1, count - 2)
+    part = np.log(ratios / nodes[before]) / np.log(nodes[1] / nodes[0])
+    latest = orbits[before, ..., 0]
+    guess = latest + part[:, np.newaxis, np.newaxis] * (latest - orbits[before - 1, ..., 0])
+    return _reached(_at_ratio(family, ratios), np.moveaxis(guess, 0, -1), condition)
+
+
+def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
+    """The orbits predicted by a walk; NaN where they have ceased.
+
+    There Newton's method finds none, or one of another branch, which is far from the prediction, or
+    a solution without the signs of an orbit.
+    """
+    y = correct(family, guess, condition)
+    with np.errstate(invalid="ignore"):
+        near = (np.abs(y - guess)[[1, 3]] < 0.5).all(axis=0)
+        return np.where(near & family.possible(y), y, np.nan)
+
+
+def _at_ratio(family: Family, ratio: Numbers) -> Family:
+    """The same family on contacts of another frequency ratio."""
+    return replace(family, contact=replace(family.contact, frequency_ratio=ratio))
+
+
+def stable_orbits(
+    n: int,
+    r: Numbers,
+    amplitude: Numbers,
+    ratios: Numbers,
+    release: str = "displacement",
+) -> NDArray:
+    """The orbits on the stable side of the saddle-node at given amplitudes along ϖ.
+
+    Parameters
+    ----------
+    n : int
+    r, amplitude : array_like, shape (cases,)
+        Restitution coefficient and Λ of each case.
+    ratios : array_like, shape (ratios,)
+        Frequency ratios ϖ.
+    release : str
+
+    Returns
+    -------
+    ndarray, shape (4, cases, ratios)
+        NaN where the orbits of the stiff contacts have ceased.
+
+    Raises
+    ------
+    NoOrbit
+        If Λ lies below the saddle-node of the stiff limit, the restitution model (Eq. 7); orbits of
+        compliant contacts alone are not searched for.
+    """
+    r, amplitude = (
+        np.atleast_1d(each)[:, np.newaxis] for each in np.broadcast_arrays(r, amplitude)
+    )
+    contact = Contact(STIFF, damping_ratio(r), release)
+    x = restitution.saddle_node(n, contact.restitution)
+    for one, lowest in zip(amplitude.flat, x.flat, strict=True):
+        if one < lowest:
+            raise NoOrbit(
+                f"Λ = {one:g} is below the {n}-T orbits, from Λ = {lowest:.6g} on (Eq. 7)"
+            )
+    lift = np.sqrt(amplitude**2 - x**2)
+    family = Family(n, contact)
+    return walk(family, np.atleast_1d(ratios), at_amplitude(amplitude), x, lift)
+
+
+def bifurcations(n: Numbers, kind: str, ratios: Numbers, contact: Contact) -> NDArray:
+    """The saddle-nodes, or the period doublings, that bound the stable orbits, along ϖ.
+
+    Parameters
+    ----------
+    n : array_like, shape (families,)
+    kind : str
+        ``saddle-node`` or ``period doubling``.
+    ratios : array_like, shape (ratios,)
+    contact : Contact
+        The damping ratio and the release; its frequency ratio is replaced by the ratios.
+
+    Returns
+    -------
+    ndarray, shape (4, families, ratios)
+        NaN where it is not reached.
+    """
+    n = np.atleast_1d(n)[:, np.newaxis]
+    x = restitution.saddle_node(n, contact.restitution)
+    lift = np.zeros_like(x)
+    test = Family.saddle_node
+    if kind == "period doubling":
+        lift = lift + restitution.period_doubling_lift(contact.restitution)
+        test = Family.period_doubling
+    return walk(Family(n, contact), np.atleast_1d(ratios), at_bifurcation(test), x, lift)
+
+
+@dataclass(frozen=True)
+class Special:
+    """A special point of a branch: its kind, its orbit y, and its place, which is the length of the
+    branch up to it over the whole length.
+    """
+
+    kind: str
+    orbit: NDArray
+    place: float
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A branch of orbits along Λ, from the unstable to the stable side.
+
+    ``orbits`` has the shape (4, points), with chords of equal length between neighbours;
+    ``special`` has the special points in their order, and ``ends`` says why the branch ends at its
+    unstable and at its stable side.
+    """
+
+    orbits: NDArray
+    special: list[Special]
+    ends: tuple[str, str]
+
+
+def branch(
+    family: Family, r: float, amplitude_max: float, points: int, largest_step: float = 0.2
+) -> Branch:
+    """Follow the orbits of a family from the stable side at an amplitude round the saddle-node.
+
+    Parameters
+    ----------
+    family : Family
+        With one frequency ratio.
+    r : float
+        The restitution coefficient.
+    amplitude_max : float
+        Λ at which the branch begins, and at which it ends unless the flight vanishes before.
+    points : int
+        The number of orbits.
+    largest_step : float
+        The largest step of the pseudo-arclength continuation in (Λ, φ, z′_i, θ).
+
+    Raises
+    ------
+    NoOrbit
+        If there is no orbit to begin with, or the continuation fails.
+    """
+    ratio = float(family.contact.frequency_ratio)
+    start = stable_orbits(int(family.n), r, amplitude_max, ratio, family.contact.release)[:, 0, 0]
+    if np.isnan(start).any():
+        raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
+    reached = f"amplitude = {amplitude_max:g} is reached"
+    path, reason = _follow(family, start, amplitude_max, largest_step)
+    path = path[:, ::-1]
+    orbits = _equal_chords(family, path, points)
+    found = []
+    for kind, test in _tests(family).items():
+        for orbit in _zeros(family, path, test):
+            found.append(Special(kind, orbit, _place(orbit, orbits)))
+    ends = (reached if reason is None else reason, reached)
+    return Branch(orbits, sorted(found, key=lambda each: each.place), ends)
+
+
+def _tests(family: Family) -> dict[str, Callable[[NDArray], NDArray]]:
+    """The functions that vanish at each kind of special point."""
+    functions = (family.saddle_node, family.period_doubling, family.clearance)
+    return dict(zip(SPECIAL, functions, strict=True))
+
+
+def _tangent(family: Family, y: NDArray) -> NDArray:
+    """Unit tangent of the family at an orbit, the null vector of its 3 × 4 derivative."""
+    return np.linalg.svd(family.jacobian(y))[2][3]
+
+
+def _follow(
+    family: Family, start: NDArray, amplitude_max: float, largest_step: float
+) -> tuple[NDArray, str | None]:
+    """Pseudo-arclength continuation from an orbit towards smaller Λ, and round the saddle-node.
+
+    A step is halved if the corrector fails or the tangent turns by more than about 14 degrees, and
+    grows otherwise. Returns the orbits, shape (4, steps), and why the branch ends where it does not
+    end at the amplitude.
+    """
+    path = [start]
+    y = start
+    step = largest_step / 8
+    direction = _tangent(family, y)
+    direction = direction * -np.sign(direction[0])
+    while step > SMALLEST_STEP:
+        guess = y + step * direction
+        new = correct(family, guess, on_plane(guess, direction), iterations=5)
+        # Near Λ = 0 a step can jump over a sharp turn of φ to the same orbits with Λ < 0.
+        if np.isnan(new).any() or np.linalg.norm(new - y) > 1.5 * step or new[0] < 0:
+            step = step / 2
+            continue
+        if family.period - new[3] / family.contact.frequency_ratio < LEAST_FLIGHT:
+            angle = family.contact.frequency_ratio * (family.period - LEAST_FLIGHT)
+            return np.stack([*path, correct(family, new, at_duration(angle))], axis=1), MERGES
+        if new[0] > amplitude_max:
+            last = correct(family, new, at_amplitude(amplitude_max))
+            return np.stack([*path, last], axis=1), None
+        following = _tangent(family, new)
+        following = following * np.sign(direction @ following)
+        if direction @ following < 0.97:
+            step = step / 2
+            continue
+        path.append(new)
+        y = new
+        direction = following
+        step = min(1.5 * step, largest_step)
+    reason = f"the continuation does not get beyond amplitude = {y[0]:.6g}"
+    return np.stack(path, axis=1), VANISHES if y[0] < 10 * SMALLEST_STEP else reason
+
+
+def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
+    """Orbits along a path at equal distances between neighbours, shape (4, points).
+
+    A spline through the path is sampled, and the samples are corrected to orbits. The places of the
+    samples are moved until the distances are equal: then the orbits depend on the branch alone, and
+    not on the steps by which it was followed.
+    """
+    length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path), axis=0))])
+    curve = CubicSpline(length, path, axis=1)
+    places = np.linspace(0, length[-1], points)
+    for _ in range(30):
+        guess = curve(places)
+        orbits = correct(family, guess, on_plane(guess, curve(places, 1)))
+        orbits[:, [0, -1]] = path[:, [0, -1]]
+        if np.isnan(orbits).any():
+            raise NoOrbit(f"a {family.n}-T branch cannot be sampled at {points} points")
+        chords = np.linalg.norm(np.diff(orbits), axis=0)
+        if np.ptp(chords) < 1e-12 * chords.mean():
+            break
+        passed = np.concatenate([[0], np.cumsum(chords)])
+        places = np.interp(np.linspace(0, passed[-1], points), passed, places)
+    return orbits
+
+
+def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) -> list[NDArray]:
+    """The orbits of a path at which a test function vanishes, by bracketing between its points."""
+    values = test(path)
+    found = []
+    for i in np.flatnonzero(values[:-1] * values[1:] < 0):
+        before = path[:, i]
+        chord = path[:, i + 1] - before
+
+        def orbit(part, before=before, chord=chord):
+            guess = before + part * chord
+            found = correct(family, guess, on_plane(guess, chord))
+            return guess if np.isnan(found).any() else found
+
+        zero = orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15))
+        # At a pole of the test function its sign changes, too.
+        if zero[0] > 1e-6 and abs(test(zero)) < 1e-3 * np.abs(values[i : i + 2]).max():
+            found.append(zero)
+    return found
+
+
+def _place(orbit: NDArray, orbits: NDArray) -> float:
+    """Where an orbit lies on a branch of equal chords, as a part of its length."""
+    start = orbits[:, :-1]
+    chords = np.diff(orbits)
+    part = np.sum((orbit[:, np.newaxis] - start) * chords, axis=0) / np.sum(chords**2, axis=0)
+    part = np.clip(part, 0, 1)
+    distance = np.linalg.norm(orbit[:, np.newaxis] - start - part * chords, axis=0)
+    nearest = np.argmin(distance)
+    return float((nearest + part[nearest]) / chords.shape[1])

@@ -1,0 +1,353 @@
+"""Datasets: what each variable means, and how a result is saved, read and traced to its code.
+
+Every figure and table has one netCDF file. `VARIABLES` describes each variable that occurs in one
+of them, and says how closely two computations of it agree: a number x agrees with the reference y
+if
+
+    |x - y| <= tolerance · max(|y|, floor).
+
+The usual tolerance, 1e-9, is meant for the rounding of other processors and versions of numpy: the
+orbits are solved to some 1e-13, and a bifurcation amplifies that by some powers of ten. Below the
+floor the tolerance is absolute, so that a zero need not be met to the last bit. Texts, integers and
+booleans agree only if they are equal.
+"""
+
+import hashlib
+import json
+import os
+import platform
+import re
+import subprocess
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+REFERENCE = (
+    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient and "
+    "spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
+)
+PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """Description of a variable, and the tolerance within which its numbers agree.
+
+    If `tolerance_scale` names another variable of the same dataset, the tolerance is a multiple of
+    that variable in place of the number itself.
+    """
+
+    long_name: str
+    symbol: str = ""
+    equation: str = ""
+    units: str = "1"
+    tolerance: float = 1e-9
+    floor: float = 1e-3
+    tolerance_scale: str = ""
+
+
+VARIABLES = {
+    # Coordinates
+    "amplitude": Variable("excitation amplitude", "Λ", "Eq. 4"),
+    "bound": Variable("end of the stability range"),
+    "case": Variable("parameter set"),
+    "claim": Variable("claim of the paper"),
+    "end": Variable("end of the branch"),
+    "explanation": Variable("explanation of claims that differ or are contradicted"),
+    "frequency_ratio": Variable("frequency ratio of contact and table", "ϖ", "Eq. 11"),
+    "impact_map": Variable("map of the restitution model", equation="Eqs. 5, 8"),
+    "measure": Variable("quantity compared along these orbits"),
+    "multiplier": Variable("Floquet multiplier, the larger modulus first", "μ"),
+    "n": Variable("index of the family of periodic orbits", "n", "Eq. 6"),
+    "orbit": Variable("orbit along the frequency ratio, curve of a figure"),
+    "point": Variable("point along the branch, at equal steps of arclength"),
+    "quantity": Variable("quantity compared between the two models"),
+    "reading": Variable("what is assumed, one reading of the paper each"),
+    "restitution": Variable("restitution coefficient", "r", "Eq. 2"),
+    "rows": Variable("rows of the table that are compared", equation="Table 1"),
+    "special": Variable("special point of the branch, in order of arclength"),
+    "table_phase": Variable("phase of the table, whose height is Λ sin τ", "τ", units="rad"),
+    "time": Variable("time since the first impact", "τ"),
+    "tolerance": Variable("relative error tolerated", equation="Eqs. 37-38"),
+    # Motions
+    "ball": Variable("height of the ball", "z", "Eqs. 4, 12, 14"),
+    "ball_velocity": Variable("velocity of the ball", "z′", "Eqs. 4, 13, 15"),
+    "table": Variable("height of the table", "w", "Eq. 4"),
+    "contact": Variable("whether the ball touches the table"),
+    "restitution_ball": Variable("height of the ball, restitution model", "z_CR", "Eq. 4"),
+    # Orbits
+    "phase": Variable("phase of the table when the contact starts", "φ", "Eqs. 6, 21", "rad"),
+    "contact_duration": Variable("duration of the contact", "τ_b", "Eq. 23"),
+    "release_phase": Variable(
+        "phase of the table when the contact ends", "φ + τ_b", "Eq. 23", "rad"
+    ),
+    "impact_velocity": Variable("velocity of the ball as contact starts", "z′_i", "Eq. 22"),
+    "bounce_velocity": Variable("bouncing-off velocity of the ball", "z′_b", "Eq. 27"),
+    "apparent_restitution": Variable("apparent restitution coefficient", "r_a", "Eq. 17"),
+    "max_height": Variable("greatest height of the ball over the cycle", "max z", "Eq. 37"),
+    "damping_ratio": Variable("damping ratio of the contact", "ζ", "Eq. 16"),
+    # Where both multipliers nearly coincide, they are known to the square root of the precision of
+    # the matrix whose eigenvalues they are, some 1e-13.
+    "multiplier_real": Variable(
+        "real part of the Floquet multiplier", "Re μ", tolerance=1e-6, floor=1.0
+    ),
+    "multiplier_imag": Variable(
+        "imaginary part of the Floquet multiplier", "Im μ", tolerance=1e-6, floor=1.0
+    ),
+    "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
+    "admissible": Variable("whether nothing else happens during the orbit"),
+    "end_reason": Variable("why the branch ends there"),
+    "labelled": Variable("whether the figure marks this frequency ratio"),
+    # Orbits of the restitution model
+    "restitution_amplitude": Variable("excitation amplitude, restitution model", "Λ"),
+    "restitution_phase": Variable("phase of impact, restitution model", "φ_CR", "Eq. 6", "rad"),
+    "restitution_impact_velocity": Variable(
+        "velocity before impact, restitution model", "-nπ", "Eq. 3"
+    ),
+    "restitution_bounce_velocity": Variable(
+        "bouncing-off velocity, restitution model", "nπ", "Eq. 6"
+    ),
+    "restitution_max_height": Variable("greatest height, restitution model", "max z_CR", "Eq. 37"),
+    "restitution_stable": Variable("whether the restitution model's orbit is stable"),
+    "restitution_admissible": Variable(
+        "whether nothing else happens during the restitution model's orbit"
+    ),
+    # Bifurcations and other special points
+    "saddle_node_amplitude": Variable("amplitude of the saddle-node", "Λ_SN", "Eq. 7"),
+    "saddle_node_phase": Variable("phase at the saddle-node", "φ_SN", "Eq. 6", "rad"),
+    "period_doubling_amplitude": Variable("amplitude of the period doubling", "Λ_PD", "Eq. 8"),
+    "period_doubling_phase": Variable("phase at the period doubling", "φ_PD", "Eq. 6", "rad"),
+    "grazing_amplitude": Variable("amplitude at which the unstable orbit grazes the table", "Λ"),
+    "grazing_phase": Variable(
+        "phase at which the unstable orbit grazes the table", "φ", units="rad"
+    ),
+    "special_kind": Variable("kind of special point"),
+    "special_amplitude": Variable("excitation amplitude at the special point", "Λ"),
+    "special_phase": Variable("phase at the special point", "φ", "Eq. 21", "rad"),
+    "special_contact_duration": Variable("contact duration at the special point", "τ_b", "Eq. 23"),
+    "special_arclength": Variable(
+        "arclength of the branch up to the special point, over that of the whole branch"
+    ),
+    # The lowest doubling is a minimum over ϖ: its place is known to the square root of the
+    # precision of the amplitude there, some 1e-13.
+    "period_doubling_turn": Variable(
+        "frequency ratio at which the period doubling is lowest", "ϖ", tolerance=1e-5
+    ),
+    # Permanent contact
+    "threshold_amplitude": Variable(
+        "threshold of permanent contact", "Λ_SD, or Λ_F for the force release", "Eq. 33"
+    ),
+    "restitution_threshold": Variable(
+        "threshold of permanent contact, restitution model", "Λ_CR", "Eq. 9"
+    ),
+    "minimum_frequency_ratio": Variable(
+        "where the lowest threshold is", "1/√(1-2ζ²)", "Eqs. 34-36"
+    ),
+    "minimum_threshold": Variable("lowest threshold of permanent contact", "2ζ√(1-ζ²)", "Eq. 36"),
+    # Errors of the restitution model
+    "relative_error": Variable("relative error of the restitution model", "", "Eqs. 37-38"),
+    "error_threshold": Variable(
+        "frequency ratio above which the relative error stays below the tolerance",
+        "ϖ_1%",
+        "Eqs. 37-38",
+    ),
+    "threshold_status": Variable("whether the threshold lies within the range scanned"),
+    # Table 1
+    "computed": Variable("end of the stability range, this replication", "Λ"),
+    "printed": Variable("end of the stability range, as printed", "Λ", "Table 1"),
+    "restitution_range": Variable("end of the stability range, restitution model", "Λ"),
+    # Table 1 under other readings. Differences are in units of the last printed digit, 0.001, and
+    # subtract two numbers of the size of 1, so that they are known less well than these.
+    "difference": Variable(
+        "computed less printed value, in units of the last digit", tolerance=1e-6
+    ),
+    "largest_difference": Variable(
+        "largest difference, in units of the last digit", tolerance=1e-6
+    ),
+    "rms_difference": Variable(
+        "root mean square difference, in units of the last digit", tolerance=1e-6
+    ),
+    "reproduced": Variable("number of entries within half a unit of the last digit"),
+    "entries": Variable("number of entries compared"),
+    "unreachable": Variable("number of saddle-nodes printed below every computed orbit"),
+    "rank": Variable("place of the reading, the closest to the printed table first"),
+    "stable_width": Variable(
+        "√(Λ_PD² - Λ_SN²) of a range of stable orbits, which is 1 by Eqs. 7 and 8 for every n"
+    ),
+    "needed_tolerance": Variable(
+        "norm of the residual of Eqs. 21-26 that a continuation must accept to reach the printed "
+        "saddle-node; 0 where orbits exist",
+        equation="Eqs. 21-26",
+    ),
+    "printed_stable_width": Variable("√(Λ_PD² - Λ_SN²) of the printed ends"),
+    "printed_stable_width_rounding": Variable(
+        "largest change of √(Λ_PD² - Λ_SN²) by rounding of the printed ends"
+    ),
+    # Three balls
+    "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
+    "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
+    "stickings": Variable("number of impacts after which the ball sticks to the table"),
+    # Rounding grows along a chaotic motion until another processor sees another motion, whose
+    # averages agree only as well as averages of so many impacts do: five standard errors.
+    "lyapunov_exponent": Variable(
+        "largest Lyapunov exponent, per period of the table",
+        "λ",
+        tolerance=5.0,
+        tolerance_scale="lyapunov_error",
+    ),
+    # A standard error from some thirty blocks of impacts is itself known to about 13 %.
+    "lyapunov_error": Variable(
+        "error of the largest Lyapunov exponent: twice it on both sides are 95 %", tolerance=0.5
+    ),
+    # Claims
+    "verdict": Variable("verdict on the claim"),
+    "item": Variable("figure, table, equation or section of the paper"),
+    "statement": Variable("what the claim says"),
+    "remark": Variable("how the claim was read"),
+    "condition": Variable("condition that decides a statement in words"),
+    "compared": Variable("what the number found is"),
+    "parameters": Variable("r, n, Λ, ϖ and ζ at which the number is found"),
+    "group": Variable("what the claim is counted as"),
+    "printed_text": Variable("the number as printed"),
+    "decided_by": Variable("datasets that decide"),
+    "found": Variable("the number found"),
+    "required": Variable("the number as printed, or the bound to be met"),
+    "limit": Variable("the bound to be met, as a number"),
+    # Two numbers that agree to three or four digits are subtracted.
+    "deviation": Variable("relative deviation", tolerance=1e-6),
+    "deviation_units": Variable("deviation in units of the last printed digit", tolerance=1e-6),
+    "low": Variable("lower limit of the confidence interval of the number found"),
+    "high": Variable("upper limit of the confidence interval of the number found"),
+    "reason": Variable("why a claim or a motion is undecided"),
+    "explained_by": Variable("name of the explanation"),
+    "explanation_text": Variable("the explanation in words"),
+}
+
+
+def grid(limits: Mapping) -> np.ndarray:
+    """The values of a range of the configuration, at equal steps of their logarithm.
+
+    >>> grid({"min": 1.0, "max": 100.0, "samples": 3}).tolist()
+    [1.0, 10.0, 100.0]
+    """
+    return np.geomspace(limits["min"], limits["max"], limits["samples"])
+
+
+def save(
+    dataset: xr.Dataset,
+    path: str | Path,
+    title: str,
+    parameters: Mapping,
+    code: Iterable[str | Path],
+) -> None:
+    """Save a dataset as netCDF, with the descriptions of its variables and its provenance.
+
+    `parameters` are the parameters it was computed with, `code` the files of code that computed
+    it: the script and the modules of the package that it uses. The file appears whole or not at
+    all. Raises ValueError for a variable that `VARIABLES` does not describe.
+    """
+    path = Path(path)
+    files = [Path(file) for file in code]
+    unknown = [str(name) for name in dataset.variables if name not in VARIABLES]
+    if unknown:
+        raise ValueError(
+            f"{path.name}: datasets.VARIABLES has no description of {', '.join(unknown)}"
+        )
+    described = dataset.drop_encoding().assign_attrs(
+        Conventions="CF-1.11",
+        title=title,
+        references=REFERENCE,
+        parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
+        commit=commit(files[0].parent) if files else commit(),
+        code=digest(files),
+        versions=json.dumps(versions()),
+    )
+    for name, variable in described.variables.items():
+        variable.attrs = description(VARIABLES[str(name)], variable.dtype)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f".{path.name}.part.{os.getpid()}")
+    try:
+        described.to_netcdf(unfinished, engine="netcdf4")
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:
+    """Attributes of a variable; only floating-point numbers have a tolerance."""
+    attributes: dict[str, str | float] = {"long_name": variable.long_name, "units": variable.units}
+    if variable.symbol:
+        attributes["symbol"] = variable.symbol
+    if variable.equation:
+        attributes["equation"] = variable.equation
+    if dtype.kind == "f":
+        attributes["tolerance"] = variable.tolerance
+        attributes["floor"] = variable.floor
+        if variable.tolerance_scale:
+            attributes["tolerance_scale"] = variable.tolerance_scale
+    return attributes
+
+
+def read(path: str | Path) -> xr.Dataset:
+    """The dataset of a netCDF file, in memory and with the file closed."""
+    return xr.load_dataset(path, engine="netcdf4")
+
+
+def plain(value):
+    """Mappings, sequences and numbers as JSON has them, with numpy's numbers as Python's."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [plain(each) for each in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def digest(files: Iterable[str | Path]) -> str:
+    """SHA-256 over names and contents of text files, whatever their order and line ends."""
+    contents = {
+        (Path(file).name, Path(file).read_bytes().replace(b"\r\n", b"\n")) for file in files
+    }
+    total = hashlib.sha256()
+    for name, content in sorted(contents):
+        total.update(f"{name} {hashlib.sha256(content).hexdigest()}\n".encode())
+    return total.hexdigest()
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that numbers and pictures depend on."""
+    return {"python": platform.python_version()} | {
+        name: metadata.version(name) for name in PACKAGES
+    }
+
+
+def commit(folder: str | Path = Path(__file__).parent) -> str:
+    """The commit of the checkout that holds `folder`, with "+dirty" if a tracked file has changed.
+
+    In an archive that git made, the commit that the archive names; "unknown" without either.
+    """
+    folder = Path(folder).resolve()
+    for parent in (folder, *folder.parents):
+        archival = parent / ".git_archival.txt"
+        if archival.is_file():
+            named = re.search(r"node: ([0-9a-f]{40})", archival.read_text(encoding="utf-8"))
+            if named:
+                return f"{named[1]} (archive)"
+    command = ["git", "-C", str(folder), "describe", "--always", "--abbrev=40", "--exclude=*"]
+    try:
+        answer = subprocess.run(
+            [*command, "--dirty=+dirty"],
+            capture_output=True,
+            check=False,
+            text=True,
+            encoding="utf-8",
+            env=os.environ | {"LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"},
+        )
+    except OSError:
+        return "unknown"
+    if "dubious ownership" in answer.stderr:
+        return "unknown (git: dubious ownership)"
+    return answer.stdout.strip() if answer.returncode == 0 else "unknown"

@@ -1,0 +1,474 @@
+"""What the figures share: style, labels, branches of orbits with their stability, picture files.
+
+A figure is one column of a journal wide, with texts of 8 points. Colours differ in lightness too,
+and curves also differ in dashes, width or marks, so that nothing depends on colour vision or on a
+printer of colours. Line styles tell the kind of an orbit: solid for stable, dashed for unstable,
+dotted for inadmissible. In pictures with both phases of a contact, a wide pale line is the phase φ
+at its start and a narrow line the phase φ + τ_b at its end: where the two coincide one sees the
+narrow line within the wide one.
+
+Nothing here is drawn by pyplot, and nothing depends on the settings of the user: `style` starts
+from matplotlib's defaults.
+"""
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
+from matplotlib.ticker import FuncFormatter
+
+Look = dict[str, Any]
+"""Keywords of a line, a mark or a text."""
+
+WIDTH = 3.5
+"""Width of a figure in inches."""
+
+SETTINGS: Look = {
+    "font.size": 8,
+    "axes.titlesize": "medium",
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "legend.handlelength": 2.4,
+    "legend.columnspacing": 1.2,
+    "legend.handletextpad": 0.6,
+    "lines.linewidth": 1.2,
+    # The dashes of wide and narrow lines are equally long, so that they coincide too.
+    "lines.scale_dashes": False,
+    "hatch.linewidth": 0.6,
+    "figure.constrained_layout.use": True,
+    "figure.dpi": 300,
+    # Identifiers do not depend on the run. Letters are paths, with their text in comments: their
+    # places are computed for one font, which the reader of an SVG need not have.
+    "svg.hashsalt": "bouncing-ball",
+    "svg.fonttype": "path",
+}
+
+# Neighbours differ in grey too; each has a contrast of at least 3:1 with white.
+COLOURS = ("#000000", "#0072b2", "#c77c00", "#8a2f62", "#3f96cc")
+TABLE = "#8c8c8c"
+DASHES = ("-", (0, (7, 2)), (0, (7, 1.5, 1.2, 1.5)), (0, (2, 1.2)), (0, (7, 1.2, 1.2, 1.2) * 2))
+GUIDE: Look = {"color": "#777777", "linewidth": 0.8, "linestyle": (0, (1, 1.6)), "zorder": 1}
+KINDS: Mapping[str, Any] = {
+    "stable": "-",
+    "unstable": (0, (4, 2)),
+    "inadmissible": (0, (1, 2)),
+}
+"""Line style of each kind of orbit."""
+
+MARKS: Mapping[str, Look] = {
+    "saddle-node": {"marker": "o", "markersize": 5},
+    "period doubling": {"marker": "s", "markersize": 5},
+    "grazing": {"marker": "^", "markersize": 5},
+    "period doubling, Eq. 8": {"marker": "x", "markersize": 3.5},
+    "joins permanent contact": {"marker": "D", "markersize": 4.5, "fillstyle": "full"},
+    "end of the branch": {"marker": "h", "markersize": 5, "fillstyle": "full"},
+}
+"""Mark of each special orbit; hollow marks that coincide can all be seen."""
+
+WIDE, NARROW = 3.4, 1.1
+"""Line widths of the phases at the start and at the end of a contact."""
+
+
+def style() -> AbstractContextManager:
+    """Context in which figures are drawn and saved: matplotlib's defaults and `SETTINGS`."""
+    settings: Any = matplotlib.rcParamsDefault | SETTINGS
+    return matplotlib.rc_context(settings)
+
+
+# Labels and parameters
+
+SYMBOLS = {
+    "n": "n",
+    "restitution": "r",
+    "amplitude": r"\Lambda",
+    "frequency_ratio": r"\varpi",
+    "damping_ratio": r"\zeta",
+}
+
+
+def parameters(data: xr.Dataset) -> dict[str, Any]:
+    """The parameters with which a dataset was computed, from its attribute of that name."""
+    return json.loads(data.attrs["parameters"])
+
+
+def number(value: float) -> str:
+    r"""A number for a label in LaTeX, with four digits, and as a power of ten from 10⁴ on.
+
+    Examples
+    --------
+    >>> number(0.85), number(0.135851), number(10000.0), number(250000.0)
+    ('0.85', '0.1359', '10^{4}', '2.5\\times10^{5}')
+    """
+    if abs(value) < 1e4:
+        return f"{value:.4g}"
+    mantissa, exponent = f"{value:.3e}".split("e")
+    factor = f"{float(mantissa):g}"
+    return f"10^{{{int(exponent)}}}" if factor == "1" else rf"{factor}\times10^{{{int(exponent)}}}"
+
+
+def label(**values: float) -> str:
+    r"""Parameters with their symbols and values.
+
+    Examples
+    --------
+    >>> label(n=1, restitution=0.85, frequency_ratio=2.0)
+    '$n=1$, $r=0.85$, $\\varpi=2$'
+    """
+    return ", ".join(f"${SYMBOLS[name]}={number(value)}$" for name, value in values.items())
+
+
+def title(data: xr.Dataset, *names: str) -> str:
+    """Some of the parameters of a dataset with their symbols."""
+    given = parameters(data)
+    return label(**{name: given[name] for name in names})
+
+
+def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
+    r"""Label of the parameters that are equal in all curves, and label of the others for each.
+
+    A single curve has no label of its own.
+
+    Examples
+    --------
+    >>> parted({"restitution": [0.85, 0.85], "amplitude": [1.1, 0.6]})
+    ('$r=0.85$', ['$\\Lambda=1.1$', '$\\Lambda=0.6$'])
+    """
+    lists = {name: [float(value) for value in column] for name, column in values.items()}
+    common = {name: column[0] for name, column in lists.items() if len(set(column)) == 1}
+    rest = {name: column for name, column in lists.items() if name not in common}
+    count = max(len(column) for column in lists.values())
+    each = [label(**{name: column[k] for name, column in rest.items()}) for k in range(count)]
+    return label(**common), each
+
+
+def colours(count: int) -> Sequence[str]:
+    """Colours for curves; more than `COLOURS` has are steps from dark to light."""
+    if count <= len(COLOURS):
+        return COLOURS[:count]
+    # The upper part of the map has too little contrast with white.
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.6, count))
+    return [to_hex(shade) for shade in shades]
+
+
+def pale(colour: str) -> str:
+    """A colour mixed with white, for the wide lines."""
+    red, green, blue = (0.45 * part + 0.55 for part in to_rgb(colour))
+    return to_hex((red, green, blue))
+
+
+# Panels
+
+
+def panels(height: float, rows: int = 1, **options: Any) -> tuple[Figure, Any]:
+    """A figure of one column's width, and its panel or array of panels, one above the other."""
+    figure = Figure(figsize=(WIDTH, height))
+    return figure, figure.subplots(rows, **options)
+
+
+def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
+    """A logarithmic axis of ϖ from the least to the greatest, with plain numbers."""
+    axes.set(xscale="log", xlim=(float(ratio.min()), float(ratio.max())))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
+    axes.set_xlabel(r"frequency ratio $\varpi$")
+    # Of panels one above the other the lowest has the words.
+    axes.label_outer()
+
+
+def legend_below(
+    figure: Figure, entries: Mapping[str, Any] | None = None, columns: int = 2
+) -> None:
+    """A legend below the panels: label and handle of each entry, or all that the panels have.
+
+    It has fewer columns if so many are wider than the figure.
+    """
+    if entries is None:
+        entries = {}
+        for axes in figure.axes:
+            handles, labels = axes.get_legend_handles_labels()
+            # The upper panel comes first, also where both have an entry.
+            entries |= dict(zip(labels, handles, strict=True)) | entries
+    shown = list(entries.values())
+    legend = figure.legend(shown, list(entries), loc="outside lower center", ncols=columns)
+    if columns > 1 and legend.get_window_extent().width > figure.bbox.width:
+        legend.remove()
+        legend_below(figure, entries, columns - 1)
+
+
+def sample(**look: Any) -> Line2D:
+    """A line or a mark for a legend, black unless it has a colour."""
+    return Line2D([], [], **{"color": "black"} | look)
+
+
+def mark_look(kind: str) -> Look:
+    """The look of a mark of `MARKS`, without a line."""
+    return {"fillstyle": "none", "linestyle": "none", "markeredgewidth": 1.0} | MARKS[kind]
+
+
+# Curves
+
+
+def pieces(kinds: np.ndarray) -> list[slice]:
+    """Parts of a line of one kind each; a part ends at the first point of the next one.
+
+    Examples
+    --------
+    >>> pieces(np.array(["stable", "stable", "unstable"]))
+    [slice(0, 3, None), slice(2, 4, None)]
+    """
+    edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
+    return [slice(int(start), int(stop) + 1) for start, stop in pairwise(edges)]
+
+
+def curve(
+    axes: Axes, x: xr.DataArray, y: xr.DataArray, admissible: xr.DataArray, **look: Any
+) -> None:
+    """A line whose inadmissible parts are dotted; only its first part has a label."""
+    inadmissible = look | {"linestyle": KINDS["inadmissible"], "linewidth": 0.9}
+    for part in pieces(admissible.values):
+        chosen = look if admissible.values[part.start] else inadmissible
+        axes.plot(x.values[part], y.values[part], **chosen)
+        look.pop("label", None)
+        inadmissible.pop("label", None)
+
+
+# Branches of orbits. A branch is a dataset over `point` with amplitude, phase, release_phase,
+# stable, admissible and along, which increases along it, and over `special` with special_kind,
+# special_along, special_amplitude, special_phase and special_release_phase.
+
+
+def spring_damper_branch(data: xr.Dataset) -> xr.Dataset:
+    """The branch of one ϖ, whose points are at equal steps of arclength."""
+    return data.assign(
+        along=("point", np.linspace(0.0, 1.0, data.sizes["point"])),
+        special_along=data.special_arclength,
+        special_release_phase=data.special_phase + data.special_contact_duration,
+    )
+
+
+def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Dataset:
+    """The branch of the restitution model, along which φ increases; its contact ends as it starts.
+
+    `bifurcations` has Λ and φ of the saddle-node and the period doubling, and may have those of
+    the grazing orbit.
+    """
+    kinds = {
+        "saddle-node": "saddle_node",
+        "period doubling": "period_doubling",
+        "grazing": "grazing",
+    }
+    known = {kind: name for kind, name in kinds.items() if f"{name}_phase" in bifurcations}
+    phases = [float(bifurcations[f"{name}_phase"]) for name in known.values()]
+    amplitudes = [float(bifurcations[f"{name}_amplitude"]) for name in known.values()]
+    return curve.assign(
+        release_phase=curve.phase,
+        along=curve.phase,
+        special_kind=("special", list(known)),
+        special_along=("special", phases),
+        special_amplitude=("special", amplitudes),
+        special_phase=("special", phases),
+        special_release_phase=("special", phases),
+    )
+
+
+def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: float) -> None:
+    """One phase of a branch over Λ, in parts of one kind of orbit that meet in special points.
+
+    `phase` is "phase" or "release_phase".
+    """
+    known = np.flatnonzero(branch.special_amplitude.notnull())
+    special = branch.isel(special=known).sortby("special_along")
+    place = np.searchsorted(branch.along, special.special_along)
+    stability = np.where(branch.stable, "stable", "unstable")
+    kinds = np.where(branch.admissible, stability, "inadmissible")
+    # A special point has the kind of the orbits beyond it, where there are any.
+    kinds = np.insert(kinds, place, kinds[np.minimum(place, kinds.size - 1)])
+    amplitude = np.insert(branch.amplitude.values, place, special.special_amplitude)
+    angle = np.insert(branch[phase].values, place, special[f"special_{phase}"]) / np.pi
+    for part in pieces(kinds):
+        kind = kinds[part.start]
+        look: Look = {"linestyle": KINDS[kind], "linewidth": width, "color": colour}
+        # Narrow lines are above the wide ones of all branches.
+        axes.plot(amplitude[part], angle[part], label=kind, zorder=3 - width / 10, **look)
+
+
+def mark(axes: Axes, kind: str, amplitude: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
+    """The marks of special orbits of one kind; nothing where there are none."""
+    if phase.notnull().any():
+        look = mark_look(kind)
+        axes.plot(amplitude, phase / np.pi, color=colour, zorder=4, label=kind, **look)
+
+
+def mark_special(axes: Axes, branch: xr.Dataset, phase: str, colour: str) -> None:
+    """The special points of a branch, and its ends inside the range of Λ."""
+    for kind in MARKS:
+        there = branch[f"special_{phase}"].where(branch.special_kind == kind)
+        mark(axes, kind, branch.special_amplitude, there, colour)
+    for kind, point in inner_ends(branch):
+        end = branch.isel(point=point)
+        mark(axes, kind, end.amplitude, end[phase], colour)
+
+
+def inner_ends(branch: xr.Dataset) -> list[tuple[str, int]]:
+    """Kind and point of each end of a branch that is not an end of the range of Λ."""
+    known = np.flatnonzero(branch.amplitude.notnull())
+    if "end_reason" not in branch or not known.size:
+        return []
+    ends = zip(branch.end_reason.values, (known[0], known[-1]), strict=True)
+    inner = [(reason, int(point)) for reason, point in ends if "is reached" not in reason]
+    joins = "joins permanent contact"
+    other = "end of the branch"
+    return [(joins if "permanent contact" in reason else other, point) for reason, point in inner]
+
+
+def right_end(branch: xr.Dataset, phase: str) -> float:
+    """A phase over π where a branch has its greatest Λ; of two such ends, the later one.
+
+    Both ends of a branch are often at the same Λ, but for rounding.
+    """
+    far = branch.amplitude >= branch.amplitude.max() * (1 - 1e-9)
+    return float(branch[phase][np.flatnonzero(far)[-1]]) / np.pi
+
+
+def branch_legend(figure: Figure, both_phases: bool) -> None:
+    """What the line styles, widths and marks mean that occur in a figure."""
+    drawn = {line.get_label() for axes in figure.axes for line in axes.lines}
+    kinds = {kind: look for kind, look in KINDS.items() if kind in drawn}
+    marks = {kind: sample(**mark_look(kind)) for kind in MARKS if kind in drawn}
+    if not both_phases:
+        legend_below(figure, {kind: sample(linestyle=kinds[kind]) for kind in kinds} | marks)
+        return
+    wide: Look = {"linewidth": WIDE, "color": pale("#000000")}
+    phases = {
+        r"start of contact, $\varphi$": sample(**wide),
+        r"end of contact, $\varphi+\tau_b$": sample(linewidth=NARROW),
+    }
+    # The styles hold for lines of both widths.
+    lines: dict[str, Any] = {
+        kind: (sample(linestyle=look, **wide), sample(linestyle=look, linewidth=NARROW))
+        for kind, look in kinds.items()
+    }
+    legend_below(figure, phases | lines | marks)
+
+
+# Labels beside curves. Their places depend on the size of the panels, so that they come last.
+
+POINTS = 72
+"""Points in an inch, in which sizes of texts, marks and offsets are."""
+
+LINE_HEIGHT = 10.5
+"""Distance of labels one above the other, in points."""
+
+MARK_RADIUS = 3
+"""Half the size of a mark, in points."""
+
+
+def ascending(values: np.ndarray) -> np.ndarray:
+    """The ascending numbers nearest to some values by least squares, by the min-max formula.
+
+    Examples
+    --------
+    >>> ascending(np.array([3.0, 1.0, 4.0])).tolist()
+    [2.0, 2.0, 4.0]
+    """
+    count = range(len(values))
+    means = [[values[j : k + 1].mean() for k in count[j:]] for j in count]
+    return np.array([max(min(means[j][i - j :]) for j in count[: i + 1]) for i in count])
+
+
+def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
+    """Labels at the right edge of a panel: text, height in data and colour of each.
+
+    Each is as near to its height as the others and the height of the panel allow. The panel must
+    have been laid out.
+    """
+    if not names:
+        return
+    order = sorted(names, key=lambda name: name[1])
+    ends = [(0.0, height) for _, height, _ in order]
+    points = POINTS / axes.figure.dpi
+    wanted = axes.transData.transform(ends)[:, 1] * points
+    bottom, top = axes.get_window_extent().intervaly * points
+    steps = LINE_HEIGHT * np.arange(len(order))
+    lowest = np.clip(ascending(wanted - steps), bottom, max(bottom, top - steps[-1]))
+    moved = lowest + steps - wanted
+    look: Look = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points"}
+    for (text, height, colour), offset in zip(order, moved, strict=True):
+        axes.annotate(text, (1.0, height), (4, offset), color=colour, va="center", **look)
+
+
+def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
+    """A label beside a point of the data, at the place where it hides the fewest curves, marks and
+    labels; of equally good places the nearest is taken. The panel must have been laid out.
+    """
+    labels = [other.get_window_extent() for other in axes.texts]
+    note = axes.annotate(text, point, (0, 0), textcoords="offset points")
+    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in axes.lines]
+    curves = [path for line, path in paths if line.get_linestyle() != "None"]
+    marks = [path.vertices for line, path in paths if line.get_linestyle() == "None"]
+    inside = axes.get_window_extent()
+
+    def hidden(place: tuple[float, float]) -> int:
+        move(note, place)
+        box = note.get_window_extent().padded(axes.figure.dpi / POINTS)
+        corners = np.array([box.min, box.max])
+        outside = inside.count_contains(corners) < len(corners)
+        covered = sum(path.intersects_bbox(box, filled=False) for path in curves)
+        covered += sum(
+            box.padded(MARK_RADIUS * axes.figure.dpi / POINTS).count_contains(points)
+            for points in marks
+        )
+        return covered + box.count_overlaps(labels) + outside
+
+    sides = [(1, 1), (-1, -1), (1, -1), (-1, 1), (1, 0), (-1, 0), (0, 1), (0, -1)]
+    places = [(far * x, far * y) for far in (4, 8, 14, 20) for x, y in sides]
+    move(note, min(places, key=hidden))
+
+
+def move(note: Annotation, place: tuple[float, float]) -> None:
+    """Put a label at an offset in points from its point, and beside the point."""
+    x, y = np.sign(place).astype(int)
+    horizontal = ("center", "left", "right")[x]
+    vertical = ("center", "bottom", "top")[y]
+    note.set(position=place, ha=horizontal, va=vertical)
+
+
+# Files
+
+
+def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) -> None:
+    """Save a figure as PNG and SVG, whose description names the commit that drew it.
+
+    The same figure gives the same bytes, and the file appears whole or not at all. Raises OSError
+    if a file cannot be written.
+    """
+    named = {"Description": f"drawn at commit {commit}"}
+    metadata = {
+        "png": named | {"Software": None},
+        "svg": named | {"Date": None, "Creator": None},
+    }
+    with style():
+        for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            unfinished = path.with_name(f".{path.name}.part.{os.getpid()}")
+            try:
+                figure.savefig(unfinished, format=kind, metadata=metadata[kind])
+                os.replace(unfinished, path)
+            finally:
+                unfinished.unlink(missing_ok=True)
+            # The SVG has the layout of the PNG: sizes of texts differ a little between the two.
+            figure.set_layout_engine("none")

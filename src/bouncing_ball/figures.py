@@ -1,0 +1,537 @@
+"""The figures of the paper, each a function of its dataset; Figs. 1 and 4 are schematics.
+
+`draw` draws one by name in the style of the package. All numbers in titles, legends and labels are
+those of the dataset. `drawing` explains what line styles, widths and marks mean.
+"""
+
+from collections.abc import Callable, Mapping
+from itertools import cycle
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Rectangle
+
+from bouncing_ball.drawing import (
+    COLOURS,
+    DASHES,
+    GUIDE,
+    NARROW,
+    POINTS,
+    TABLE,
+    WIDE,
+    Look,
+    along_ratio,
+    branch_legend,
+    colours,
+    curve,
+    draw_branch,
+    label,
+    legend_below,
+    mark,
+    mark_special,
+    name_at_right,
+    name_beside,
+    number,
+    pale,
+    panels,
+    parameters,
+    parted,
+    restitution_branch,
+    right_end,
+    sample,
+    spring_damper_branch,
+    style,
+    title,
+)
+
+CONTACT = COLOURS[1]
+"""Colour of the spring-damper model where it is compared with the restitution model."""
+
+LIMIT: Look = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4, 2))}
+"""The value of the restitution model, to which that of the spring-damper model tends."""
+
+ARROW: Look = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "color": "black"}
+PERIOD = 2 * np.pi
+"""Period of the table in τ."""
+
+TIME = r"time $\tau/2\pi$"
+
+CLOSE = 9.0
+"""Distance of marks in points below which they share a name."""
+
+PRINTED_RATIO = 6
+"""ϖ from which the thresholds of permanent contact differ by less than 1 %, as printed."""
+
+
+# Schematics of both models
+
+
+def fig01() -> Figure:
+    """The restitution model: the ball meets the table in an instant."""
+    figure, axes = schematic(r"$a\,\sin(\Omega t)$")
+    axes.plot([0, 0], [0.0, 1.75], **GUIDE)
+    axes.text(0.12, 0.3, "impact: $r$", va="center")
+    return figure
+
+
+def fig04() -> Figure:
+    """The spring-damper model: spring and damper stand on the table."""
+    figure, axes = schematic(r"$a\,\sin(\Omega t+\varphi)$")
+    line: Look = {"color": "black", "linewidth": 1.0}
+    zigzag = [0, 0, 0.16, -0.16, 0.16, -0.16, 0.16, -0.16, 0.16, 0, 0]
+    axes.plot(np.array(zigzag) - 0.4, [0, 0.2, *np.linspace(0.25, 0.95, 7), 1.0, 1.2], **line)
+    # Cylinder, then piston with its rod.
+    axes.plot([0.4, 0.4], [0, 0.35], **line)
+    axes.plot([0.2, 0.2, 0.6, 0.6], [0.85, 0.35, 0.35, 0.85], **line)
+    axes.plot([0.25, 0.55, 0.4, 0.4], [0.6, 0.6, 0.6, 1.2], **line)
+    axes.plot([-0.75, 0.75], [1.2, 1.2], **line)
+    axes.text(-0.68, 0.6, "$k$", ha="right", va="center")
+    axes.text(0.7, 0.6, "$c$", va="center")
+    return figure
+
+
+def schematic(motion: str) -> tuple[Figure, Axes]:
+    """The ball above the moving table, whose upper side is at the height 0."""
+    figure, axes = panels(1.9)
+    axes.set(xlim=(-2.7, 3.3), ylim=(-0.6, 2.65), aspect="equal")
+    axes.axis("off")
+    body: Look = {"edgecolor": "black", "linewidth": 1.0}
+    axes.add_patch(Circle((0, 2.15), 0.4, facecolor="0.85", **body))
+    axes.add_patch(Rectangle((-1.4, -0.5), 2.8, 0.5, facecolor="white", hatch="////", **body))
+    axes.annotate("", (-1.1, 1.8), (-1.1, 2.5), arrowprops=ARROW)
+    axes.annotate("", (1.1, 2.5), (1.1, 1.8), arrowprops=ARROW)
+    axes.annotate("", (1.65, 0.15), (1.65, -0.55), arrowprops=ARROW | {"arrowstyle": "<|-|>"})
+    axes.text(0, 2.15, "$m$", ha="center", va="center")
+    axes.text(-1.2, 2.15, "$g$", ha="right", va="center")
+    axes.text(1.2, 2.15, "$y(t)$", va="center")
+    axes.text(1.78, -0.2, motion, va="center")
+    axes.text(-1.5, -0.25, r"$M=\infty$", ha="right", va="center")
+    return figure, axes
+
+
+# Restitution model
+
+
+def fig02(data: xr.Dataset) -> Figure:
+    """An n-T orbit of the restitution model over time."""
+    figure, axes = panels(2.5)
+    time = data.time / PERIOD
+    axes.plot(time, data.ball, color="black", label="ball $z$")
+    axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
+    axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(0, float(time[-1])))
+    axes.set_title(title(data, "n", "restitution", "amplitude"))
+    legend_below(figure)
+    return figure
+
+
+def fig03(data: xr.Dataset) -> Figure:
+    """Branches of n-T orbits of the restitution model, with the period doubling of Eq. 8."""
+    figure, axes = panels(3.6)
+    names = []
+    for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
+        family = data.sel(n=n)
+        branch = restitution_branch(family, family.sel(impact_map="exact"))
+        draw_branch(axes, branch, "phase", colour, width=1.2)
+        mark_special(axes, branch, "phase", colour)
+        # Eq. 8 is the period doubling of Holmes' map.
+        holmes = family.sel(impact_map="holmes")
+        place = holmes.period_doubling_amplitude, holmes.period_doubling_phase
+        mark(axes, "period doubling, Eq. 8", *place, colour)
+        if branch.amplitude.notnull().any():
+            names.append((label(n=n), right_end(branch, "phase"), colour))
+    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
+    axes.set(xlim=(0, parameters(data)["amplitude_max"]), title=title(data, "restitution"))
+    branch_legend(figure, both_phases=False)
+    figure.draw_without_rendering()
+    name_at_right(axes, names)
+    return figure
+
+
+# Apparent restitution and velocity along ϖ
+
+
+def fig05(data: xr.Dataset) -> Figure:
+    """The apparent restitution along ϖ for each case (r, Λ), with r as a guide."""
+    figure, axes = panels(3.0)
+    draw_cases(axes, data, data.apparent_restitution)
+    for restitution in np.unique(data.restitution):
+        axes.axhline(restitution, label="restitution model, $r$", **GUIDE)
+    axes.set_ylabel("apparent restitution $r_a$")
+    legend_below(figure)
+    return figure
+
+
+fig06 = fig05
+
+
+def fig10(data: xr.Dataset) -> Figure:
+    """The bouncing-off velocity along ϖ, and by how much it depends on Λ."""
+    figure, (axes, below) = panels(4.2, rows=2, sharex=True, height_ratios=(3, 2))
+    limit = float(data.restitution_bounce_velocity)
+    draw_cases(axes, data, data.bounce_velocity)
+    axes.axhline(limit, label=r"restitution model, $n\pi$", **GUIDE)
+    axes.set_ylabel(r"bouncing-off velocity $z'_b$")
+    first = data.isel(case=np.argmax(data.bounce_velocity.notnull().any("frequency_ratio").values))
+    draw_cases(below, data, 100 * (data.bounce_velocity - first.bounce_velocity) / limit)
+    below.set_title("")
+    below.set_ylabel("difference from\n" + rf"{label(amplitude=first.amplitude)}, % of $n\pi$")
+    legend_below(figure)
+    return figure
+
+
+def draw_cases(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
+    """A curve along ϖ for each case; what all cases share is in the title."""
+    common, names = case_names(data)
+    shades = colours(data.sizes["case"])
+    for k, (name, colour, dashes) in enumerate(zip(names, shades, cycle(DASHES), strict=False)):
+        look: Look = {"color": colour, "linestyle": dashes, "label": name}
+        admissible = data.admissible.isel(case=k)
+        curve(axes, data.frequency_ratio, values.isel(case=k), admissible, **look)
+    axes.set_title(common)
+    along_ratio(axes, data.frequency_ratio)
+
+
+def case_names(data: xr.Dataset) -> tuple[str, list[str]]:
+    """What all cases of a dataset share, and a label of each case."""
+    n = parameters(data)["n"]
+    common, names = parted({"n": [n], "restitution": data.restitution, "amplitude": data.amplitude})
+    present = data.phase.notnull().any("frequency_ratio").values
+    named = [name or "spring-damper model" for name in names]
+    pairs = zip(named, present, strict=True)
+    return common, [name if known else f"{name} (no orbit)" for name, known in pairs]
+
+
+def fig13(data: xr.Dataset) -> Figure:
+    """Phase and velocity along ϖ as contact starts and as it ends, and in the restitution model."""
+    figure, axes = panels(4.0)
+    common, names = case_names(data)
+    shades = colours(data.sizes["case"])
+    dot: Look = {"marker": "o", "markersize": 4}
+    start = dot | {"markerfacecolor": "white", "linestyle": DASHES[1]}
+    end = dot | {"linestyle": "-"}
+    star: Look = {"marker": "*", "markersize": 9, "linestyle": "none"}
+    limits = np.array([data.restitution_impact_velocity, data.restitution_bounce_velocity])
+    for k, colour in enumerate(shades):
+        case = data.isel(case=k)
+        for phase, velocity, look in (
+            (case.phase / np.pi, case.impact_velocity / np.pi, start),
+            (case.release_phase / np.pi, case.bounce_velocity / np.pi, end),
+        ):
+            line = {"color": colour, "linestyle": look["linestyle"]}
+            curve(axes, phase, velocity, case.admissible, **line)
+            marked = case.labelled
+            axes.plot(phase[marked], velocity[marked], **look | line | {"linestyle": "none"})
+        phases = [float(case.restitution_phase) / np.pi] * 2
+        axes.plot(phases, limits / np.pi, color=colour, zorder=4, **star)
+    axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball $z'/\pi$")
+    axes.set_title(common)
+    axes.margins(x=0.2, y=0.1)
+    entries = {
+        r"start of contact, $(\varphi,\,z'_i)$": sample(**start),
+        r"end of contact, $(\varphi+\tau_b,\,z'_b)$": sample(**end),
+        "restitution model": sample(**star),
+    }
+    # Colours need names only if there are several.
+    if len(names) > 1:
+        square: Look = {"marker": "s", "linestyle": "none"}
+        pairs = zip(names, shades, strict=True)
+        entries |= {name: sample(color=colour, **square) for name, colour in pairs}
+    legend_below(figure, entries, columns=1)
+    figure.draw_without_rendering()
+    shown = data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values))
+    name_ratios(axes, shown, "phase", "impact_velocity")
+    name_ratios(axes, shown, "release_phase", "bounce_velocity")
+    return figure
+
+
+def name_ratios(axes: Axes, case: xr.Dataset, phase: str, velocity: str) -> None:
+    """Names of the marked ϖ; those beside the point of the stiffest contact share one name."""
+    marked = case.isel(frequency_ratio=np.flatnonzero(case.labelled & case.phase.notnull()))
+    marked = marked.sortby("frequency_ratio")
+    if not marked.sizes["frequency_ratio"]:
+        return
+    places = np.stack([marked[phase], marked[velocity]], axis=1) / np.pi
+    points = axes.transData.transform(places) * POINTS / axes.figure.dpi
+    beside = np.hypot(*(points - points[-1]).T) < CLOSE
+    ratios = marked.frequency_ratio.values
+    for ratio, place in zip(ratios[~beside], places[~beside], strict=True):
+        name_beside(axes, label(frequency_ratio=ratio), tuple(place))
+    relation = r"\geq" if beside.sum() > 1 else "="
+    name_beside(axes, rf"$\varpi{relation}{number(ratios[beside][0])}$", tuple(places[beside][0]))
+
+
+# Permanent contact
+
+
+def fig11(data: xr.Dataset) -> Figure:
+    """The threshold of permanent contact along ϖ, and its minimum."""
+    figure, axes = panels(2.9)
+    draw_threshold(axes, data)
+    legend_below(figure)
+    return figure
+
+
+def fig16(data: xr.Dataset) -> Figure:
+    """The thresholds of permanent contact of both models, and their relative difference."""
+    figure, (axes, below) = panels(4.4, rows=2, sharex=True)
+    draw_threshold(axes, data)
+    limit = float(data.restitution_threshold)
+    axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
+    draw_error(below, data, data.threshold_amplitude - limit, "PC")
+    given = parameters(data)
+    # The paper has a number for these parameters.
+    if (given["restitution"], given["tolerance"], given["release"]) == (0.65, 0.01, "displacement"):
+        look: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
+        below.plot(PRINTED_RATIO, given["tolerance"], label=f"printed: {PRINTED_RATIO}", **look)
+    legend_below(figure)
+    return figure
+
+
+def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
+    """The threshold Λ_SD, or Λ_F of the force release, and the region of permanent contact."""
+    force = parameters(data)["release"] == "force"
+    symbol = r"\Lambda_F" if force else r"\Lambda_{SD}"
+    formula = "" if force else r", $2\zeta\sqrt{1-\zeta^2}$"
+    ratio = data.frequency_ratio
+    threshold = data.threshold_amplitude
+    axes.plot(ratio, threshold, color=CONTACT, label=f"spring-damper, ${symbol}$")
+    axes.fill_between(ratio, threshold, color="0.9", linewidth=0, label="permanent contact")
+    look: Look = {"color": CONTACT, "linewidth": 0.9, "linestyle": DASHES[2]}
+    axes.axhline(float(data.minimum_threshold), label=f"minimum{formula}", **look)
+    damping = label(damping_ratio=float(data.damping_ratio))
+    highest = max(2.0, 1.5 * float(threshold.min()))
+    axes.set(title=f"{title(data, 'restitution')}, {damping}", ylim=(0, highest))
+    axes.set_ylabel(r"threshold amplitude $\Lambda$")
+    along_ratio(axes, ratio)
+
+
+# Motions over time
+
+
+def fig07(data: xr.Dataset) -> Figure:
+    """One cycle of the spring-damper model, with the instants and velocities of the equations."""
+    figure, axes = panels(2.9)
+    time = data.time / PERIOD
+    axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
+    axes.plot(time, data.ball, color="black", label="ball $z$")
+    end = float(time[-1])
+    release = float(data.contact_duration) / PERIOD
+    axes.axvspan(0.0, release, color="0.9", linewidth=0, label="contact")
+    landing = float(data.ball[0])
+    lift = float(np.interp(release, time, data.table))
+    before = float(data.impact_velocity) * PERIOD
+    after = float(data.bounce_velocity) * PERIOD
+    for instant, height, velocity, name, side, symbol in (
+        (0.0, landing, before, r"$\tau_i=0$", "right", "$z'_i$"),
+        (release, lift, after, r"$\tau_b$", "left", "$z'_b$"),
+        (end, landing, before, r"$\tau_2=\tau_i+2\pi n$", "center", "$z'_2$"),
+    ):
+        axes.axvline(instant, **GUIDE)
+        axes.plot(instant, height, "o", color="black", markersize=3.5)
+        above: Look = {"xycoords": axes.get_xaxis_transform(), "textcoords": "offset points"}
+        axes.annotate(name, (instant, 1.0), (0, 3), ha=side, va="bottom", **above)
+        draw_velocity(axes, (instant, height), velocity, 0.12 * end, symbol)
+    axes.set_title(title(data, "n", "restitution", "amplitude", "frequency_ratio"), pad=16)
+    axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(-0.18 * end, 1.12 * end))
+    legend_below(figure, columns=3)
+    return figure
+
+
+def draw_velocity(
+    axes: Axes, place: tuple[float, float], velocity: float, reach: float, symbol: str
+) -> None:
+    """The tangent before an impact or after a release; all are equally long in time."""
+    forward = velocity > 0
+    far = place[0] + (reach if forward else -reach), place[1] + reach * abs(velocity)
+    tip, tail = (far, place) if forward else (place, far)
+    axes.annotate("", tip, tail, arrowprops=ARROW)
+    offset, side = ((-5, 1), "right") if forward else ((4, 2), "left")
+    axes.annotate(symbol, far, offset, textcoords="offset points", ha=side, va="center")
+
+
+def fig12(data: xr.Dataset) -> Figure:
+    """Orbits of both models over time on one table; below, the summit of the stiffest contact."""
+    figure, (axes, summit) = panels(4.6, rows=2, height_ratios=(3, 2))
+    time, table = three_cycles(data, data.table)
+    axes.plot(time, table, color=TABLE, linewidth=2.0, label="table $w$")
+    broad: Look = {"color": "0.72", "linewidth": 3.4, "label": "restitution model"}
+    for part in (axes, summit):
+        part.plot(*three_cycles(data, data.restitution_ball), **broad)
+        draw_contacts(part, data)
+    axes.set(ylabel="height $z$, $w$", xlim=(-0.1, parameters(data)["n"] + 0.35))
+    axes.set_title(title(data, "n", "restitution", "amplitude"))
+    show_summit(summit, data)
+    summit.set(xlabel=TIME, ylabel="height at the summit")
+    legend_below(figure, columns=3)
+    return figure
+
+
+def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
+    """The orbit for each ϖ, the stiffest contact solid and above the others."""
+    stiff_first = data.sortby("frequency_ratio", ascending=False)
+    shades = colours(data.sizes["frequency_ratio"])
+    for k, (colour, dashes) in enumerate(zip(shades, cycle(DASHES), strict=False)):
+        orbit = stiff_first.isel(frequency_ratio=k)
+        name = label(frequency_ratio=orbit.frequency_ratio)
+        look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 100}
+        axes.plot(*three_cycles(data, orbit.ball), label=name, **look)
+
+
+def three_cycles(data: xr.Dataset, height: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
+    """Time in periods and a height over the cycles before, in and after that of the dataset.
+
+    The point between two cycles occurs once, because a segment of length zero restarts the dashes.
+    """
+    time = data.table_phase.values / PERIOD
+    cycle_length = parameters(data)["n"]
+    times = np.concatenate([time[:-1] - cycle_length, time[:-1], time + cycle_length])
+    return times, np.concatenate([height[:-1], height[:-1], height])
+
+
+def show_summit(axes: Axes, data: xr.Dataset) -> None:
+    """Limits within which the summits of the restitution model and of the stiffest contact part."""
+    place = int(np.argmax(data.restitution_ball.values))
+    top = float(data.restitution_ball[place])
+    stiffest = float(data.ball.sel(frequency_ratio=data.frequency_ratio.max()).max())
+    below = np.fmax(2.5 * (top - stiffest), 0.02 * top)
+    # The restitution model falls so far in free flight.
+    reach = np.sqrt(2 * below) / PERIOD
+    centre = float(data.table_phase[place]) / PERIOD
+    axes.set(xlim=(centre - reach, centre + reach), ylim=(top - below, top + 0.15 * below))
+
+
+# Branches of the spring-damper model
+
+
+def fig08(data: xr.Dataset) -> Figure:
+    """Branches along Λ for each ϖ: the phases of the table as contact starts and as it ends."""
+    shades = colours(data.sizes["frequency_ratio"])
+    shown = []
+    for ratio, colour in zip(data.frequency_ratio, shades, strict=True):
+        branch = spring_damper_branch(data.sel(frequency_ratio=ratio))
+        shown.append((label(frequency_ratio=ratio), branch, colour))
+    return domains(data, shown, height=4.8)
+
+
+fig09 = fig08
+
+
+def fig15(data: xr.Dataset) -> Figure:
+    """Branches of both models along Λ: the phases of the table as contact starts and as it ends."""
+    names = ("amplitude", "phase", "stable", "admissible")
+    rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in names})
+    shown = [("restitution", restitution_branch(rigid, data), COLOURS[0])]
+    contact = spring_damper_branch(data.squeeze("frequency_ratio"))
+    shown.append((label(frequency_ratio=contact.frequency_ratio), contact, CONTACT))
+    return domains(data, shown, height=4.2)
+
+
+def domains(data: xr.Dataset, shown: list[tuple[str, xr.Dataset, str]], height: float) -> Figure:
+    """Both phases of some branches in one panel: name, branch and colour of each."""
+    figure, axes = panels(height)
+    absent = [name for name, branch, _ in shown if branch.amplitude.isnull().all()]
+    present = [each for each in shown if each[0] not in absent]
+    for _, branch, colour in present:
+        draw_branch(axes, branch, "phase", pale(colour), WIDE)
+        draw_branch(axes, branch, "release_phase", colour, NARROW)
+        for phase in ("phase", "release_phase"):
+            mark_special(axes, branch, phase, colour)
+    amplitude_max = parameters(data)["amplitude_max"]
+    least = min((float(branch.amplitude.min()) for _, branch, _ in present), default=0.0)
+    # The space left of branches that begin far to the right would be empty.
+    left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
+    note = f"\nno branch for {', '.join(absent)}" if absent else ""
+    axes.set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
+    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the table over $\pi$")
+    branch_legend(figure, both_phases=True)
+    figure.draw_without_rendering()
+    name_at_right(axes, branch_names(present, 0.01 * np.ptp(axes.get_ylim())))
+    return figure
+
+
+def branch_names(
+    present: list[tuple[str, xr.Dataset, str]], close: float
+) -> list[tuple[str, float, str]]:
+    """Labels of branches at the right ends of both phases; one where these are close."""
+    names = []
+    for name, branch, colour in present:
+        start = right_end(branch, "phase")
+        end = right_end(branch, "release_phase")
+        heights = [end] if abs(end - start) < close else [start, end]
+        names += [(name, height, colour) for height in heights]
+    return names
+
+
+# Errors
+
+
+def fig14(data: xr.Dataset) -> Figure:
+    """The greatest height of both models along ϖ, and their relative difference."""
+    figure, (axes, below) = panels(4.2, rows=2, sharex=True)
+    look: Look = {"color": CONTACT, "label": "spring-damper model"}
+    curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
+    limit = float(data.restitution_max_height)
+    axes.axhline(limit, label="restitution model", **LIMIT)
+    axes.set_ylabel(r"greatest height $\max\,z$")
+    axes.set_title(title(data, "n", "restitution", "amplitude"))
+    along_ratio(axes, data.frequency_ratio)
+    draw_error(below, data, data.max_height - limit, "h")
+    legend_below(figure)
+    return figure
+
+
+def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str) -> None:
+    """The relative error of the restitution model, its tolerance, and the threshold ϖ if there is.
+
+    Where the difference of the models changes its sign the error is zero, and its line meets the
+    lower edge of the logarithmic panel.
+    """
+    tolerance = parameters(data)["tolerance"]
+    percent = f"{100 * tolerance:g}"
+    ratio = data.frequency_ratio.values
+    error = data.relative_error.values
+    sign = np.sign(difference.values)
+    zeros = np.flatnonzero(sign[1:] * sign[:-1] < 0) + 1
+    between = np.sqrt(ratio[zeros - 1] * ratio[zeros])
+    bottom = 0.5 * np.min(error[error > 0], initial=tolerance)
+    axes.plot(np.insert(ratio, zeros, between), np.insert(error, zeros, bottom), color=CONTACT)
+    axes.axhline(tolerance, label=f"tolerance {percent} %", **GUIDE)
+    threshold = float(data.error_threshold)
+    if np.isfinite(threshold):
+        axes.axvline(threshold, **GUIDE)
+        value = rf"$\varpi_{{{name},{percent}\%}}={number(threshold)}$"
+        axes.plot(threshold, tolerance, "o", color="black", markersize=4, label=value)
+    axes.set(yscale="log", ylabel="relative error")
+    axes.set_ylim(bottom=bottom)
+    along_ratio(axes, data.frequency_ratio)
+
+
+FIGURES: Mapping[str, Callable[..., Figure]] = {
+    "fig01": fig01,
+    "fig02": fig02,
+    "fig03": fig03,
+    "fig04": fig04,
+    "fig05": fig05,
+    "fig06": fig06,
+    "fig07": fig07,
+    "fig08": fig08,
+    "fig09": fig09,
+    "fig10": fig10,
+    "fig11": fig11,
+    "fig12": fig12,
+    "fig13": fig13,
+    "fig14": fig14,
+    "fig15": fig15,
+    "fig16": fig16,
+}
+
+
+def draw(name: str, *data: xr.Dataset) -> Figure:
+    """A figure of the paper, fig01 to fig16, from its dataset; Figs. 1 and 4 have none.
+
+    The style is that of the package, whatever the settings of the user are.
+    """
+    with style():
+        return FIGURES[name](*data)

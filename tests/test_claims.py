@@ -1,0 +1,501 @@
+"""The verdicts on the claims of the paper, of the datasets of the reference and of altered ones."""
+
+import csv
+import importlib
+import io
+import json
+import re
+from collections import Counter
+from operator import attrgetter
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bouncing_ball import claims, errors, restitution, tables
+from bouncing_ball.datasets import read
+
+ROOT = Path(__file__).parents[1]
+PRINTED = claims.printed_table(ROOT / "config" / "table1_printed.csv")
+NAMES = sorted({name for claim in claims.CLAIMS for name in claim.datasets} | {"table1"})
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """The datasets of the reference that claims use, by name."""
+    files = {name: ROOT / "figures" / f"{name}.nc" for name in NAMES}
+    if not all(file.exists() for file in files.values()):
+        pytest.skip("the folder figures has no reference")
+    return {name: read(file) for name, file in files.items()}
+
+
+@pytest.fixture(scope="module")
+def judged(reference):
+    return claims.judge(reference, PRINTED)
+
+
+def verdicts(data):
+    """Verdicts by claim."""
+    return dict(zip(data["claim"].values.tolist(), data["verdict"].values.tolist(), strict=True))
+
+
+def users(name):
+    """The claims that a dataset decides."""
+    every = [*claims.CLAIMS, *claims.table1_ends(PRINTED)]
+    return {claim.name for claim in every if name in claim.datasets}
+
+
+def with_other(reference, name, **variables):
+    """The datasets, with variables of one of them replaced."""
+    return reference | {name: reference[name].assign(variables)}
+
+
+def scaled(reference, name, variable, factor):
+    return with_other(reference, name, **{variable: reference[name][variable] * factor})
+
+
+# Printed numbers
+
+
+@pytest.mark.parametrize(
+    ("found", "printed", "verdict"),
+    [
+        (0.2545, "0.255", "reproduced"),
+        (0.2555, "0.255", "reproduced"),
+        (0.25449, "0.255", "not to the digit"),
+        (0.25551, "0.255", "not to the digit"),
+        (0.7505, "0.750", "reproduced"),
+        (0.751, "0.750", "not to the digit"),
+        (0.751, "0.75", "reproduced"),
+        (82.5, "82", "reproduced"),
+        (82.6, "82", "not to the digit"),
+        (82.82, "82", "not to the digit"),
+        (82.83, "82", "contradicted"),
+        (6.49, "6", "reproduced"),
+        (6.51, "6", "contradicted"),
+        (np.nan, "6", "not computed"),
+    ],
+)
+def test_a_number_is_reproduced_if_it_rounds_to_the_printed_one(found, printed, verdict):
+    assert claims.against_print(found, printed).verdict == verdict
+
+
+def test_a_distance_is_in_units_of_the_last_printed_digit_and_in_per_cent():
+    comparison = claims.against_print(1.0383, "1.032")
+    assert claims.distance_text(comparison.units, comparison.share) == "+6.3 units, +0.61 %"
+    assert claims.distance_text(np.nan, np.nan) == ""
+
+
+def test_each_end_of_table_1_is_one_claim_with_its_printed_digits():
+    ends = claims.table1_ends(PRINTED)
+    assert len(ends) == 18
+    printed = {end.name: end.printed for end in ends}
+    assert printed["Table 1: 10, 3, saddle-node"] == "0.750"
+    assert printed["Table 1: 2, 2, period doubling"] == "1.170"
+    assert all(len(text.partition(".")[2]) == 3 for text in printed.values())
+
+
+def test_the_printed_table_of_the_dataset_is_that_of_the_configuration(reference):
+    xr.testing.assert_equal(reference["table1"]["printed"], PRINTED.astype(float))
+
+
+def test_numbers_that_are_those_of_the_paper_are_reproduced(reference):
+    same = with_other(reference, "table1", computed=PRINTED.astype(float))
+    found = verdicts(claims.judge(same, PRINTED))
+    ends = [found[end.name] for end in claims.table1_ends(PRINTED)]
+    assert ends == ["reproduced"] * 18
+
+
+@pytest.mark.parametrize(
+    ("ratio", "verdict"),
+    [(82.4, "reproduced"), (82.7, "not to the digit"), (83.0, "contradicted")],
+)
+def test_a_changed_number_changes_its_verdict_alone(reference, judged, ratio, verdict):
+    changed = with_other(reference, "fig14", error_threshold=xr.DataArray(ratio))
+    expected = verdicts(judged) | {"height threshold": verdict}
+    assert verdicts(claims.judge(changed, PRINTED)) == expected
+
+
+# Statements
+
+
+def test_readings_that_agree_decide_and_others_are_named():
+    low = claims.at_most("the lower", [1.0, 2.0], 2.0)
+    high = claims.at_most("the higher", [1.0, 2.1], 2.0)
+    claim = claims.Claim("name", "Fig. 1", "text", (), lambda: [])
+    assert claims.of_readings(claim, [low])["verdict"] == "reproduced"
+    assert claims.of_readings(claim, [high, high])["verdict"] == "contradicted"
+    mixed = claims.of_readings(claim, [high, low])
+    assert mixed["verdict"] == "by reading"
+    assert mixed["condition"] == (
+        "right for the lower (2, required ≤ 2); not for the higher (2.1, required ≤ 2)"
+    )
+
+
+def test_what_the_text_lacks_makes_a_statement_undecidable_only_if_readings_differ():
+    claim = claims.Claim("name", "Fig. 1", "text", (), lambda: [], missing="the axis")
+    low = claims.above("the lower", 1.0)
+    high = claims.above("the higher", 0.0)
+    undecidable = claims.of_readings(claim, [low, high])
+    assert undecidable["verdict"] == "undecidable"
+    assert undecidable["reason"] == "the text lacks the axis"
+    assert claims.of_readings(claim, [low, low])["verdict"] == "reproduced"
+
+
+def test_conditions_take_the_worst_number_and_refuse_a_missing_one():
+    assert claims.at_most("", [1.0, 3.0], 2.0)[1:3] == (False, 3.0)
+    assert claims.at_least("", [1.0, 3.0], 2.0)[1:3] == (False, 1.0)
+    assert claims.above("", [0.0, 3.0])[1:3] == (False, 0.0)
+    for condition in (claims.at_most, claims.at_least, claims.above):
+        for values in ([1.0, np.nan], []):
+            with pytest.raises(ValueError, match="missing"):
+                condition("", values, 0.0)
+
+
+READINGS = {
+    "safe above 100": (
+        ["the greatest height", "permanent contact"],
+        ["the bouncing-off velocity", "the apparent restitution", "the phase relative to itself"],
+    ),
+    "stiff row": (
+        ["the printed row and Eqs. 7 and 8", "the computed row and the map of Eq. 5"],
+        ["the computed period doublings and Eq. 8 (apart by 0.0064, 0.0059, 0.0052)"],
+    ),
+    "table velocities": (["all orbits of a branch but one"], ["every orbit"]),
+    "closer with stiffness": (
+        ["the ends of every curve", "each step on the curve of r = 1"],
+        [f"each step on the curve of r = {r}" for r in ("0.85", "0.65", "0.1")],
+    ),
+    "stable between": (
+        ["the restitution model", "the stability of this range, in branches without it (0,"],
+        ["all other orbits, in stable ranges (Λ = 0.7518-1.0955, 1.1625-1.1763)"],
+    ),
+    "compliant divergence": (
+        ["each step of the greatest height"],
+        ["each step of the apparent restitution coefficient", "each step of the Λ of the period"],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", READINGS)
+def test_the_readings_of_a_statement_are_named_with_what_holds_in_them(judged, name):
+    claim = judged.isel(claim=judged["claim"].values == name)
+    right, _, wrong = claim["condition"].item().partition("; not for ")
+    assert claim["verdict"].item() == "by reading"
+    assert right.startswith("right for ")
+    for text in READINGS[name][0]:
+        assert text in right
+        assert text not in wrong
+    for text in READINGS[name][1]:
+        assert text in wrong
+        assert text not in right
+
+
+# Numbers of the readings in their order, to three digits.
+FOUND = {
+    "safe above 100": [0.0086, 9.63e-5, 0.006, 0.00155, 0.00333, 0.0314, 0.0113, 0.0108, 0.139],
+    "bifurcations move apart": [0.0134, 0.0319, -0.00606],
+    "stiff row": [0.000447, 1.52e-5, 1.52e-5, 0.00637],
+    "apart when compliant": [0.311],
+    "representative": [0.0279, 0.000462, 0.0157, 0.0279],
+    "static table": [0, 0.0022, 0.0227],
+    "negligible above 100": [0.00108, 0.0108],
+    "existence changes": [0.0423],
+    "table velocities": [1, 6],
+}
+
+
+@pytest.mark.parametrize("name", FOUND)
+def test_the_numbers_that_decide_a_statement(judged, name):
+    condition = judged["condition"].values[judged["claim"].values == name][0]
+    numbers = re.findall(r"\((-?[\d.e-]+), required", condition)
+    assert [float(number) for number in numbers] == FOUND[name]
+
+
+# What changes in a dataset, and the verdict that it must change.
+CHANGES = {
+    "stiff limit": ("thresholds", "relative_error", 100.0, "contradicted"),
+    "contact shortens": ("fig13", "contact_duration", -1.0, "contradicted"),
+    "superimposed when stiff": ("fig08", "contact_duration", 100.0, "contradicted"),
+    "range widens": ("table1", "computed", -1.0, "contradicted"),
+    "departure from nπ": ("fig10", "bounce_velocity", 0.9, "reproduced"),
+    "velocity rises": ("fig13", "bounce_velocity", -1.0, "by reading"),
+    "height rises": ("fig14", "max_height", -1.0, "by reading"),
+    "phases converge": ("fig13", "restitution_phase", 1.1, "contradicted"),
+    "threshold ensures": ("fig14", "relative_error", -1.0, "contradicted"),
+    "lowest threshold": ("fig11", "threshold_amplitude", 0.99, "by reading"),
+    "stiff threshold": ("thresholds", "relative_error", 1.1, "contradicted"),
+    "dip at 1.2": ("fig06", "apparent_restitution", 0.99, "reproduced"),
+    "negligible above 100": ("fig06", "apparent_restitution", 1.1, "contradicted"),
+    "depends on amplitude": ("fig06", "apparent_restitution", 0.1, "contradicted"),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_statement_changes_with_the_number_that_decides_it(reference, name):
+    dataset, variable, factor, verdict = CHANGES[name]
+    changed = scaled(reference, dataset, variable, factor)
+    assert verdicts(claims.judge(changed, PRINTED))[name] == verdict
+
+
+def test_models_that_agree_contradict_what_the_paper_says_of_their_differences(reference):
+    rigid = reference["table1"]["restitution_range"].sel(impact_map="exact", drop=True)
+    same = {
+        "table1": reference["table1"].assign(
+            computed=rigid.broadcast_like(reference["table1"]["computed"])
+        ),
+        "fig10": reference["fig10"].assign(
+            bounce_velocity=reference["fig10"]["restitution_bounce_velocity"].broadcast_like(
+                reference["fig10"]["bounce_velocity"]
+            )
+        ),
+    }
+    for name in ("fig05", "fig06"):
+        curves = reference[name]["restitution"].broadcast_like(
+            reference[name]["apparent_restitution"]
+        )
+        same[name] = reference[name].assign(apparent_restitution=curves)
+    found = verdicts(claims.judge(reference | same, PRINTED))
+    for claim in (
+        "existence changes",
+        "bifurcations move apart",
+        "range widens",
+        "no longer nπ",
+        "moving table",
+        "depends on amplitude",
+        "dip at 1.2",
+    ):
+        assert found[claim] == "contradicted"
+    for claim in ("negligible above 100", "closer with stiffness", "amplitude does not matter"):
+        assert found[claim] == "reproduced"
+
+
+def test_the_end_of_a_curve_is_that_of_the_curve_of_the_largest_amplitude(reference, judged):
+    curves = reference["fig06"]["apparent_restitution"].copy()
+    curves[:2, 0] = 0.84
+    others = with_other(reference, "fig06", apparent_restitution=curves.copy())
+    others = verdicts(claims.judge(others, PRINTED))
+    assert others["compliant end of 1.2"] == verdicts(judged)["compliant end of 1.2"]
+    curves[2, 0] = 0.84
+    changed = with_other(reference, "fig06", apparent_restitution=curves)
+    changed = verdicts(claims.judge(changed, PRINTED))
+    assert changed["compliant end of 1.2"] == "contradicted"
+
+
+def test_an_orbit_that_is_not_admissible_has_no_one_impact(reference):
+    admissible = reference["fig15"]["admissible"].copy()
+    admissible[0, 0] = False
+    changed = with_other(reference, "fig15", admissible=admissible)
+    assert verdicts(claims.judge(changed, PRINTED))["one impact per period"] == "contradicted"
+
+
+def test_a_ball_that_sticks_is_not_chaotic(reference):
+    stickings = reference["three_balls"]["stickings"] + 1
+    changed = with_other(reference, "three_balls", stickings=stickings)
+    assert verdicts(claims.judge(changed, PRINTED))["kinds of motion"] == "contradicted"
+
+
+def test_an_unstable_orbit_below_the_doubling_breaks_the_rule(reference):
+    stable = reference["fig03"]["stable"] & False
+    changed = with_other(reference, "fig03", stable=stable)
+    assert verdicts(claims.judge(changed, PRINTED))["saddle-node"] == "by reading"
+
+
+def test_the_stable_ranges_of_a_branch_lie_between_its_special_points(reference):
+    (branch,) = (part for part in claims.branches(reference["fig08"].sel(frequency_ratio=[2.0])))
+    threshold = float(claims.permanent_contact(2.0, reference["fig08"]["damping_ratio"]))
+    first, second, last = claims.stable_ranges(branch)
+    assert first == pytest.approx((threshold, 1.09553), abs=1e-5)
+    assert second == pytest.approx((1.16253, 1.17632), abs=1e-5)
+    assert last == pytest.approx((0.18770, 1.08710), abs=1e-5)
+
+
+def test_a_ball_without_weight_bounces_from_a_table_at_rest_with_r():
+    assert claims.restitution_at_rest(0.3, 5.0, weight=0.0) == pytest.approx(0.3, abs=1e-12)
+    # To first order in the weight, r falls by 2ζ(1 + r)/(πϖ): corrections are of the order of 1/ϖ².
+    for ratio in (1e2, 1e3):
+        lost = 0.65 - claims.restitution_at_rest(0.65, ratio)
+        expected = 2 * claims.damping_ratio(0.65) * 1.65 / (np.pi * ratio)
+        assert lost == pytest.approx(expected, rel=3 / ratio)
+
+
+# What is missing, and other parameters
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_missing_dataset_takes_away_its_claims_alone(reference, judged, name):
+    rest = {key: data for key, data in reference.items() if key != name}
+    found = verdicts(claims.judge(rest, PRINTED))
+    expected = dict.fromkeys(users(name), "not computed")
+    assert found == verdicts(judged) | expected
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_numbers_that_are_missing_take_away_their_claims_alone(reference, judged, name):
+    data = reference[name]
+    broken = data.map(lambda values: values * np.nan if values.dtype.kind == "f" else values)
+    found = claims.judge(reference | {name: broken.assign_attrs(data.attrs)}, PRINTED)
+    # Whether an orbit is admissible is no floating-point number.
+    lost = users(name) - {"one impact per period"}
+    assert verdicts(found) == verdicts(judged) | dict.fromkeys(lost, "not computed")
+
+
+@pytest.mark.parametrize("name", sorted(claims.PAPER))
+def test_claims_under_other_parameters_are_not_asked(reference, judged, name):
+    data = reference[name]
+    given = claims.parameters(data)
+    assert not claims.other_parameters(name, data)
+    for key, needed in claims.PAPER[name].items():
+        other = {"min": 0.7, "max": 70.0} if isinstance(needed, dict) else [0.7]
+        changed = data.assign_attrs(parameters=json.dumps(given | {key: other}))
+        assert claims.other_parameters(name, changed).startswith(f"{name}: {key} is")
+    found = claims.judge(reference | {name: changed}, PRINTED)
+    assert verdicts(found) == verdicts(judged) | dict.fromkeys(users(name), "not asked")
+    reasons = found["reason"].values[found["verdict"].values == "not asked"]
+    assert all(f"{name}: {key} is" in reason for reason in reasons)
+
+
+def test_parameters_on_which_no_claim_rests_may_be_others(reference, judged):
+    given = claims.parameters(reference["fig14"])
+    other = given["frequency_ratio"] | {"samples": 77}
+    changed = reference["fig14"].assign_attrs(
+        parameters=json.dumps(given | {"frequency_ratio": other, "remark": 1})
+    )
+    assert verdicts(claims.judge(reference | {"fig14": changed}, PRINTED)) == verdicts(judged)
+
+
+# Formulas that no other module tests
+
+
+@pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.65), (3, 0.2)])
+def test_equation_8_is_the_doubling_of_the_map_whose_flights_end_at_their_height(n, r):
+    amplitude = restitution.holmes_period_doubling(n, r)
+
+    def reduced_map(phase, velocity):
+        landing = phase + 2 * velocity
+        return np.array([landing, r * velocity + (1 + r) * amplitude * np.cos(landing)])
+
+    orbit = np.array([restitution.impact_phase(n, r, amplitude), n * np.pi])
+    assert reduced_map(*orbit) == pytest.approx([orbit[0] + 2 * n * np.pi, orbit[1]], abs=1e-12)
+    step = 1e-5
+    columns = [
+        (reduced_map(*(orbit + change)) - reduced_map(*(orbit - change))) / (2 * step)
+        for change in step * np.eye(2)
+    ]
+    # Central differences are off by the third derivative, some ten, times the square of the step.
+    assert min(np.linalg.eigvals(np.transpose(columns)).real) == pytest.approx(-1, abs=1e-8)
+
+
+def test_equation_9_is_the_amplitude_at_which_the_table_falls_as_fast_as_a_free_ball():
+    phase = np.linspace(0, 2 * np.pi, 5)
+    fall = restitution.PERMANENT_CONTACT * np.sin(phase)
+    assert fall.max() == 1.0
+
+
+def test_equations_37_and_38_are_shares_of_the_restitution_model():
+    assert errors.relative_error(0.99, 1.0) == pytest.approx(0.01)
+    assert errors.relative_error(5.05, 5.0) == pytest.approx(0.01)
+
+
+# All claims
+
+
+def test_the_verdicts_on_the_printed_numbers(judged):
+    found = claims.counts(judged)["printed number"]
+    assert {verdict: number for verdict, number in found.items() if number} == {
+        "reproduced": 8,
+        "not to the digit": 14,
+        "contradicted": 1,
+    }
+
+
+VERDICTS = {
+    "by reading": {
+        "stiff limit",
+        "compliant divergence",
+        "direct map",
+        "no assumptions",
+        "no analytical solution",
+        "period doubling",
+        "stable between",
+        "static table",
+        "table velocities",
+        "closer with stiffness",
+        "negligible above 100",
+        "bifurcations move apart",
+        "stiff row",
+        "safe above 100",
+    },
+    "definition": {"bounces off later", "no damping"},
+    "contradicted": {"dip at 1.2"},
+    "undecidable": {"departure from nπ", "amplitude does not matter", "representative"},
+}
+
+
+def test_the_verdicts_on_the_statements(judged):
+    found = verdicts(judged.isel(claim=judged["group"].values == "statement"))
+    named = {name: verdict for verdict, names in VERDICTS.items() for name in names}
+    assert found == dict.fromkeys(found, "reproduced") | named
+
+
+def test_claims_have_different_names_a_place_and_a_text():
+    every = [*claims.CLAIMS, *claims.table1_ends(PRINTED)]
+    assert len({claim.name for claim in every}) == len(every)
+    for claim in every:
+        assert claim.place.split()[0] in {
+            "Abstract",
+            "Abstract,",
+            "Introduction",
+            "Conclusion",
+            "after",
+            "before",
+            "Eq.",
+            "Fig.",
+            "Figs.",
+            "Table",
+        }
+        assert claim.text
+
+
+def test_counts_are_those_of_the_dataset_without_the_restored_formulas(judged):
+    pairs = zip(judged["group"].values.tolist(), judged["verdict"].values.tolist(), strict=True)
+    expected = Counter(pairs)
+    found = claims.counts(judged)
+    assert set(found) == {"printed number", "statement"}
+    for group, by_verdict in found.items():
+        assert set(by_verdict) == set(claims.VERDICTS)
+        for verdict, number in by_verdict.items():
+            assert number == expected[group, verdict]
+    assert sum(map(sum, map(dict.values, found.values()))) == len(claims.CLAIMS) + 18
+
+
+def test_restored_formulas_cover_the_equations_and_name_members_and_tests():
+    numbers = []
+    for equations, _, members, tests in claims.FORMULAS:
+        assert (ROOT / "tests" / f"{tests}.py").exists()
+        # "Eqs. 1, 3 and 4" and "Eqs. 18-20"
+        text = equations.partition(" ")[2].replace(" and ", ", ")
+        for part in text.split(", "):
+            first, _, last = part.partition("-")
+            numbers += range(int(first), int(last or first) + 1)
+        for member in members.split(", "):
+            module, _, path = member.partition(".")
+            assert attrgetter(path)(importlib.import_module(f"bouncing_ball.{module}")) is not None
+    assert sorted(numbers) == list(range(1, 39))
+
+
+def test_the_page_and_the_csv_have_every_claim(judged):
+    page = claims.claims_markdown(judged)
+    rows = list(csv.reader(io.StringIO(tables.comma_separated(claims.all_rows(judged)))))
+    assert len(rows) == 1 + judged.sizes["claim"]
+    assert {len(row) for row in rows} == {len(rows[0])}
+    lines = [line for line in page.splitlines() if line.startswith("|")]
+    for name in judged["claim"].values:
+        assert any(line.startswith(f"| {name} |") for line in lines)
+    for group, columns in claims.SECTIONS.items():
+        header, *body = claims.table(judged, group)
+        assert len(body) == int((judged["group"] == group).sum())
+        assert header == [*columns]
+    # A cell must not end a cell.
+    assert not any("|" in cell for row in rows for cell in row)

@@ -1,0 +1,337 @@
+"""Continuation against the closed form of a branch, and against limits that are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests import independent
+
+from bouncing_ball import continuation, restitution
+from bouncing_ball.continuation import MERGES, NoOrbit
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import (
+    RELEASES,
+    Contact,
+    damping_ratio,
+    force_release_restitution,
+    permanent_contact,
+)
+
+# Newton's method ends with a step of less than this, relative to 1 + |y|.
+CORRECTOR = 1e-11
+
+
+def assert_on_closed_form(n, ratio, zeta, release, y):
+    """Orbits are those of the closed form with the same durations of the contact.
+
+    On stiff contacts Λ changes by ϖ times the change of θ: the tolerance is the difference that the
+    corrector's tolerance makes to the closed form. The phase may differ by turns, and Λ may be
+    negative if the phase is turned by half of one. Where the flight vanishes, the landing of the
+    closed form is a difference that is small of second order in the flight.
+    """
+    error = CORRECTOR * (1 + np.abs(y).max())
+    after = independent.orbit(n, ratio, zeta, release, (y[3] + error) / ratio)
+    before = independent.orbit(n, ratio, zeta, release, (y[3] - error) / ratio)
+    expected = independent.orbit(n, ratio, zeta, release, y[3] / ratio)
+
+    def point(orbit):
+        return np.stack([orbit[0] * np.cos(orbit[1]), orbit[0] * np.sin(orbit[1]), orbit[2]])
+
+    flight = 2 * np.pi * n - y[3] / ratio
+    tolerance = np.abs(point(after) - point(before)) + error + 1e-14 / flight**2
+    assert np.all(np.abs(point(y) - point(expected)) < tolerance)
+
+
+# n, ϖ, r, release, the largest Λ, and the number of points.
+BRANCHES = [
+    (1, 2.0, 0.85, "displacement", 1.3, 80),
+    (2, 10.0, 0.65, "force", 3.0, 40),
+    (3, 1e4, 0.85, "displacement", 1.5, 40),
+    (1, 1e6, 0.85, "force", 1.3, 40),
+    (20, 10.0, 0.85, "displacement", 6.0, 40),
+    (1, 10.0, 0.05, "displacement", 4.0, 200),
+    (1, 3.0, 0.05, "force", 3.0, 60),
+    (1, 10.0, 0.999, "displacement", 1.5, 40),
+]
+
+
+@pytest.mark.parametrize(("n", "ratio", "r", "release", "amplitude_max", "points"), BRANCHES)
+def test_a_branch_is_that_of_the_closed_form(n, ratio, r, release, amplitude_max, points):
+    zeta = independent.restitution_to_damping(r)
+    family = Family(n, Contact(ratio, zeta, release))
+    branch = continuation.branch(family, r, amplitude_max, points)
+    y = branch.orbits
+    assert y.shape == (4, points)
+    assert_on_closed_form(n, ratio, zeta, release, y)
+    chords = np.linalg.norm(np.diff(y), axis=0)
+    assert np.ptp(chords) < 1e-11 * chords.mean()
+    # From the unstable side, with long contacts, to the stable one.
+    angles = y[3, ::-1]
+    assert np.all(np.diff(angles) > 0)
+    assert y[0, -1] == pytest.approx(amplitude_max, rel=CORRECTOR)
+    assert branch.ends[1] == f"amplitude = {amplitude_max:g} is reached"
+    if branch.ends[0] == MERGES:
+        flight = 2 * np.pi * n - angles[-1] / ratio
+        assert flight == pytest.approx(continuation.LEAST_FLIGHT, rel=1e-6)
+    else:
+        assert branch.ends[0] == branch.ends[1]
+        assert abs(y[0, 0]) == pytest.approx(amplitude_max, rel=CORRECTOR)
+
+    # Every bifurcation, and its kind, from zeros of the test functions along the closed form.
+    grid = np.interp(np.arange(0, points - 0.95, 0.1), np.arange(points), angles)
+    expected = []
+    for k, kind in enumerate(continuation.SPECIAL[:2]):
+
+        def test_function(angle, k=k):
+            return independent.test_functions(n, ratio, zeta, release, angle / ratio)[k]
+
+        expected += [(angle, kind) for angle in independent.roots(test_function, grid)]
+    expected.sort(reverse=True)
+    found = [special for special in branch.special if special.kind != "grazing"]
+    assert [special.kind for special in found] == [kind for _, kind in expected]
+    for special, (angle, _) in zip(found, expected, strict=True):
+        amplitude = independent.orbit(n, ratio, zeta, release, angle / ratio)[0]
+        # Test functions have ten digits, and change of Λ with θ does not exceed ϖ.
+        assert special.orbit[0] == pytest.approx(amplitude, rel=1e-9)
+
+    for special in branch.special:
+        assert_on_closed_form(n, ratio, zeta, release, special.orbit)
+        if special.kind == "grazing":
+            assert family.clearance(special.orbit) == pytest.approx(0, abs=1e-6)
+        # Its place lies between points that are as far from it as the curve bends in a chord.
+        place = special.place * (points - 1)
+        between = [np.interp(place, np.arange(points), row) for row in y]
+        assert np.linalg.norm(between - special.orbit) < 0.2 * chords.mean()
+    places = [special.place for special in branch.special]
+    assert places == sorted(places)
+
+
+def test_the_special_points_of_figure_8():
+    """At ϖ = 2 the family turns twice and ends where permanent contact does."""
+    zeta = damping_ratio(0.85)
+    branch = continuation.branch(Family(1, Contact(2.0, zeta)), 0.85, 1.3, 20)
+    found = [(special.kind, round(float(special.orbit[0]), 8)) for special in branch.special]
+    # Known from computations with other methods and more digits.
+    assert found == [
+        ("period doubling", 1.09552888),
+        ("period doubling", 1.16252707),
+        ("saddle-node", 1.1763248),
+        ("saddle-node", 0.18769784),
+        ("period doubling", 1.08709592),
+    ]
+    assert branch.ends[0] == MERGES
+    # The amplitude of permanent contact, and the square of the flight that is left.
+    end = branch.orbits[0, 0]
+    assert round(float(permanent_contact(2.0, zeta)), 6) == 0.751777
+    assert 0 < end - permanent_contact(2.0, zeta) < continuation.LEAST_FLIGHT**2
+
+
+@pytest.mark.parametrize(
+    ("n", "ratio", "release", "amplitude_max"),
+    [(1, 2.0, "displacement", 1.3), (2, 1e4, "displacement", 1.5), (1, 8.0, "force", 1.4)],
+)
+def test_the_points_of_a_branch_do_not_depend_on_the_steps(n, ratio, release, amplitude_max):
+    family = Family(n, Contact(ratio, damping_ratio(0.85), release))
+    reference = continuation.branch(family, 0.85, amplitude_max, 60, 0.2)
+    for largest_step in (0.06, 0.5):
+        branch = continuation.branch(family, 0.85, amplitude_max, 60, largest_step)
+        # Chords are equal to 1e-12 of their mean, so that the points are, over the whole length.
+        np.testing.assert_allclose(branch.orbits, reference.orbits, atol=1e-9)
+        assert branch.ends == reference.ends
+        for one, other in zip(branch.special, reference.special, strict=True):
+            assert one.kind == other.kind
+            np.testing.assert_allclose(one.orbit, other.orbit, atol=1e-9)
+            assert one.place == pytest.approx(other.place, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("n", "ratio", "expected"),
+    [(1, 0.61, 1.99987969629), (2, 2.2260684470825036, 1.04860831), (3, 3.7, None), (1, 1.0, None)],
+)
+def test_the_period_doubling_of_an_undamped_contact_is_known(n, ratio, expected):
+    beside = ratio if ratio != 1 else 1 + 1e-9
+    formula = abs(1 - 1 / beside**2) / abs(np.cos(np.pi / (2 * beside)))
+    found = continuation.bifurcations(n, "period doubling", ratio, Contact(ratio, 0.0))
+    # Both factors vanish at ϖ = 1, beside which the formula has seven digits.
+    assert found[0, 0, 0] == pytest.approx(formula, rel=1e-10 if ratio != 1 else 1e-6)
+    if expected is not None:
+        # Half a unit of the last digit that is known.
+        assert found[0, 0, 0] == pytest.approx(expected, abs=5e-9)
+
+
+@pytest.mark.parametrize(
+    ("n", "ratio", "amplitude_max"),
+    [(1, 0.61, 2.1), (2, 2.2260684470825036, 1.5), (3, 3.7, 1.2), (1, 1.0, 2.1)],
+)
+def test_the_branch_of_an_undamped_contact_has_its_period_doubling(n, ratio, amplitude_max):
+    branch = continuation.branch(Family(n, Contact(ratio, 0.0)), 1.0, amplitude_max, 40)
+    known = continuation.bifurcations(n, "period doubling", ratio, Contact(ratio, 0.0))[0, 0, 0]
+    doublings = [each.orbit[0] for each in branch.special if each.kind == "period doubling"]
+    assert known == pytest.approx(doublings[-1], rel=1e-9)
+    assert_on_closed_form(n, ratio, 0.0, "displacement", branch.orbits)
+    assert branch.ends[0] == (MERGES if ratio <= 1 else continuation.VANISHES)
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_bifurcations_along_the_frequency_ratio_are_those_of_the_closed_form(release):
+    r = 0.65
+    n = np.array([1, 2, 3])
+    zeta = independent.restitution_to_damping(r)
+    ratios = np.array([1.3, 2.0, 7.77, 10.0, 431.0, 1e4])
+    contact = Contact(1.0, zeta, release)
+    found = {
+        kind: continuation.bifurcations(n, kind, ratios, contact)
+        for kind in continuation.SPECIAL[:2]
+    }
+    for i in range(3):
+        for j, ratio in enumerate(ratios):
+            for k, kind in enumerate(continuation.SPECIAL[:2]):
+                y = found[kind][:, i, j]
+                assert_on_closed_form(n[i], ratio, zeta, release, y)
+                values = independent.test_functions(n[i], ratio, zeta, release, y[3] / ratio)
+                # The corrector's tolerance, times the slopes of the test functions along θ.
+                assert values[k] == pytest.approx(0, abs=1e-9 * ratio)
+            # What they bound is stable in between.
+            ends = [found[kind][3, i, j] for kind in ("period doubling", "saddle-node")]
+            inside = np.linspace(*ends, 50)[1:-1] / ratio
+            assert ends[0] < ends[1]
+            assert np.min(independent.test_functions(n[i], ratio, zeta, release, inside)) > 0
+
+
+def test_orbits_tend_to_the_restitution_model_to_first_order_in_the_stiffness():
+    """The relative errors are K/ϖ, with the formulas of an impact at the centroid of its force."""
+    n, r, amplitude = 2, 0.65, 1.6
+    zeta = float(damping_ratio(r))
+    duration = np.pi / np.sqrt(1 - zeta**2)
+    x = float(restitution.saddle_node(n, r))
+    phase = np.arccos(x / amplitude)
+    lift = amplitude * np.sin(phase)
+    load = ((1 - r) * duration - 2 * zeta * (1 + r)) / (1 + r)
+    height = lift + (n * np.pi) ** 2 / 2
+    delay = 2 * n * np.pi * r * duration / (1 + r) ** 2
+    expected = {
+        "max_height": -(delay - x * load * (1 - lift) / lift) / height,
+        "bounce_velocity": -duration / (n * np.pi * (1 + r)),
+        "phase": -(r * duration / (1 + r) - load * (1 - lift) / lift) / phase,
+        "apparent_restitution": -2 * zeta * (1 + r) ** 2 * (1 - lift) / (2 * n * np.pi * r),
+        "saddle_node": -load / x,
+    }
+    ratios = np.array([2e4, 4e4])
+    y = continuation.stable_orbits(n, r, amplitude, ratios)[:, 0]
+    observed = Family(n, Contact(ratios, zeta)).observables(y)
+    observed["saddle_node"] = continuation.bifurcations(
+        n, "saddle-node", ratios, Contact(ratios, zeta)
+    )[0, 0]
+    limits = {
+        "max_height": restitution.max_height(n, r, amplitude),
+        "bounce_velocity": n * np.pi,
+        "phase": phase,
+        "apparent_restitution": r,
+        "saddle_node": x,
+    }
+    for name, limit in limits.items():
+        first, second = ratios * (observed[name] / limit - 1)
+        # Extrapolation takes the next order away; rounding errors are 1e-15 times ϖ.
+        assert 2 * second - first == pytest.approx(expected[name], rel=1e-5), name
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_walk_along_the_frequency_ratio_follows_the_stable_orbits(release):
+    r = np.array([0.05, 0.65, 0.85, 0.999])
+    amplitude = 1.01 * restitution.saddle_node(2, r) + np.array([0.4, 0.4, 0.8, 0.5])
+    ratios = np.array([1.9, 2.0, 3.33, 50.0, 1e3, 1e6])
+    found = continuation.stable_orbits(2, r, amplitude, ratios, release)
+    assert found.shape == (4, 4, 6)
+    np.testing.assert_allclose(found[0], np.outer(amplitude, np.ones(6)), rtol=CORRECTOR)
+    for i in range(4):
+        zeta = independent.restitution_to_damping(r[i])
+        for j, ratio in enumerate(ratios):
+            assert_on_closed_form(2, ratio, zeta, release, found[:, i, j])
+            duration = found[3, i, j] / ratio
+            saddle_node, _ = independent.test_functions(2, ratio, zeta, release, duration)
+            assert saddle_node > 0
+
+
+def test_twenty_periods():
+    y = continuation.stable_orbits(20, 0.85, 5.2, [5.0, 1e3])
+    for j, ratio in enumerate([5.0, 1e3]):
+        assert_on_closed_form(
+            20, ratio, independent.restitution_to_damping(0.85), "displacement", y[:, 0, j]
+        )
+
+
+def test_where_there_is_no_orbit_there_is_none():
+    # The saddle-node of the 5-T orbits rises again on compliant contacts.
+    ratios = np.array([1.0, 1.05, 3.0, 100.0])
+    y = continuation.stable_orbits(5, 0.65, 3.5, ratios)[0, 0]
+    zeta = independent.restitution_to_damping(0.65)
+    durations = np.linspace(2, 4.5, 400) / ratios[:, np.newaxis]
+    lowest = [
+        np.min(independent.orbit(5, ratio, zeta, "displacement", each)[0])
+        for ratio, each in zip(ratios, durations, strict=True)
+    ]
+    np.testing.assert_array_equal(np.isnan(y), np.array(lowest) > 3.5)
+    assert np.isnan(y).sum() == 2
+    with pytest.raises(NoOrbit, match=r"no 5-T orbit is found at Λ = 3.5 and ϖ = 1$"):
+        continuation.branch(Family(5, Contact(1.0, zeta)), 0.65, 3.5, 20)
+
+
+def test_below_the_saddle_node_of_the_restitution_model_there_is_no_orbit():
+    message = r"Λ = 0.25 is below the 1-T orbits, from Λ = 0.254724 on \(Eq. 7\)"
+    with pytest.raises(NoOrbit, match=message):
+        continuation.stable_orbits(1, 0.85, [0.3, 0.25], [10.0])
+
+
+def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
+    # Without tension the impact is more elastic than Eq. 16 has it.
+    zeta = damping_ratio(0.05)
+    lowest = restitution.saddle_node(1, force_release_restitution(zeta))
+    assert lowest < 0.8 * restitution.saddle_node(1, 0.05)
+    y = continuation.stable_orbits(1, 0.05, 1.01 * lowest, [1e3, 1e6], "force")[:, 0]
+    for j, ratio in enumerate([1e3, 1e6]):
+        assert_on_closed_form(1, ratio, zeta, "force", y[:, j])
+    with pytest.raises(NoOrbit):
+        continuation.stable_orbits(1, 0.05, 0.99 * lowest, [1e3], "force")
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3])
+def test_a_walk_ends_where_its_orbits_cease(seed):
+    rng = np.random.default_rng(seed)
+    r = rng.uniform(0.05, 0.6)
+    n = int(rng.integers(2, 6))
+    release = RELEASES[seed % 2]
+    contact = Contact(1.0, damping_ratio(r), release)
+    ratios = np.geomspace(0.7, 100, 60)
+    amplitude = restitution.saddle_node(n, contact.restitution) + rng.uniform(0, 0.7)
+    walks = [continuation.stable_orbits(n, r, amplitude, ratios, release)[:, 0]]
+    for kind in continuation.SPECIAL[:2]:
+        walks.append(continuation.bifurcations(n, kind, ratios, contact)[:, 0])
+    for y in walks:
+        reached = np.isfinite(y).all(axis=0)
+        assert reached[-1]
+        # From one ratio on, there is an orbit at each.
+        assert not np.any(reached[:-1] & ~reached[1:])
+        assert np.all(Family(n, replace(contact, frequency_ratio=ratios)).possible(y) == reached)
+        # Neighbours are neighbours: their durations differ by less than half a radian.
+        assert np.abs(np.diff(y[3, reached])).max() < 0.5
+
+
+def test_the_corrector_gives_nan_where_it_fails_and_only_there():
+    family = Family(1, Contact(10.0, damping_ratio(0.85)))
+    guess = continuation.stiff_guess(family, 0.25, 0.8)
+    # There is no orbit with the first amplitude. The phase is not defined at the last one, so that
+    # the matrix is singular.
+    guesses = np.stack([guess, guess, [0.0, 0.0, -3.0, 3.1]], axis=1)
+    y = continuation.correct(family, guesses, continuation.at_amplitude(np.array([0.1, 0.8, 0.0])))
+    np.testing.assert_array_equal(np.isnan(y), np.outer(np.ones(4), [True, False, True]))
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_guess_for_a_stiff_contact_is_right_to_the_first_order(release):
+    zeta = 0.2
+    r = {"displacement": np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))}
+    r["force"] = force_release_restitution(zeta)
+    family = Family(2, Contact(1e5, zeta, release))
+    guess = continuation.stiff_guess(family, restitution.saddle_node(2, r[release]), 0.7)
+    y = continuation.correct(family, guess, continuation.at_amplitude(guess[0]))
+    np.testing.assert_allclose(guess, y, atol=20 / 1e5)

@@ -1,0 +1,240 @@
+"""Errors and thresholds against formulas, a dense scan and orbits of the closed form."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize_scalar
+from tests import independent
+
+from bouncing_ball import errors, restitution
+from bouncing_ball.errors import Error
+from bouncing_ball.spring_damper import RELEASES, damping_ratio, permanent_contact_ratios
+
+RATIOS = np.geomspace(1, 1e3, 61)
+
+
+def test_errors_are_shares_of_the_restitution_model():
+    np.testing.assert_allclose(errors.relative_error([0.99, 2.2], [1.0, -2.0]), [0.01, 2.1])
+
+
+def test_a_threshold_is_the_last_crossing_of_the_tolerance():
+    # Three crossings of 0.1: at 2, 5 and 20.
+    def error(ratio):
+        return 0.1 + 1e-3 * (2 - ratio) * (5 - ratio) * (20 - ratio) / ratio**2
+
+    grid = np.linspace(1.3, 31.3, 31)
+    found = errors.threshold(grid, Error(error(grid), lambda ratio, i: error(ratio)), 0.1)
+    assert found.status == "found"
+    assert found.ratio == pytest.approx(20, rel=1e-12)
+    # A ratio at which the error is the tolerance is within it.
+    exact = Error(1 / grid, lambda ratio, i: 1 / ratio)
+    assert errors.threshold(grid, exact, 1 / grid[10]).ratio == pytest.approx(grid[10], rel=1e-12)
+
+
+def test_a_threshold_outside_of_the_scan_has_a_status():
+    grid = np.array([1.0, 2.0, 3.0])
+
+    def status(*values):
+        found = errors.threshold(grid, Error(np.array(values), None), 0.1)
+        assert np.isnan(found.ratio)
+        return found.status
+
+    assert status(0.1, 0.05, 0.02) == "within"
+    assert status(0.01, 0.05, 0.2) == "outside"
+    # Without an orbit there is no threshold to be located beside it.
+    assert status(np.inf, np.inf, 0.02) == "outside"
+
+
+def test_the_threshold_of_permanent_contact_is_that_of_equation_34():
+    zeta = float(damping_ratio(0.65))
+    error = errors.permanent_contact_error(RATIOS, zeta, "displacement")
+    found = errors.threshold(RATIOS, error, 0.01)
+    expected = permanent_contact_ratios(0.99, zeta)[1]
+    assert round(expected, 4) == 9.8118
+    # The error is the difference of two numbers near 1, and falls with the square of ϖ.
+    assert found.ratio == pytest.approx(expected, rel=1e-12)
+    forced = errors.threshold(
+        RATIOS, errors.permanent_contact_error(RATIOS, zeta, "force"), 0.01
+    ).ratio
+    amplitude = np.hypot(forced**2 - 1, 2 * zeta * forced) / np.hypot(forced**2, 2 * zeta * forced)
+    assert amplitude == pytest.approx(0.99, rel=1e-12)
+
+
+def stable_orbit(n, r, amplitude, ratio, release):
+    """The stable orbit of the closed form, between the first period doubling and saddle-node."""
+    zeta = independent.restitution_to_damping(r)
+    angles = np.linspace(2.4, 4.5, 40)
+
+    def bifurcation(k, grid):
+        return independent.roots(
+            lambda angle: independent.test_functions(n, ratio, zeta, release, angle / ratio)[k],
+            grid,
+        )[0]
+
+    doubling = bifurcation(1, angles)
+    fold = bifurcation(0, np.append(doubling, angles[angles > doubling]))
+    (angle,) = independent.roots(
+        lambda angle: independent.orbit(n, ratio, zeta, release, angle / ratio)[0] - amplitude,
+        np.array([doubling, fold]),
+    )
+    return independent.orbit(n, ratio, zeta, release, angle / ratio)
+
+
+def quantities(n, r, amplitude, ratio, release):
+    """Errors from an orbit of the closed form, and its flight."""
+    y = stable_orbit(n, r, amplitude, ratio, release)
+    zeta = independent.restitution_to_damping(r)
+    x = y[0] * np.cos(y[1])
+    start = [0, y[2] - x, y[0] * np.sin(y[1]), x, 1]
+    gap, rate, table, speed, _ = independent.transfer(ratio, zeta, y[3] / ratio) @ start
+    bounce = rate + speed
+    phase = np.arccos(n * np.pi * (1 - r) / (1 + r) / amplitude)
+    height = amplitude * np.sin(phase) + (n * np.pi) ** 2 / 2
+    return {
+        "max_height": abs(gap / ratio + table + bounce**2 / 2 - height) / height,
+        "bounce_velocity": abs(bounce / (n * np.pi) - 1),
+        "phase": abs(y[1] / phase - 1),
+        "apparent_restitution": abs(-rate / start[1] / r - 1),
+    }
+
+
+# The quantities, and their thresholds of 1 % for n = 1, r = 0.65 and Λ = 1 as they are known.
+KNOWN = {
+    "max_height": 82.177,
+    "bounce_velocity": 61.22,
+    "phase": 132.57,
+    "apparent_restitution": 4.78,
+    "saddle_node": 59.87,
+    "period_doubling": 13.75,
+}
+
+
+@pytest.fixture(scope="module")
+def known_errors():
+    names = [*KNOWN, "permanent_contact"]
+    found = errors.errors(names, 1, 0.65, 1.0, RATIOS, "displacement")
+    assert list(found) == names
+    return found
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_thresholds(known_errors, name):
+    found = errors.threshold(RATIOS, known_errors[name], 0.01)
+    digits = len(f"{KNOWN[name]}".partition(".")[2])
+    assert round(found.ratio, digits) == KNOWN[name]
+    assert found.status == "found"
+    if name in ("saddle_node", "period_doubling"):
+        zeta = independent.restitution_to_damping(0.65)
+        k = ("saddle_node", "period_doubling").index(name)
+        (angle,) = independent.roots(
+            lambda angle: independent.test_functions(
+                1, found.ratio, zeta, "displacement", angle / found.ratio
+            )[k],
+            np.linspace(2.9, 3.4, 50),
+        )
+        amplitude = independent.orbit(1, found.ratio, zeta, "displacement", angle / found.ratio)[0]
+        limit = {
+            "saddle_node": restitution.saddle_node(1, 0.65),
+            "period_doubling": restitution.period_doubling(1, 0.65),
+        }
+        error = abs(amplitude / limit[name] - 1)
+    else:
+        error = quantities(1, 0.65, 1.0, found.ratio, "displacement")[name]
+    # The corrector's tolerance of 1e-11 in Λ is one of some ϖ in the error times 1e-11.
+    assert error == pytest.approx(0.01, rel=1e-7)
+
+
+def test_the_threshold_of_permanent_contact_is_among_the_others(known_errors):
+    found = errors.threshold(RATIOS, known_errors["permanent_contact"], 0.01)
+    assert round(found.ratio, 4) == 9.8118
+
+
+def test_permanent_contact_needs_no_orbit():
+    # There is no orbit with this amplitude.
+    found = errors.errors(["permanent_contact"], 1, 0.65, 0.1, RATIOS, "displacement")
+    assert list(found) == ["permanent_contact"]
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_dense_scan_has_the_same_errors_and_threshold(release):
+    n, r, amplitude = 2, 0.85, 1.0
+    coarse = np.geomspace(20, 200, 5)
+    found = errors.orbit_errors(n, r, amplitude, coarse, release)
+    expected = {
+        ratio: quantities(n, r, amplitude, ratio, release) for ratio in np.geomspace(20, 200, 17)
+    }
+    for name, error in found.items():
+        for i, ratio in enumerate(coarse):
+            # The errors are differences of numbers that are known to 1e-11 times ϖ.
+            assert error.values[i] == pytest.approx(expected[ratio][name], abs=1e-8)
+        for k, ratio in enumerate(expected):
+            if k % 4:
+                assert error.between(ratio, k // 4) == pytest.approx(
+                    expected[ratio][name], abs=1e-8
+                )
+    scan = list(expected)
+    threshold = errors.threshold(coarse, found["max_height"], 0.01).ratio
+    outside = [expected[ratio]["max_height"] > 0.01 for ratio in scan]
+    assert outside == sorted(outside, reverse=True)
+    assert scan[sum(outside) - 1] < threshold < scan[sum(outside)]
+
+
+def test_where_there_is_no_orbit_the_error_is_infinite():
+    ratios = np.array([1.0, 3.0, 100.0])
+    found = errors.orbit_errors(5, 0.65, 3.5, ratios, "displacement")["phase"]
+    assert np.isinf(found.values[0])
+    assert np.isfinite(found.values[1:]).all()
+
+
+@pytest.mark.parametrize("n", [1, 3])
+def test_the_error_of_the_height_of_elastic_impacts_is_that_of_half_a_contact(n):
+    """As r tends to 1, n ϖ times the error tends to 1/(1 + 2Λ sin φ/(nπ)²)."""
+    r = 1 - 1e-5
+    amplitude = 0.5
+    lift = amplitude * np.sin(restitution.impact_phase(n, r, amplitude))
+    ratios = np.array([1e3, 2e3])
+    found = errors.orbit_errors(n, r, amplitude, ratios, "displacement")["max_height"].values
+    first, second = n * ratios * found
+    # Extrapolation takes the next order in 1/ϖ away, and leaves 1 - r and the square, 1e-6.
+    expected = 1 / (1 + 2 * lift / (n * np.pi) ** 2)
+    assert 2 * second - first == pytest.approx(expected, abs=2e-5)
+
+
+def test_the_lowest_period_doublings():
+    ratios = np.geomspace(2, 100, 41)
+    r = 0.85
+    found, amplitudes = errors.lowest_period_doublings([1, 2, 3], r, ratios, "displacement")
+    np.testing.assert_allclose(found, [15.01, 8.14, 6.65], atol=0.005)
+    zeta = independent.restitution_to_damping(r)
+
+    def doubling(logarithm, n):
+        ratio = np.exp(logarithm)
+        angle = brentq(
+            lambda angle: independent.test_functions(n, ratio, zeta, "displacement", angle / ratio)[
+                1
+            ],
+            3.12,
+            3.155,
+            xtol=1e-15,
+        )
+        return independent.orbit(n, ratio, zeta, "displacement", angle / ratio)[0]
+
+    for n, ratio, amplitude in zip((1, 2, 3), found, amplitudes, strict=True):
+        near = np.log(ratio)
+        best = minimize_scalar(
+            lambda x, n=n: doubling(x, n),
+            bounds=(near - 0.1, near + 0.1),
+            method="bounded",
+            options={"xatol": 1e-8},
+        )
+        # The minimum is as exact as the amplitudes, its place half as exact.
+        assert amplitude == pytest.approx(best.fun, rel=1e-11)
+        assert near == pytest.approx(best.x, abs=1e-4)
+
+
+# Its lowest place, near ϖ = 15, is beyond either end.
+@pytest.mark.parametrize("ends", [(100, 1000), (2, 5)])
+def test_a_period_doubling_that_is_lowest_at_an_end_has_no_lowest_place(ends):
+    ratios = np.geomspace(*ends, 5)
+    place, amplitude = errors.lowest_period_doublings([1], 0.85, ratios, "displacement")
+    assert np.isnan(place).all()
+    assert np.isnan(amplitude).all()

@@ -1,0 +1,448 @@
+"""The figures: what is drawn is what the datasets have, and it can be read."""
+
+import subprocess
+import sys
+from functools import cache
+from itertools import combinations, pairwise
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
+from PIL import Image
+
+from bouncing_ball import datasets, drawing, figures
+
+REFERENCE = Path(__file__).parents[1] / "figures"
+NAMES = sorted(figures.FIGURES)
+SCHEMATICS = ("fig01", "fig04")
+DOMAINS = ("fig08", "fig09", "fig15")
+PHASES = ("phase", "release_phase")
+
+
+@cache
+def reference(name):
+    return datasets.read(REFERENCE / f"{name}.nc")
+
+
+def data_of(name):
+    """The datasets that a figure shows, to be changed."""
+    return [] if name in SCHEMATICS else [reference(name).copy(deep=True)]
+
+
+def laid_out(name, *data):
+    """A figure whose texts have their places."""
+    figure = figures.draw(name, *data)
+    with drawing.style():
+        figure.draw_without_rendering()
+    return figure
+
+
+@cache
+def of_reference(name):
+    """A figure of the reference, laid out."""
+    return laid_out(name, *data_of(name))
+
+
+def with_parameters(data, **changed):
+    given = drawing.parameters(data) | changed
+    return data.assign_attrs(parameters=datasets.json.dumps(given))
+
+
+def texts(figure):
+    """All texts that are visible, each with its content."""
+    found = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    # Axes make tick labels beyond their limits, which are not drawn.
+    every_axis = [axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
+    shown = {text for axis in every_axis for text in drawn_tick_labels(axis)}
+    every = {
+        text
+        for axis in every_axis
+        for tick in (*axis.majorTicks, *axis.minorTicks)
+        for text in (tick.label1, tick.label2)
+    }
+    return [text for text in found if text not in every or text in shown]
+
+
+def drawn_tick_labels(axis):
+    if not axis.axes.axison:
+        return []
+    low, high = sorted(axis.get_view_interval())
+    ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    return [tick.label1 for tick in ticks]
+
+
+def words(figure):
+    return [text.get_text() for text in texts(figure)]
+
+
+def assert_readable(figure):
+    """No text hides another one, and none is cut."""
+    boxes = []
+    with drawing.style():
+        for text in texts(figure):
+            box = text.get_window_extent()
+            assert text.get_fontsize() >= 8, text
+            assert figure.bbox.padded(0.5).contains(*box.min), text
+            assert figure.bbox.padded(0.5).contains(*box.max), text
+            boxes.append((text.get_text(), box))
+    for (one, first), (other, second) in combinations(boxes, 2):
+        # Boxes that only touch share no ink.
+        assert not first.padded(-1).overlaps(second.padded(-1)), (one, other)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_texts_are_inside_the_figure_and_do_not_overlap(name):
+    assert_readable(of_reference(name))
+
+
+LABELS = {
+    "fig01": ["$m$", "$g$", "$y(t)$", r"$M=\infty$", r"$a\,\sin(\Omega t)$", "impact: $r$"],
+    "fig02": ["$n=1$, $r=0.85$, $\\Lambda=1$", "ball $z$", "table $w$"],
+    "fig03": [*(f"$n={n}$" for n in range(1, 6)), "saddle-node", "period doubling, Eq. 8"],
+    "fig04": ["$k$", "$c$", r"$a\,\sin(\Omega t+\varphi)$"],
+    "fig05": ["$n=1$", "$r=1$, $\\Lambda=0.8$", r"frequency ratio $\varpi$"],
+    "fig06": ["$n=1$, $r=0.65$", "$\\Lambda=0.7$", "$\\Lambda=1$", "$\\Lambda=1.2$"],
+    "fig07": ["$z'_i$", "$z'_b$", "$z'_2$", r"$\tau_i=0$", r"$\tau_b$", r"$\tau_2=\tau_i+2\pi n$"],
+    "fig08": ["$n=1$, $r=0.85$", "$\\varpi=10^{4}$", "$\\varpi=2$", "joins permanent contact"],
+    "fig09": ["$n=2$, $r=0.85$", "$\\varpi=10^{4}$", "$\\varpi=10$", "$\\varpi=2$"],
+    "fig10": ["$n=2$, $r=0.85$", "$\\Lambda=1.1$", r"restitution model, $n\pi$"],
+    "fig11": ["$r=0.65$, $\\zeta=0.1359$", r"minimum, $2\zeta\sqrt{1-\zeta^2}$"],
+    "fig12": ["$n=1$, $r=0.65$, $\\Lambda=1$", "$\\varpi=100$", "table $w$"],
+    "fig13": ["$n=1$, $r=0.65$, $\\Lambda=1$", "$\\varpi=1$", "$\\varpi=5$", "restitution model"],
+    "fig14": [r"$\varpi_{h,1\%}=82.18$", "tolerance 1 %"],
+    "fig15": ["$n=2$, $r=0.65$", "restitution", "$\\varpi=10$"],
+    "fig16": [r"$\varpi_{PC,1\%}=9.812$", "printed: 6", r"restitution, $\Lambda_{CR}$"],
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_labels(name):
+    found = words(of_reference(name))
+    assert set(LABELS[name]) <= set(found)
+
+
+def branches(name, data):
+    """The branches of a figure of domains, and the phases that it shows."""
+    if name == "fig03":
+        families = [data.sel(n=n) for n in data.n]
+        exact = [family.sel(impact_map="exact") for family in families]
+        return [drawing.restitution_branch(*each) for each in zip(families, exact, strict=True)]
+    contacts = [data.sel(frequency_ratio=ratio) for ratio in data.frequency_ratio]
+    found = [drawing.spring_damper_branch(contact) for contact in contacts]
+    if name == "fig15":
+        variables = ("amplitude", "phase", "stable", "admissible")
+        rigid = xr.Dataset({each: data[f"restitution_{each}"] for each in variables})
+        found.append(drawing.restitution_branch(rigid, data))
+    return found
+
+
+def lines_of(figure, label):
+    return [line for line in figure.axes[0].lines if line.get_label() == label]
+
+
+def at(line, x, y):
+    """The places of a point on a line."""
+    return np.flatnonzero((line.get_xdata() == x) & (line.get_ydata() == y))
+
+
+@pytest.mark.parametrize("name", ["fig03", *DOMAINS])
+def test_line_styles_are_the_stability(name):
+    data, figure = reference(name), of_reference(name)
+    for branch in branches(name, data):
+        kinds = np.where(branch.stable, "stable", "unstable")
+        for phase in PHASES[: 1 if name == "fig03" else 2]:
+            for k in range(0, branch.sizes["point"] - 1, 25):
+                x, y = float(branch.amplitude[k]), float(branch[phase][k]) / np.pi
+                # A line begins or ends where the kind changes, so that the part beyond decides.
+                beyond = [
+                    line
+                    for kind in drawing.KINDS
+                    for line in lines_of(figure, kind)
+                    if (at(line, x, y) < len(line.get_xdata()) - 1).any()
+                ]
+                assert {line.get_label() for line in beyond} == {kinds[k]}
+    dashes = {kind: lines_of(figure, kind)[0].get_linestyle() for kind in ("stable", "unstable")}
+    assert dashes == {"stable": "-", "unstable": "--"}
+
+
+@pytest.mark.parametrize("name", ["fig03", *DOMAINS])
+def test_marks_are_at_the_special_points(name):
+    data, figure = reference(name), of_reference(name)
+    count = 0
+    for branch in branches(name, data):
+        special = branch.isel(special=np.flatnonzero(branch.special_amplitude.notnull()))
+        durations = special.get("special_contact_duration", xr.zeros_like(special.special_phase))
+        for phase in (special.special_phase, special.special_phase + durations):
+            for kind, x, y in zip(
+                special.special_kind.values,
+                special.special_amplitude.values,
+                phase.values / np.pi,
+                strict=True,
+            ):
+                marks = lines_of(figure, kind)
+                assert any(at(line, x, y).size for line in marks)
+                assert {line.get_marker() for line in marks} == {drawing.MARKS[kind]["marker"]}
+                # The line of the branch passes through it too.
+                curves = [line for each in drawing.KINDS for line in lines_of(figure, each)]
+                assert any(at(line, x, y).size for line in curves)
+                count += 1
+    assert count >= 4
+
+
+def test_the_end_of_a_branch_at_permanent_contact_is_marked():
+    data = reference("fig08")
+    marks = lines_of(of_reference("fig08"), "joins permanent contact")
+    end = data.sel(frequency_ratio=2.0).isel(point=0)
+    places = {(float(line.get_xdata()[0]), float(line.get_ydata()[0])) for line in marks}
+    assert places == {(float(end.amplitude), float(end[phase]) / np.pi) for phase in PHASES}
+
+
+def test_phases_of_a_stiff_contact_have_one_label_and_those_of_a_compliant_one_two():
+    found = words(of_reference("fig08"))
+    counts = [found.count(f"$\\varpi={ratio}$") for ratio in ("10^{4}", "10", "2")]
+    assert counts == [1, 2, 2]
+
+
+def test_both_phases_differ_in_width_and_lightness():
+    figure = of_reference("fig08")
+    looks = {(line.get_linewidth(), line.get_color()) for line in lines_of(figure, "stable")}
+    wide = [grey(colour) for width, colour in looks if width == drawing.WIDE]
+    narrow = [grey(colour) for width, colour in looks if width == drawing.NARROW]
+    assert len(wide) == len(narrow) == 3
+    assert all(light - dark > 0.2 for light, dark in zip(sorted(wide), sorted(narrow), strict=True))
+
+
+def grey(colour):
+    """The luminance of a colour as printers turn it to grey, from 0 to 1."""
+    return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
+
+
+def test_colours_differ_in_grey_and_from_the_paper():
+    for colour in drawing.COLOURS:
+        linear = np.array(to_rgb(colour)) ** 2.2
+        assert 1.05 / (np.dot(linear, (0.2126, 0.7152, 0.0722)) + 0.05) > 3
+    for one, other in pairwise(drawing.COLOURS):
+        assert abs(grey(one) - grey(other)) > 0.15
+    assert len(set(drawing.colours(9))) == 9
+
+
+def test_restitution_is_named_once_and_the_differences_are_shown():
+    data = reference("fig10")
+    figure = of_reference("fig10")
+    assert sum("$r=" in text for text in words(figure)) == 1
+    below = figure.axes[1]
+    curves = [line.get_ydata() for line in below.lines]
+    velocity = data.bounce_velocity.values
+    limit = float(data.restitution_bounce_velocity)
+    assert np.array_equal(curves[2], 100 * (velocity[2] - velocity[0]) / limit)
+    low, high = below.get_ylim()
+    assert low < np.min(curves) < np.max(curves) < high
+
+
+def test_the_summit_shows_both_models_apart():
+    data = reference("fig12")
+    low, high = of_reference("fig12").axes[1].get_ylim()
+    heights = [float(data.restitution_ball.max()), float(data.ball.isel(frequency_ratio=-1).max())]
+    assert low < min(heights) < max(heights) < high
+    assert heights[0] - heights[1] > 0.2 * (high - low)
+
+
+def test_a_motion_repeats_before_and_after_its_cycle():
+    data = reference("fig12")
+    period = 2 * np.pi
+    motions = [data.table.values, data.restitution_ball.values, *data.ball.values[::-1]]
+    for line, height in zip(of_reference("fig12").axes[0].lines, motions, strict=True):
+        for shift in (-1, 0, 1):
+            at_times = np.interp(data.table_phase.values / period + shift, *line.get_data())
+            assert at_times == pytest.approx(height)
+
+
+def test_an_error_that_changes_its_sign_is_zero_between():
+    data = reference("fig16")
+    axes = of_reference("fig16").axes[1]
+    ratio, error = axes.lines[0].get_data()
+    zero = ratio[np.argmin(error)]
+    assert error.min() == axes.get_ylim()[0]
+    near = np.abs(np.log(data.frequency_ratio / zero)).argsort().values[:2]
+    signs = np.sign(data.threshold_amplitude - data.restitution_threshold).values[near]
+    assert sorted(signs) == [-1, 1]
+    assert np.delete(error, np.argmin(error)) == pytest.approx(data.relative_error.values)
+
+
+def test_velocities_of_the_cycle_are_tangents():
+    data = reference("fig07")
+    axes = of_reference("fig07").axes[0]
+    arrows = [text for text in axes.texts if text.arrow_patch]
+    slopes = [np.subtract(text.xy, text.xyann) for text in arrows]
+    velocities = [dy / dx / (2 * np.pi) for dx, dy in slopes]
+    expected = [data.impact_velocity, data.bounce_velocity, data.impact_velocity]
+    assert velocities == pytest.approx([float(velocity) for velocity in expected])
+
+
+def test_a_legend_that_is_too_wide_has_fewer_columns():
+    with drawing.style():
+        figure, _ = drawing.panels(2.0)
+        drawing.legend_below(figure, {letter * 30: drawing.sample() for letter in "abc"}, 3)
+        figure.draw_without_rendering()
+    assert_readable(figure)
+
+
+# Other parameters
+
+
+def test_a_branch_without_orbits_is_named_above():
+    (data,) = data_of("fig08")
+    data.amplitude[1] = data.phase[1] = data.release_phase[1] = np.nan
+    data.special_amplitude[1] = data.special_phase[1] = np.nan
+    data.special_kind[1] = ""
+    figure = laid_out("fig08", data)
+    assert figure.axes[0].get_title().endswith("\nno branch for $\\varpi=10$")
+    assert "$\\varpi=10$" not in words(figure)
+    assert_readable(figure)
+
+
+def test_no_branch_at_all():
+    (data,) = data_of("fig15")
+    empty = [name for name in data.data_vars if data[name].dtype.kind == "f"]
+    assert_readable(laid_out("fig15", data.assign({name: np.nan * data[name] for name in empty})))
+
+
+def test_many_branches():
+    (data,) = data_of("fig08")
+    more = [data.assign_coords(frequency_ratio=data.frequency_ratio + k) for k in range(3)]
+    wide = xr.concat(
+        more, "frequency_ratio", data_vars="minimal", coords="minimal", compat="override"
+    )
+    assert_readable(laid_out("fig08", wide.assign_attrs(data.attrs)))
+
+
+def test_inadmissible_orbits_are_dotted_and_grazing_is_marked():
+    (data,) = data_of("fig09")
+    data.admissible[2, :100] = False
+    kinds = data.special_kind.astype(object)
+    kinds[2, 0] = "grazing"
+    data["special_kind"] = kinds
+    figure = laid_out("fig09", data)
+    dotted = lines_of(figure, "inadmissible")
+    assert [len(line.get_xdata()) for line in dotted] == [101, 101]
+    assert {line.get_marker() for line in lines_of(figure, "grazing")} == {"^"}
+    assert {"inadmissible", "grazing"} <= set(words(figure))
+
+
+@pytest.mark.parametrize(("name", "threshold"), [("fig14", np.inf), ("fig16", np.nan)])
+def test_no_threshold(name, threshold):
+    (data,) = data_of(name)
+    figure = laid_out(name, data.assign(error_threshold=threshold))
+    assert not any(r"\varpi_{" in text for text in words(figure))
+    assert_readable(figure)
+
+
+def test_another_tolerance_and_release_have_no_printed_value():
+    (data,) = data_of("fig16")
+    found = words(laid_out("fig16", with_parameters(data, tolerance=0.05)))
+    assert "tolerance 5 %" in found
+    assert not any("printed" in text for text in found)
+    force = words(laid_out("fig16", with_parameters(data, release="force")))
+    assert r"spring-damper, $\Lambda_F$" in force
+    assert not any("printed" in text or r"\sqrt" in text for text in force)
+
+
+def test_an_error_of_zero_and_without_orbits():
+    (data,) = data_of("fig14")
+    data.max_height[:40] = data.relative_error[:40] = np.nan
+    data.relative_error[50] = 0.0
+    assert_readable(laid_out("fig14", data))
+
+
+def test_a_case_without_orbits():
+    (data,) = data_of("fig10")
+    for variable in ("phase", "bounce_velocity"):
+        data[variable][0] = np.nan
+    figure = laid_out("fig10", data)
+    assert "$\\Lambda=1.1$ (no orbit)" in words(figure)
+    assert "$\\Lambda=1$" in figure.axes[1].get_ylabel()
+
+
+def test_one_case():
+    (data,) = data_of("fig05")
+    found = words(laid_out("fig05", data.isel(case=[1])))
+    assert {"$n=1$, $r=0.85$, $\\Lambda=1$", "spring-damper model"} <= set(found)
+
+
+def test_several_cases_of_the_poincare_map():
+    (data,) = data_of("fig13")
+    softer = data.assign_coords(amplitude=("case", [1.2]), case=["r = 0.65, Λ = 1.2"])
+    both = xr.concat([data, softer], "case", data_vars="minimal").assign_attrs(data.attrs)
+    both.phase[1] += 0.3
+    figure = laid_out("fig13", both)
+    assert {"$\\Lambda=1$", "$\\Lambda=1.2$"} <= set(words(figure))
+    assert_readable(figure)
+    nothing = data.assign(phase=np.nan * data.phase, release_phase=np.nan * data.phase)
+    assert "$n=1$, $r=0.65$, $\\Lambda=1$" in words(laid_out("fig13", nothing))
+
+
+# Files
+
+SETTINGS = {
+    "axes.grid": True,
+    "axes.spines.left": False,
+    "path.simplify": False,
+    "font.size": 20,
+    "font.family": "serif",
+    "lines.linewidth": 5,
+    "savefig.facecolor": "red",
+    "savefig.bbox": "tight",
+    "svg.fonttype": "none",
+    "svg.hashsalt": "another",
+    "axes.formatter.use_mathtext": True,
+    "mathtext.fontset": "cm",
+    "figure.constrained_layout.use": False,
+}
+
+
+def saved(folder, name, commit="abc123", settings=None):
+    """The bytes of both pictures of a figure."""
+    paths = folder / f"{name}.png", folder / f"{name}.svg"
+    with matplotlib.rc_context(settings):
+        drawing.save_picture(figures.draw(name, *data_of(name)), *paths, commit)
+    return [path.read_bytes() for path in paths]
+
+
+@pytest.mark.parametrize("name", ["fig04", "fig08", "fig16"])
+def test_settings_of_the_user_change_no_byte(tmp_path, name):
+    assert saved(tmp_path / "usual", name) == saved(tmp_path / "other", name, settings=SETTINGS)
+
+
+def test_pictures_name_the_commit_and_no_date(tmp_path):
+    png, svg = saved(tmp_path, "fig11")
+    with Image.open(tmp_path / "fig11.png") as picture:
+        assert picture.text == {"Description": "drawn at commit abc123"}
+        assert picture.width == 1050
+    assert b"drawn at commit abc123" in svg
+    assert b"dc:date" not in svg
+    other_png, other_svg = saved(tmp_path, "fig11", commit="def456")
+    assert other_svg == svg.replace(b"abc123", b"def456")
+    assert other_png != png
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fig11.png", "fig11.svg"]
+
+
+def test_a_picture_appears_whole_or_not_at_all(tmp_path):
+    (tmp_path / "fig01.svg").mkdir()
+    with pytest.raises(OSError, match=r"fig01\.svg"):
+        saved(tmp_path, "fig01")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["fig01.png", "fig01.svg"]
+
+
+def test_drawing_imports_neither_pyplot_nor_scipy():
+    code = (
+        "import sys, bouncing_ball.figures\n"
+        "print([name for name in ('matplotlib.pyplot', 'scipy') if name in sys.modules])"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert answer.stdout.strip() == "[]"

@@ -1,0 +1,114 @@
+"""Table 1, the thresholds and the readings of Table 1 as texts."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bouncing_ball import tables
+
+BOUNDS = ["saddle-node", "period doubling"]
+PARAMETERS = {
+    "n": [1, 2, 3],
+    "restitution": 0.85,
+    "frequency_ratio": [1e4, 10.0, 2.0],
+    "release": "displacement",
+}
+
+
+@pytest.fixture
+def ends():
+    """One row of Table 1: an end that rounds to the printed one, and one that does not."""
+    return xr.Dataset(
+        {
+            "computed": (("frequency_ratio", "n", "bound"), [[[0.25471, 1.0383]]]),
+            "printed": (("frequency_ratio", "n", "bound"), [[[0.255, 1.032]]]),
+            "restitution_range": (
+                ("impact_map", "n", "bound"),
+                [[[0.25472, 1.0383]], [[0.25472, 1.03193]]],
+            ),
+        },
+        {"frequency_ratio": [1e4], "n": [1], "bound": BOUNDS, "impact_map": ["exact", "holmes"]},
+        {"parameters": json.dumps(PARAMETERS)},
+    )
+
+
+def test_each_printed_end_has_its_verdict(ends):
+    header, *rows = tables.table1(ends)
+    assert header == ["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]
+    assert rows[0][3:] == ["0.25471", "0.255", "-0.3 units, -0.11 %", "reproduced"]
+    assert rows[1][3:] == ["1.03830", "1.032", "+6.3 units, +0.61 %", "not to the digit"]
+    assert [row[0] for row in rows[2:]] == [
+        "restitution model, Eq. 5",
+        "restitution model, Eq. 5",
+        "restitution model, Eqs. 7 and 8",
+        "restitution model, Eqs. 7 and 8",
+    ]
+    assert rows[5][3:] == ["1.03193", "", "", ""]
+
+
+def test_an_end_beyond_one_per_cent_is_contradicted(ends):
+    ends["computed"][0, 0, 1] = 1.0424
+    assert tables.table1(ends)[2][-1] == "contradicted"
+
+
+def test_an_end_that_does_not_exist_has_no_number(ends):
+    ends["computed"][0, 0, 1] = np.nan
+    assert tables.table1(ends)[2][3:] == ["–", "1.032", "", "not computed"]
+
+
+def test_an_end_that_is_not_printed_has_no_verdict(ends):
+    ends["printed"][0, 0, 1] = np.nan
+    assert tables.table1(ends)[2][3:] == ["1.03830", "", "", ""]
+
+
+def test_table_1_under_other_parameters_is_not_judged(ends):
+    ends.attrs["parameters"] = json.dumps(PARAMETERS | {"restitution": 0.7})
+    assert [row[-1] for row in tables.table1(ends)[1:3]] == ["not asked", "not asked"]
+
+
+def test_a_threshold_outside_of_the_scan_is_a_bound():
+    data = xr.Dataset(
+        {
+            "error_threshold": (("quantity", "tolerance"), [[np.nan, 82.1774, np.nan]]),
+            "threshold_status": (("quantity", "tolerance"), [["within", "found", "outside"]]),
+        },
+        {
+            "quantity": ["max_height"],
+            "tolerance": [0.1, 0.01, 0.005],
+            "frequency_ratio": [20.0, 50.0, 100.0],
+        },
+    )
+    assert tables.thresholds(data) == [
+        ["quantity", "10 %", "1 %", "0.5 %"],
+        ["greatest height", "< 20", "82.177", "> 100"],
+    ]
+
+
+def test_the_readings_have_their_distances_and_counts():
+    by_rows = ("reading", "rows")
+    data = xr.Dataset(
+        {
+            "largest_difference": (by_rows, [[6.304, 5.441], [67.718, np.nan]]),
+            "rms_difference": (by_rows, [[3.3, 2.9], [28.6, np.nan]]),
+            "reproduced": (by_rows, [[4, 1], [6, 0]]),
+            "entries": ("rows", [18, 12]),
+            "unreachable": ("reading", [3, 6]),
+            "rank": ("reading", [1, 2]),
+        },
+        {"reading": ["equations as they stand", "other"], "rows": ["all rows", "compliant rows"]},
+    )
+    header, first, second = tables.table1_readings(data)
+    assert header[2:4] == ["largest, all rows", "rms, all rows"]
+    assert first[:4] == ["1", "equations as they stand", "6.30", "3.30"]
+    assert first[-3:] == ["4 of 18", "1 of 12", "3"]
+    assert second[4:6] == ["–", "–"]
+
+
+def test_markdown_and_csv_have_the_same_cells():
+    rows = [["a, b", "c"], ["1", "2"]]
+    assert tables.markdown(rows) == "| a, b | c |\n| --- | --- |\n| 1 | 2 |\n"
+    assert list(csv.reader(io.StringIO(tables.comma_separated(rows)))) == rows

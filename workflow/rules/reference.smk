@@ -1,0 +1,43 @@
+# The accepted results in git, figures/, paper.md and supplement.md, are the reference. Only the rule
+# `accept` writes to them. Both rules have no outputs, so that they run whenever they are named.
+
+
+rule diff:
+    """Compares the results with the reference: results/diff/index.html"""
+    localrule: True
+    input:
+        results=requested_files,
+        code=code("compare"),
+    params:
+        names=requested,
+        artifacts={name: description(name) for name in ARTIFACTS},
+        reference=checkout("."),
+    log:
+        "results/logs/diff.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/compare.py"
+
+
+rule accept:
+    """Makes the results the new reference"""
+    localrule: True
+    input:
+        results=requested_files,
+        code=code("accept"),
+    params:
+        names=requested,
+        artifacts={name: description(name) for name in ARTIFACTS},
+        reference=checkout("."),
+    log:
+        "results/logs/accept.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/accept.py"
+
+
+# If a figure fails, the page of an earlier comparison would be taken for that of this run.
+onstart:
+    shell("rm -rf results/diff")

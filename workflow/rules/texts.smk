@@ -1,0 +1,56 @@
+# Tables, claims and the article are written from the datasets.
+
+
+rule table:
+    """Writes Table 1, the thresholds, or Table 1 under other readings as text"""
+    input:
+        data=["results/figures/{table}.nc"],
+        code=code("tables"),
+    output:
+        md=["results/figures/{table}.md"],
+        csv=[report("results/figures/{table}.csv", category="Tables", labels={"table": "{table}"})],
+    log:
+        "results/logs/{table}.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/tables.py"
+
+
+rule claims:
+    """The claims of the paper and their verdicts"""
+    input:
+        data=expand("results/figures/{name}.nc", name=DATASETS),
+        printed=checkout("config/table1_printed.csv"),
+        code=code("claims"),
+    output:
+        nc="results/figures/claims.nc",
+        md="results/figures/claims.md",
+        csv=report("results/figures/claims.csv", category="Tables", labels={"table": "claims"}),
+    log:
+        "results/logs/claims.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/claims.py"
+
+
+rule article:
+    """The article, its supplement and the list of figures"""
+    input:
+        data=expand("results/figures/{name}.nc", name=[*DATASETS, "claims"]),
+        templates=[
+            checkout(f"workflow/templates/{name}.md.j2")
+            for name in ("paper", "supplement", "figures")
+        ],
+        code=code("article"),
+    output:
+        paper="results/paper.md",
+        supplement="results/supplement.md",
+        figures="results/figures/README.md",
+    log:
+        "results/logs/article.log",
+    conda:
+        "../envs/environment.yaml"
+    script:
+        "../scripts/article.py"

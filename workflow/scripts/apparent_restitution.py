@@ -1,0 +1,98 @@
+"""Stage: stable n-T orbits of the spring-damper model along the frequency ratio (Figs. 5, 6, 10 and
+13).
+"""
+
+import sys
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.datasets import grid, save
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import Contact, damping_ratio
+
+
+def along_frequency_ratio(
+    n: int, r: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: str
+) -> xr.Dataset:
+    """The quantities of the orbits, shape (case, ϖ), NaN where there is none."""
+    family = Family(n, Contact(ratios, damping_ratio(r)[:, np.newaxis], release))
+    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release))
+    del quantities["amplitude"]
+    shape = ("case", "frequency_ratio")
+    labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]
+    return xr.Dataset(
+        {name: (shape, values) for name, values in quantities.items()},
+        {
+            "case": labels,
+            "frequency_ratio": ratios,
+            "restitution": ("case", r),
+            "amplitude": ("case", amplitude),
+        },
+    )
+
+
+def with_limits(dataset: xr.Dataset, n: int) -> xr.Dataset:
+    """With phase and velocities of the restitution model, the limits of a stiff contact."""
+    phases = restitution.impact_phase(n, dataset.restitution.values, dataset.amplitude.values)
+    velocity = float(restitution.bounce_velocity(n))
+    return dataset.assign(
+        restitution_phase=("case", phases),
+        restitution_bounce_velocity=velocity,
+        restitution_impact_velocity=-velocity,
+    )
+
+
+def cases(parameters: dict, release: str) -> xr.Dataset:
+    """Pairs of r and Λ (Figs. 5 and 6)."""
+    r = np.array([each["restitution"] for each in parameters["cases"]])
+    amplitude = np.array([each["amplitude"] for each in parameters["cases"]])
+    ratios = grid(parameters["frequency_ratio"])
+    return along_frequency_ratio(parameters["n"], r, amplitude, ratios, release)
+
+
+def fig10(parameters: dict, release: str) -> xr.Dataset:
+    """One r and several Λ."""
+    n = parameters["n"]
+    amplitude = np.array(parameters["amplitude"])
+    r = np.full(amplitude.shape, parameters["restitution"])
+    ratios = grid(parameters["frequency_ratio"])
+    return with_limits(along_frequency_ratio(n, r, amplitude, ratios, release), n)
+
+
+def fig13(parameters: dict, release: str) -> xr.Dataset:
+    """As Fig. 10, with the frequency ratios 2, 5 and the decades added, which are labelled."""
+    n = parameters["n"]
+    amplitude = np.array(parameters["amplitude"])
+    r = np.full(amplitude.shape, parameters["restitution"])
+    ratios = grid(parameters["frequency_ratio"])
+    round_values = np.array([0.1, 1, 2, 5, *10.0 ** np.arange(1, 7)])
+    # The ends of the grid, and decades inside, are round up to rounding errors.
+    inside = round_values >= ratios[0] * (1 - 1e-12)
+    inside &= round_values <= ratios[-1] * (1 + 1e-12)
+    near = np.abs(ratios[:, np.newaxis] / round_values[inside] - 1).min(axis=1) < 1e-12
+    merged = np.sort(np.concatenate([ratios[~near], round_values[inside]]))
+    dataset = with_limits(along_frequency_ratio(n, r, amplitude, merged, release), n)
+    return dataset.assign(labelled=("frequency_ratio", np.isin(merged, round_values)))
+
+
+STAGE = {
+    "fig05": (
+        cases,
+        "Figure 5: apparent restitution along the frequency ratio, by restitution and amplitude",
+    ),
+    "fig06": (cases, "Figure 6: apparent restitution along the frequency ratio, by amplitude"),
+    "fig10": (fig10, "Figure 10: bouncing-off velocity along the frequency ratio"),
+    "fig13": (fig13, "Figure 13: Poincaré map of both models along the frequency ratio"),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    release = snakemake.params.release
+    for name, (compute, title) in STAGE.items():
+        parameters = snakemake.params.config[name]
+        dataset = compute(parameters, release)
+        known = {**parameters, "release": release}
+        save(dataset, snakemake.output[name], title, known, snakemake.input.code)

@@ -1,0 +1,191 @@
+"""Stage: branches of n-T orbits along Λ, and their bifurcations (Figs. 8, 9 and 15, Table 1)."""
+
+import csv
+import sys
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import Branch, NoOrbit, bifurcations, branch
+from bouncing_ball.datasets import grid, save
+from bouncing_ball.errors import lowest_period_doublings
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import Contact, damping_ratio
+
+BOUNDS = ("saddle-node", "period doubling")
+
+
+def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
+    """The branch of a family; if it cannot be followed, NaN, with the reason at its ends."""
+    r = parameters["restitution"]
+    points = parameters["points"]
+    try:
+        return branch(family, r, parameters["amplitude_max"], points, largest_step)
+    except NoOrbit as error:
+        return Branch(np.full((4, points), np.nan), [], (str(error), str(error)))
+
+
+def padded(values: list, count: int, fill) -> list:
+    """A list that is filled up to a length."""
+    return [*values, *[fill] * (count - len(values))]
+
+
+def branches(
+    parameters: dict, ratios: list[float], release: str, largest_step: float
+) -> xr.Dataset:
+    """The branches of one family on contacts of several frequency ratios.
+
+    They have the quantities of the orbits, their multipliers, the special points, of which all
+    branches get as many as the one with most, and the reasons of the ends.
+    """
+    zeta = float(damping_ratio(parameters["restitution"]))
+    families = [Family(parameters["n"], Contact(ratio, zeta, release)) for ratio in ratios]
+    found = [followed(family, parameters, largest_step) for family in families]
+    if all(np.isnan(each.orbits).all() for each in found):
+        raise NoOrbit(found[0].ends[0])
+    count = max(len(each.special) for each in found)
+    rows = []
+    for family, each in zip(families, found, strict=True):
+        quantities = family.observables(each.orbits)
+        del quantities["max_height"]
+        multipliers = family.multipliers(each.orbits).T
+        ratio = family.contact.frequency_ratio
+        special = each.special
+        durations = [point.orbit[3] / ratio for point in special]
+        rows.append(
+            quantities
+            | {
+                "multiplier_real": multipliers.real,
+                "multiplier_imag": multipliers.imag,
+                "special_kind": padded([point.kind for point in special], count, ""),
+                "special_amplitude": padded([point.orbit[0] for point in special], count, np.nan),
+                "special_phase": padded([point.orbit[1] for point in special], count, np.nan),
+                "special_contact_duration": padded(durations, count, np.nan),
+                "special_arclength": padded([point.place for point in special], count, np.nan),
+                "end_reason": list(each.ends),
+            }
+        )
+    axes = {"multiplier": ("point", "multiplier"), "special": ("special",), "end": ("end",)}
+    variables = {"damping_ratio": zeta}
+    for name in rows[0]:
+        inner = axes.get(name.partition("_")[0], ("point",))
+        variables[name] = (("frequency_ratio", *inner), [row[name] for row in rows])
+    return xr.Dataset(
+        variables,
+        {
+            "frequency_ratio": ratios,
+            "point": np.arange(parameters["points"]),
+            "multiplier": [0, 1],
+            "special": np.arange(count),
+            "end": ["unstable side", "stable side"],
+        },
+    )
+
+
+def domains(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+    """One family on several contacts (Figs. 8 and 9)."""
+    return branches(parameters, parameters["frequency_ratio"], release, largest_step)
+
+
+def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+    """One family on one contact, and in the restitution model."""
+    n = parameters["n"]
+    r = parameters["restitution"]
+    dataset = branches(parameters, [parameters["frequency_ratio"]], release, largest_step)
+    x = float(restitution.saddle_node(n, r))
+    highest = np.sqrt(parameters["amplitude_max"] ** 2 - x**2)
+    lift = np.linspace(-highest, highest, parameters["points"])
+    doubling = float(restitution.period_doubling(n, r))
+    return dataset.assign(
+        restitution_amplitude=("point", np.hypot(x, lift)),
+        restitution_phase=("point", np.arctan2(lift, x)),
+        restitution_stable=("point", restitution.stable(r, lift)),
+        restitution_admissible=("point", lift > restitution.grazing_lift(n, r)),
+        saddle_node_amplitude=x,
+        saddle_node_phase=0.0,
+        period_doubling_amplitude=doubling,
+        period_doubling_phase=float(np.arccos(x / doubling)),
+    )
+
+
+def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
+    """Ranges of Λ in which the orbits are stable, computed and printed, and those of both maps of
+    the restitution model. An end beyond the largest amplitude is NaN.
+    """
+    n = parameters["n"]
+    r = parameters["restitution"]
+    ratios = parameters["frequency_ratio"]
+    contact = Contact(np.array(ratios), damping_ratio(r), release)
+    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in BOUNDS], axis=-1)
+    amplitude, phase, _, angle = np.where(ends[0] <= parameters["amplitude_max"], ends, np.nan)
+    duration = angle / np.array(ratios)[:, np.newaxis]
+    fold = restitution.saddle_node(n, r)
+    doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
+    unknown = [np.nan, np.nan]
+    shape = ("n", "frequency_ratio", "bound")
+    return xr.Dataset(
+        {
+            "computed": (shape, amplitude),
+            "special_phase": (shape, phase),
+            "special_contact_duration": (shape, duration),
+            "printed": (shape, [[printed.get((ratio, k), unknown) for ratio in ratios] for k in n]),
+            "restitution_range": (
+                ("impact_map", "n", "bound"),
+                [np.stack([fold, each], axis=-1) for each in doublings],
+            ),
+        },
+        {
+            "frequency_ratio": ratios,
+            "n": n,
+            "bound": list(BOUNDS),
+            "impact_map": ["exact", "holmes"],
+        },
+    ).transpose("impact_map", "frequency_ratio", "n", "bound")
+
+
+def read_printed(path: str) -> dict[tuple[float, int], list[float]]:
+    """The printed ends of Table 1 by frequency ratio and n."""
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {
+        (float(row["frequency_ratio"]), int(row["n"])): [float(row[bound]) for bound in BOUNDS]
+        for row in rows
+    }
+
+
+def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
+    """The ϖ at which the period doubling of each family is lowest, and its Λ there."""
+    n = parameters["n"]
+    ratios = grid(parameters["frequency_ratio"])
+    turns, amplitudes = lowest_period_doublings(n, parameters["restitution"], ratios, release)
+    return xr.Dataset(
+        {"period_doubling_turn": ("n", turns), "period_doubling_amplitude": ("n", amplitudes)},
+        {"n": n},
+    )
+
+
+TITLES = {
+    "fig08": "Figure 8: existence and stability domains of the spring-damper model, first family",
+    "fig09": "Figure 9: existence and stability domains of the spring-damper model, second family",
+    "fig15": "Figure 15: existence and stability domains of both models",
+    "table1": "Table 1: stability ranges over the amplitude",
+    "lowest_doubling": "Frequency ratio at which the period doubling is lowest, by family",
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    config = snakemake.params.config
+    release = snakemake.params.release
+    step = snakemake.params.largest_step
+    printed = read_printed(snakemake.input.printed)
+    computed = {
+        "fig08": domains(config["fig08"], release, step),
+        "fig09": domains(config["fig09"], release, step),
+        "fig15": fig15(config["fig15"], release, step),
+        "table1": table1(config["table1"], release, printed),
+        "lowest_doubling": lowest_doubling(config["lowest_doubling"], release),
+    }
+    for name, dataset in computed.items():
+        known = {**config[name], "release": release, "largest_step": step}
+        save(dataset, snakemake.output[name], TITLES[name], known, snakemake.input.code)

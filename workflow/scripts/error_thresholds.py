@@ -1,0 +1,83 @@
+"""Stage: from which frequency ratio on the restitution model is right (Fig. 14 and thresholds)."""
+
+import sys
+
+import xarray as xr
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.datasets import grid, save
+from bouncing_ball.errors import errors, orbit_errors, threshold
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import Contact, damping_ratio
+
+
+def fig14(parameters: dict, release: str) -> xr.Dataset:
+    """Greatest height in both models, and the ϖ from which on its error is tolerable (Eq. 37)."""
+    n = parameters["n"]
+    r = parameters["restitution"]
+    amplitude = parameters["amplitude"]
+    ratios = grid(parameters["frequency_ratio"])
+    family = Family(n, Contact(ratios, damping_ratio(r), release))
+    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release)[:, 0])
+    names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
+    error = orbit_errors(n, r, amplitude, ratios, release)["max_height"]
+    found = threshold(ratios, error, parameters["tolerance"])
+    return xr.Dataset(
+        {
+            **{name: ("frequency_ratio", quantities[name]) for name in names},
+            "restitution_max_height": float(restitution.max_height(n, r, amplitude)),
+            "relative_error": ("frequency_ratio", error.values),
+            "error_threshold": found.ratio,
+            "threshold_status": found.status,
+        },
+        {"frequency_ratio": ratios},
+    )
+
+
+def thresholds(parameters: dict, release: str) -> xr.Dataset:
+    """Errors of the quantities along ϖ, and the thresholds of each tolerance."""
+    ratios = grid(parameters["frequency_ratio"])
+    known = errors(
+        parameters["quantities"],
+        parameters["n"],
+        parameters["restitution"],
+        parameters["amplitude"],
+        ratios,
+        release,
+    )
+    tolerances = parameters["tolerances"]
+    found = [[threshold(ratios, each, value) for value in tolerances] for each in known.values()]
+    shape = ("quantity", "tolerance")
+    return xr.Dataset(
+        {
+            "relative_error": (
+                ("quantity", "frequency_ratio"),
+                [each.values for each in known.values()],
+            ),
+            "error_threshold": (shape, [[each.ratio for each in row] for row in found]),
+            "threshold_status": (shape, [[each.status for each in row] for row in found]),
+        },
+        {"quantity": list(known), "frequency_ratio": ratios, "tolerance": tolerances},
+    )
+
+
+STAGE = {
+    "fig14": (
+        fig14,
+        "Figure 14: greatest height of both models, and the threshold of the error",
+    ),
+    "thresholds": (
+        thresholds,
+        "Frequency ratio from which the error of the restitution model is tolerable",
+    ),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    release = snakemake.params.release
+    for name, (compute, title) in STAGE.items():
+        parameters = snakemake.params.config[name]
+        dataset = compute(parameters, release)
+        known = {**parameters, "release": release}
+        save(dataset, snakemake.output[name], title, known, snakemake.input.code)

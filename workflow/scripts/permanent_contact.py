@@ -1,0 +1,55 @@
+"""Stage: the threshold of permanent contact along the frequency ratio (Figs. 11 and 16)."""
+
+import sys
+
+import xarray as xr
+
+from bouncing_ball import restitution, spring_damper
+from bouncing_ball.datasets import grid, save
+from bouncing_ball.errors import permanent_contact_error, threshold
+
+
+def fig11(parameters: dict, release: str) -> xr.Dataset:
+    """Λ_SD with its lowest value (Eqs. 33 and 36), and Λ_CR (Eq. 9)."""
+    zeta = float(spring_damper.damping_ratio(parameters["restitution"]))
+    ratios = grid(parameters["frequency_ratio"])
+    lowest_ratio, lowest = spring_damper.lowest_permanent_contact(zeta, release)
+    thresholds = spring_damper.permanent_contact(ratios, zeta, release)
+    return xr.Dataset(
+        {
+            "threshold_amplitude": ("frequency_ratio", thresholds),
+            "minimum_threshold": lowest,
+            "minimum_frequency_ratio": lowest_ratio,
+            "restitution_threshold": restitution.PERMANENT_CONTACT,
+            "damping_ratio": zeta,
+        },
+        {"frequency_ratio": ratios},
+    )
+
+
+def fig16(parameters: dict, release: str) -> xr.Dataset:
+    """As Fig. 11, with the error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
+    zeta = float(spring_damper.damping_ratio(parameters["restitution"]))
+    ratios = grid(parameters["frequency_ratio"])
+    error = permanent_contact_error(ratios, zeta, release)
+    found = threshold(ratios, error, parameters["tolerance"])
+    return fig11(parameters, release).assign(
+        relative_error=("frequency_ratio", error.values),
+        error_threshold=found.ratio,
+        threshold_status=found.status,
+    )
+
+
+STAGE = {
+    "fig11": (fig11, "Figure 11: threshold of permanent contact along the frequency ratio"),
+    "fig16": (fig16, "Figure 16: threshold of permanent contact of both models"),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    release = snakemake.params.release
+    for name, (compute, title) in STAGE.items():
+        parameters = snakemake.params.config[name]
+        dataset = compute(parameters, release)
+        known = {**parameters, "release": release}
+        save(dataset, snakemake.output[name], title, known, snakemake.input.code)

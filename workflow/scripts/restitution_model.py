@@ -1,0 +1,103 @@
+"""Stage: the restitution model alone (Figs. 2 and 3, and three balls)."""
+
+import sys
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball import restitution
+from bouncing_ball.datasets import save
+
+
+def fig02(parameters: dict) -> xr.Dataset:
+    """Ball and table over some periods of the stable n-T orbit."""
+    n = parameters["n"]
+    amplitude = parameters["amplitude"]
+    phase = restitution.impact_phase(n, parameters["restitution"], amplitude)
+    time = np.linspace(0, parameters["periods"] * 2 * np.pi * n, parameters["samples"])
+    return xr.Dataset(
+        {
+            "ball": ("time", restitution.height(n, amplitude * np.sin(phase), time)),
+            "ball_velocity": ("time", restitution.velocity(n, time)),
+            "table": ("time", amplitude * np.sin(time + phase)),
+            "phase": float(phase),
+        },
+        {"time": time},
+    )
+
+
+def fig03(parameters: dict) -> xr.Dataset:
+    """Phases of n-T orbits against Λ, from the unstable to the stable side, at equal steps of the
+    lift; both period doublings, and the grazing orbit if it is within the range of Λ.
+    """
+    n = np.array(parameters["n"])
+    r = parameters["restitution"]
+    largest = parameters["amplitude_max"]
+    x = restitution.saddle_node(n, r)
+    lift = np.linspace(-1, 1, parameters["points"]) * np.sqrt(largest**2 - x**2)[:, np.newaxis]
+    grazing = np.array([restitution.grazing_lift(each, r) for each in n])
+    seen = np.hypot(x, grazing) <= largest
+    doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
+    shape = ("n", "point")
+    return xr.Dataset(
+        {
+            "amplitude": (shape, np.hypot(x[:, np.newaxis], lift)),
+            "phase": (shape, np.arctan2(lift, x[:, np.newaxis])),
+            "stable": (shape, restitution.stable(r, lift)),
+            "admissible": (shape, lift > grazing[:, np.newaxis]),
+            "grazing_amplitude": ("n", np.where(seen, np.hypot(x, grazing), np.nan)),
+            "grazing_phase": ("n", np.where(seen, np.arctan2(grazing, x), np.nan)),
+            "saddle_node_amplitude": ("n", x),
+            "saddle_node_phase": ("n", np.zeros_like(x)),
+            "period_doubling_amplitude": (("impact_map", "n"), doublings),
+            "period_doubling_phase": (("impact_map", "n"), np.arccos(x / doublings)),
+        },
+        {"n": n, "impact_map": ["exact", "holmes"], "point": np.arange(parameters["points"])},
+    )
+
+
+def three_balls(parameters: dict) -> xr.Dataset:
+    """After how many impacts the motion of each ball repeats, or how fast its neighbours separate.
+
+    All balls have the same phase and relative speed at their first impact.
+    """
+    r = parameters["restitution"]
+    amplitudes = np.array(parameters["amplitude"])
+    phase = parameters["phase"]
+    rows = []
+    for amplitude in amplitudes:
+        velocity = amplitude * np.cos(phase) + r * parameters["impact_speed"]
+        path = restitution.simulate(r, amplitude, phase, velocity, parameters["impacts"])
+        impacts, periods = restitution.repetition(path)
+        exponent = (np.nan, np.nan)
+        if not impacts and not path.stickings:
+            exponent = restitution.lyapunov_exponent(path)
+        rows.append((impacts, periods, path.stickings, *exponent))
+    impacts, periods, stickings, exponents, errors = zip(*rows, strict=True)
+    return xr.Dataset(
+        {
+            "impacts": ("amplitude", list(impacts)),
+            "periods": ("amplitude", list(periods)),
+            "stickings": ("amplitude", list(stickings)),
+            "lyapunov_exponent": ("amplitude", list(exponents)),
+            "lyapunov_error": ("amplitude", list(errors)),
+        },
+        {"amplitude": amplitudes},
+    )
+
+
+STAGE = {
+    "fig02": (fig02, "Figure 2: n-T response of the restitution model"),
+    "fig03": (fig03, "Figure 3: existence and stability domains of the restitution model"),
+    "three_balls": (
+        three_balls,
+        "Periodic, subharmonic and chaotic motion of the restitution model",
+    ),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    for name, (compute, title) in STAGE.items():
+        parameters = snakemake.params.config[name]
+        dataset = compute(parameters)
+        save(dataset, snakemake.output[name], title, parameters, snakemake.input.code)

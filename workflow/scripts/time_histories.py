@@ -1,0 +1,102 @@
+"""Stage: heights of ball and table over a cycle (Figs. 7 and 12)."""
+
+import sys
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.datasets import save
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import Contact, damping_ratio
+
+# Quantities of each orbit in the datasets.
+STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
+
+
+def fig07(parameters: dict, release: str) -> xr.Dataset:
+    """One cycle from the start of the contact.
+
+    Half of the samples are in the contact, because it may last a hundredth of the cycle.
+    """
+    n = parameters["n"]
+    r = parameters["restitution"]
+    amplitude = parameters["amplitude"]
+    ratio = parameters["frequency_ratio"]
+    family = Family(n, Contact(ratio, damping_ratio(r), release))
+    y = stable_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
+    orbit = family.observables(y)
+    half = parameters["samples"] // 2
+    during = np.linspace(0, orbit["contact_duration"], half)
+    # The last sample of the contact is its end, and that of the flight the next start.
+    after = np.linspace(orbit["contact_duration"], family.period, parameters["samples"] - half + 1)
+    time = np.concatenate([during, after[1:]])
+    height, velocity, _ = family.motion(y, time)
+    return xr.Dataset(
+        {
+            "ball": ("time", height),
+            "ball_velocity": ("time", velocity),
+            "table": ("time", amplitude * np.sin(time + orbit["phase"])),
+            "contact": ("time", np.arange(time.size) < half),
+            "frequency_ratio": ratio,
+            **{name: float(orbit[name]) for name in STATE},
+        },
+        {"time": time},
+    )
+
+
+def fig12(parameters: dict, release: str) -> xr.Dataset:
+    """One cycle of both models against the phase of the table.
+
+    The samples are at equal steps of the phase and at the starts and ends of all contacts, at which
+    the curves have corners.
+    """
+    n = parameters["n"]
+    r = parameters["restitution"]
+    amplitude = parameters["amplitude"]
+    ratios = np.sort(parameters["frequency_ratio"])
+    period = 2 * np.pi * n
+    families = [Family(n, Contact(ratio, damping_ratio(r), release)) for ratio in ratios]
+    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+    rows = [each.observables(y) for each, y in zip(families, orbits.T, strict=True)]
+    state = {name: np.array([row[name] for row in rows]) for name in STATE}
+    phase = float(restitution.impact_phase(n, r, amplitude))
+    corners = np.concatenate([[phase], state["phase"], state["phase"] + state["contact_duration"]])
+    table_phase = np.union1d(np.linspace(0, period, parameters["samples"]), corners % period)
+    balls = []
+    contacts = []
+    for family, y in zip(families, orbits.T, strict=True):
+        # By rounding, the start of a contact could be at the end of the cycle, and its end outside.
+        since = np.mod(table_phase - y[1] + 1e-13, period)
+        height, _, _ = family.motion(y, np.maximum(since - 1e-13, 0))
+        balls.append(height)
+        contacts.append(since <= y[3] / family.contact.frequency_ratio + 2e-13)
+    lift = amplitude * np.sin(phase)
+    shape = ("frequency_ratio", "table_phase")
+    return xr.Dataset(
+        {
+            "ball": (shape, balls),
+            "contact": (shape, contacts),
+            "restitution_ball": ("table_phase", restitution.height(n, lift, table_phase - phase)),
+            "table": ("table_phase", amplitude * np.sin(table_phase)),
+            "restitution_phase": phase,
+            **{name: ("frequency_ratio", values) for name, values in state.items()},
+        },
+        {"frequency_ratio": ratios, "table_phase": table_phase},
+    )
+
+
+STAGE = {
+    "fig07": (fig07, "Figure 7: one cycle of the spring-damper model"),
+    "fig12": (fig12, "Figure 12: time histories of both models"),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    release = snakemake.params.release
+    for name, (compute, title) in STAGE.items():
+        parameters = snakemake.params.config[name]
+        dataset = compute(parameters, release)
+        known = {**parameters, "release": release}
+        save(dataset, snakemake.output[name], title, known, snakemake.input.code)

@@ -301,7 +301,7 @@ def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
     """
     branch = branch.squeeze("frequency_ratio")
     special = branch.isel(special=branch["special_kind"].values != "")
-    places = np.concatenate([[0.0], special["special_arclength"], [1.0]])
+    places = np.concatenate([[0.0], complete(special["special_arclength"]), [1.0]])
     amplitude = branch["amplitude"].values
     ends = np.concatenate([amplitude[:1], special["special_amplitude"], amplitude[-1:]])
     middles = (places[:-1] + places[1:]) / 2
@@ -1476,7 +1476,7 @@ def each(data: xr.Dataset, group: str) -> list[dict]:
     chosen = data.isel(claim=data["group"].values == group)
     rows = []
     for place in range(chosen.sizes["claim"]):
-        row = {name: chosen[name].values[place].item() for name in chosen.variables}
+        row = {name: chosen[name][place].item() for name in chosen.variables}
         printed = row["printed_text"]
         row["computed"] = computed_text(row["found"], printed) if printed else ""
         row["distance"] = distance_text(row["deviation_units"], row["deviation"])

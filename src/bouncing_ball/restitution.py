@@ -51,7 +51,7 @@ def impact_phase(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
     It is NaN below the saddle-node.
 
     >>> round(float(impact_phase(1, 0.65, 1.0)), 4)
-    0.8415
+    0.8414
     """
     with np.errstate(invalid="ignore"):
         return np.arccos(saddle_node(n, r) / np.asarray(amplitude))

@@ -205,7 +205,7 @@ def permanent_contact_ratios(amplitude: float, zeta: float) -> tuple[float, floa
     They are NaN below the lowest Λ_SD.
 
     >>> [round(each, 4) for each in permanent_contact_ratios(0.99, 0.1359)]
-    [0.7208, 9.8114]
+    [0.7225, 9.8116]
     """
     middle = 1 - 2 * zeta**2
     with np.errstate(invalid="ignore"):

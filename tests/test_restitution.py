@@ -196,6 +196,26 @@ def test_motions_repeat_after_a_period_doubling_and_not_in_chaos():
     assert restitution.lyapunov_exponent(chaos)[0] > 0.1
 
 
+def test_repetition_needs_phases_and_velocities_of_the_last_quarter_of_the_impacts():
+    # 49 impacts that take 51 periods: the most that fit twice into the last 100 of 400.
+    turns = np.cumsum(np.full(400, 51 / 49))
+    time = 2 * np.pi * turns + np.sin(2 * np.pi * np.arange(400) / 49)
+    velocity = np.cos(2 * np.pi * np.arange(400) / 49)
+    growth = np.zeros(399)
+    settled = restitution.Impacts(time, velocity, growth, 0)
+    assert restitution.repetition(settled) == (49, 51)
+    # What happened before does not matter.
+    late = np.where(np.arange(400) < 300, velocity + 1, velocity)
+    assert restitution.repetition(restitution.Impacts(time, late, growth, 0)) == (49, 51)
+    for k in (300, 399):
+        moved = np.where(np.arange(400) == k, 1e-6, 0)
+        for other in (
+            restitution.Impacts(time + moved, velocity, growth, 0),
+            restitution.Impacts(time, velocity + moved, growth, 0),
+        ):
+            assert restitution.repetition(other) == (0, 0)
+
+
 # After the smaller amplitude the ball lands within half a radian.
 @pytest.mark.parametrize("amplitude", [1.01, 1.1])
 def test_a_ball_that_sticks_leaves_the_table_where_it_falls_faster(amplitude):

@@ -1222,67 +1222,42 @@ FORMULAS = [
         "Eqs. 1, 3 and 4",
         "height and velocity in flight",
         "restitution.height, restitution.velocity",
-        "test_restitution",
     ),
-    ("Eq. 2", "velocity after an impact", "restitution.impact_map", "test_restitution"),
+    ("Eq. 2", "velocity after an impact", "restitution.impact_map"),
     (
         "Eq. 5",
         "phase and velocity from one impact to the next",
         "restitution.impact_map, restitution.flight_time",
-        "test_restitution",
     ),
     (
         "Eq. 6",
         "velocity and phase of the n-T orbit",
         "restitution.bounce_velocity, restitution.impact_phase",
-        "test_restitution",
     ),
-    ("Eq. 7", "saddle-node", "restitution.saddle_node", "test_restitution"),
-    ("Eq. 8", "period doubling", "restitution.holmes_period_doubling", "test_claims"),
-    ("Eq. 9", "threshold of permanent contact", "restitution.PERMANENT_CONTACT", "test_claims"),
+    ("Eq. 7", "saddle-node", "restitution.saddle_node"),
+    ("Eq. 8", "period doubling", "restitution.holmes_period_doubling"),
+    ("Eq. 9", "threshold of permanent contact", "restitution.PERMANENT_CONTACT"),
     (
         "Eqs. 10-13",
         "equation of contact, and the motion that solves it",
         "spring_damper.Contact.motion",
-        "test_spring_damper",
     ),
-    ("Eqs. 14 and 15", "motion in flight", "orbits.Family.motion", "test_orbits"),
-    ("Eq. 16", "damping ratio", "spring_damper.damping_ratio", "test_spring_damper"),
-    (
-        "Eq. 17",
-        "apparent restitution coefficient",
-        "orbits.Family.apparent_restitution",
-        "test_orbits",
-    ),
-    (
-        "Eqs. 18-26",
-        "equations of the n-T orbits",
-        "orbits.Family.release, orbits.Family.equations",
-        "test_orbits",
-    ),
-    ("Eq. 27", "bouncing-off velocity", "orbits.Family.bounce_velocity", "test_orbits"),
+    ("Eqs. 14 and 15", "motion in flight", "orbits.Family.motion"),
+    ("Eq. 16", "damping ratio", "spring_damper.damping_ratio"),
+    ("Eq. 17", "apparent restitution coefficient", "orbits.Family.apparent_restitution"),
+    ("Eqs. 18-26", "equations of the n-T orbits", "orbits.Family.release, orbits.Family.equations"),
+    ("Eq. 27", "bouncing-off velocity", "orbits.Family.bounce_velocity"),
     (
         "Eqs. 28-33",
         "displacement in permanent contact, and its threshold",
         "spring_damper.permanent_contact",
-        "test_spring_damper",
     ),
-    (
-        "Eqs. 34 and 35",
-        "frequency ratios of a threshold",
-        "spring_damper.permanent_contact_ratios",
-        "test_spring_damper",
-    ),
-    (
-        "Eq. 36",
-        "lowest threshold",
-        "spring_damper.lowest_permanent_contact",
-        "test_spring_damper",
-    ),
-    ("Eqs. 37 and 38", "relative errors", "errors.relative_error", "test_claims"),
+    ("Eqs. 34 and 35", "ϖ of a threshold", "spring_damper.permanent_contact_ratios"),
+    ("Eq. 36", "lowest threshold", "spring_damper.lowest_permanent_contact"),
+    ("Eqs. 37 and 38", "relative errors", "errors.relative_error"),
 ]
-"""Equations of the paper, what they give, the members of this package that compute them, and the
-module of tests that checks them.
+"""Equations of the paper, what they give, and the members of this package that compute them. Each is
+compared with its printed form in tests/test_formulas.py.
 """
 
 
@@ -1418,10 +1393,10 @@ def judge(datasets: Mapping[str, xr.Dataset], printed: xr.DataArray) -> xr.Datas
             "item": equations,
             "statement": text,
             "decided_by": members,
-            "condition": f"tests/{tests}.py",
+            "condition": "tests/test_formulas.py",
             "verdict": "restored",
         }
-        for equations, text, members, tests in FORMULAS
+        for equations, text, members in FORMULAS
     ]
     columns = {name: ("claim", [row[name] for row in rows]) for name in rows[0]}
     return xr.Dataset(columns).set_coords("claim")

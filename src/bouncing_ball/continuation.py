@@ -343,6 +343,8 @@ def branch(
         raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
     reached = f"amplitude = {amplitude_max:g} is reached"
     path, reason = _follow(family, start, amplitude_max, largest_step)
+    if np.isnan(path).any():
+        raise NoOrbit(f"the end of a {family.n}-T branch is not found at ϖ = {ratio:g}")
     path = path[:, ::-1]
     orbits = _equal_chords(family, path, points)
     found = []

@@ -1256,7 +1256,7 @@ FORMULAS = [
     ("Eq. 36", "lowest threshold", "spring_damper.lowest_permanent_contact"),
     ("Eqs. 37 and 38", "relative errors", "errors.relative_error"),
 ]
-"""Equations of the paper, what they give, and the members of this package that compute them. Each is
+"""Equations of the paper, what they give, and the members that compute them. Each equation is
 compared with its printed form in tests/test_formulas.py.
 """
 

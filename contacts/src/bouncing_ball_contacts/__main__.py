@@ -1,7 +1,0 @@
-"""``python -m bouncing_ball_contacts``: the same as ``bouncing-ball``."""
-
-from bouncing_ball.cli.main import main
-
-# Tools that read docstrings import this module, too.
-if __name__ == "__main__":
-    main()

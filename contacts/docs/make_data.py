@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import xarray as xr
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from bouncing_ball.datasets.files import (
     CONVENTIONS,
     parameter_attributes,
@@ -41,6 +39,7 @@ from bouncing_ball_contacts.documents.measured_impacts_figures import (
     measured_impacts as draw_measured,
 )
 from bouncing_ball_contacts.documents.measured_impacts_figures import measured_table, shaker_table
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 DOCS = Path(__file__).resolve().parent
 DATA = DOCS / "data"

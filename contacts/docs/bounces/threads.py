@@ -8,8 +8,9 @@ import sys
 from importlib.util import find_spec
 
 from bouncing_ball_beyond.models.damping import damping_ratio, restitution_coefficient
-from bouncing_ball_contacts import Contact, EngineSetup, describe_contact, write_contact
 from bouncing_ball_contacts.contact.drops import drop_at_rest
+
+from bouncing_ball_contacts import Contact, EngineSetup, describe_contact, write_contact
 
 G = 9.81
 MASS, STIFFNESS = 0.5, 1e5

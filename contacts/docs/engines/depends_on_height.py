@@ -1,8 +1,7 @@
 """Rebound speed over impact speed of a ball dropped from several heights."""
 
-import numpy as np
-
 import bouncing_ball_beyond
+import numpy as np
 from bouncing_ball_beyond.models.damping import damping_ratio
 
 GRAVITY, OMEGA, R = 9.81, 200.0, 0.75  # m/s^2, rad/s, r of a free impact

@@ -1,8 +1,7 @@
 """The first three apexes of a dropped ball over those of a rigid one, by stiffness and r."""
 
-import numpy as np
-
 import bouncing_ball_beyond
+import numpy as np
 
 GRAVITY, HEIGHT = 9.81, 0.4  # m/s^2, m above the height at which the ball touches
 MASS = 2600 * 4 / 3 * np.pi * 0.1**3  # kg

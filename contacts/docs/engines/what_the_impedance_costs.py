@@ -1,7 +1,6 @@
 """Heights on a table of 20 Hz and 0.8 g: MuJoCo's impedances against a spring and a damper."""
 
 import numpy as np
-
 from bouncing_ball_beyond.models.contact_model import ContactModel
 from bouncing_ball_beyond.models.damping import Release, damping_ratio
 from bouncing_ball_beyond.models.spring_damper import SpringDamper

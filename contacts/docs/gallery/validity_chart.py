@@ -1,9 +1,9 @@
 """The validity chart with your contact: where is a restitution coefficient enough?"""
 
+import bouncing_ball_beyond
 import matplotlib.pyplot as plt
 import numpy as np
 
-import bouncing_ball_beyond
 import bouncing_ball_contacts
 
 ours = bouncing_ball_contacts.assess_contact(

@@ -91,8 +91,8 @@ class Bounce:
         If a quantity cannot be read, is out of its range, or contradicts another one.
     """
 
-    mass: Quantity
-    restitution: Quantity
+    mass: Quantity = None
+    restitution: Quantity = None
     drop_height: Quantity = None
     speed: Quantity = None
     radius: Quantity = None
@@ -107,6 +107,8 @@ class Bounce:
     given: Mapping[str, str] = field(init=False, default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
+        if self.mass is None:
+            raise Refused("the mass is missing: --mass '50 g' or mass='50 g'")
         units = {
             "mass": "kg",
             "drop_height": "m",
@@ -127,8 +129,9 @@ class Bounce:
         if self.density is not None:
             values["density"] = density_of(self.density)
             shown["density"] = show(values["density"], "kg/m^3", 4)
-        values["restitution"] = within("restitution", self.restitution, 0, 1)
-        shown["restitution"] = f"{values['restitution']:g}"
+        if self.restitution is not None:
+            values["restitution"] = within("restitution", self.restitution, 0, 1)
+            shown["restitution"] = f"{values['restitution']:g}"
         if self.friction is not None:
             values["friction"] = in_si("friction", self.friction, "")
             shown["friction"] = f"{values['friction']:g}"
@@ -394,6 +397,8 @@ def design(
     Refused
         If there is no such contact.
     """
+    if bounce.restitution is None:
+        raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
     row = engine_named(engine)
     problem = Problem(bounce, row, one_body)
     largest = within("tolerance", tolerance, 1e-4, 1)
@@ -714,7 +719,7 @@ class Design:
             lines.append(f"The row of the impulse is a restitution by number: {other}.")
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
-        lines += [f"{note[0].upper()}{note[1:]}." for note in row.notes]
+        lines += [f"{note}." for note in row.notes]
         return lines
 
     def __repr__(self) -> str:

@@ -427,7 +427,7 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
     return {"names": names[:2], "write": write, "read": read, "optional": (names[2],)}
 
 
-_BOTH = "give both bodies these numbers"
+_BOTH = "Give both bodies these numbers"
 _STEP_ONLY = "they take back what this time step damps, and hold for it only"
 _VERLET = SemiImplicit(pulls=True)
 _OVERLAP = "a grain is lost when its centre passes the wall"
@@ -446,9 +446,9 @@ _ALL = {
             optional=("solimp", "refsafe"),
             ran="MuJoCo 4.0.0",
             notes=(
-                "solref is per unit of mass, so that it is the same for every mass and for two "
+                "The numbers of solref are per unit of mass: they hold for every mass, and for two "
                 "free bodies",
-                "give both geoms the class: MuJoCo averages their solimp",
+                "Give both geoms the class, because MuJoCo averages their solimp",
             ),
             friction="MuJoCo: condim 1 and 3 keep r; with the pyramidal cone 4 and 6 lower it "
             '(0.706 and 0.643 where 0.75 was designed), cone="elliptic" does not',
@@ -468,7 +468,7 @@ _ALL = {
             ran="PyBullet 3.2.7",
             notes=(
                 f"{_BOTH}; {_STEP_ONLY}",
-                "a box has its four points at once on a box, and one or two on GEOM_PLANE",
+                "A box has its four points at once on a box, and one or two on GEOM_PLANE",
             ),
             impulse="restitution of both bodies, multiplied",
         ),
@@ -483,7 +483,7 @@ _ALL = {
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(f"{_BOTH}; {_STEP_ONLY}", "a pair of shapes has one contact, a box as well"),
+            notes=(f"{_BOTH}; {_STEP_ONLY}", "A pair of shapes has one contact, a box as well"),
         ),
         DrakeDissipation(
             name="drake-hunt-crossley",
@@ -507,7 +507,7 @@ _ALL = {
             sets_pair=True,
             deepest=1.0,
             ran="LAMMPS 2025.7.22",
-            notes=("gamma_n is per unit of the (reduced) mass, and holds for this one only",),
+            notes=("The damping is per unit of the (reduced) mass, and holds for this one only",),
         ),
         Engine(
             name="lammps-limit-damping",
@@ -518,7 +518,7 @@ _ALL = {
             sets_pair=True,
             deepest=1.0,
             ran="LAMMPS 2025.7.22",
-            notes=("gamma_n is per unit of the (reduced) mass, and holds for this one only",),
+            notes=("The damping is per unit of the (reduced) mass, and holds for this one only",),
         ),
         Engine(
             name="lammps-hertz",
@@ -533,7 +533,7 @@ _ALL = {
             deepest=1.0,
             unit="N/m^1.5",
             ran="LAMMPS 2025.7.22",
-            notes=("kn is for this radius; e is the same at every speed",),
+            notes=("The modulus kn is for this radius; e is the same at every speed",),
         ),
         Engine(
             name="liggghts",
@@ -574,7 +574,7 @@ _ALL = {
             rules={"ke": MEAN, "kd": MEAN},
             defaults={"ke": 2500.0, "kd": 100.0},
             ran="Newton 1.8.0",
-            notes=("the damper acts while the bodies approach only", _BOTH),
+            notes=("The damper acts while the bodies approach only", _BOTH),
         ),
         Engine(
             name="newton-mujoco",
@@ -584,7 +584,7 @@ _ALL = {
             read=_read_newton_mujoco,
             meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
             rules={"ke": MEAN, "kd": MEAN},
-            notes=("keep mujoco:condim = 1: without it and without friction there are no numbers",),
+            notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
         ),
         Engine(
             name="genesis",
@@ -594,7 +594,7 @@ _ALL = {
             read=_read_genesis,
             meaning="timeconst = 2 m/c, dampratio = c/√(4 k m)",
             rules={"timeconst": MEAN, "dampratio": MEAN},
-            notes=("the same for every mass", _BOTH),
+            notes=("The numbers hold for every mass", _BOTH),
         ),
         Engine(
             name="physx",
@@ -603,8 +603,8 @@ _ALL = {
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             rules={"compliantContactStiffness": MEAN, "compliantContactDamping": MEAN},
             notes=(
-                f"solver PGS; {_STEP_ONLY}",
-                "contactOffset has to be longer than the way of the body in a step",
+                f"Use the solver PGS; {_STEP_ONLY}",
+                "The contactOffset has to be longer than the way of the body in a step",
             ),
             impulse="restitution of the material",
         ),
@@ -626,7 +626,7 @@ _ALL = {
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             rules={"soft_cfm": PAIR, "soft_erp": PAIR},
             sets_pair=True,
-            notes=(f"the numbers of a contact joint; {_STEP_ONLY}",),
+            notes=(f"These are numbers of a contact joint; {_STEP_ONLY}",),
             impulse="bounce of the contact joint",
         ),
         Engine(
@@ -636,7 +636,10 @@ _ALL = {
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             rules={"kp": SERIES, "kd": SUM},
             defaults={"kp": 1e12, "kd": 1.0},
-            notes=(f"{_BOTH}; {_STEP_ONLY}", "max_vel limits the speed of correction"),
+            notes=(
+                f"{_BOTH}; {_STEP_ONLY}",
+                "The snippet lifts max_vel, which limits the speed of correction",
+            ),
             impulse="restitution_coefficient of the surface",
         ),
         Engine(
@@ -645,7 +648,9 @@ _ALL = {
             **_forces(("kn", "gn"), per_mass=True),
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
             rules={"kn": MEAN, "gn": MEAN},
-            notes=("gn is per unit of the effective mass, so that it holds for this one only",),
+            notes=(
+                "The damping gn is per unit of the effective mass, and holds for this one only",
+            ),
         ),
         Engine(
             name="simscape",
@@ -656,7 +661,7 @@ _ALL = {
             rules={"stiffness": PAIR, "damping": PAIR, "transition": PAIR},
             sets_pair=True,
             fixed_steps=False,
-            notes=("the cubic transition is assumed; the manual does not give its formula",),
+            notes=("The transition is taken as cubic; the manual does not give its formula",),
         ),
         Engine(
             name="adams",

@@ -121,6 +121,41 @@ def design_command(script: str | None, as_json: bool, **options: Any) -> None:
     _print(found, as_json)
 
 
+def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
+    """Return the values of texts NAME=VALUE."""
+    found: dict[str, str] = {}
+    for text in pairs:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise Refused(f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5")
+        found[name.strip()] = value.strip()
+    return found
+
+
+@main.command("diagnose")
+@click.argument("parameters", nargs=-1, metavar="[NAME=VALUE]...")
+@_options(*_BODY[:1], _RESTITUTION, *_BODY[1:], _ENGINE, _STEP, _ONE_BODY, _JSON)
+@click.option("--other", multiple=True, help="NAME=VALUE of the other body, if it differs.")
+def diagnose_command(
+    parameters: tuple[str, ...], other: tuple[str, ...], as_json: bool, **options: Any
+) -> None:
+    """Say what bounce the numbers of an engine give, why, and the least change for yours.
+
+    Without numbers they are the engine's defaults.
+    """
+    from bouncing_ball_contacts.diagnosis import diagnose
+
+    found = diagnose(
+        Bounce(**_given(options)),
+        options["engine"],
+        _assigned(parameters),
+        options["time_step"],
+        other=_assigned(other),
+        one_body=options["one_body"],
+    )
+    _print(found, as_json)
+
+
 @main.command("engines")
 def engines_command() -> None:
     """List the engines, their parameters and whether they were run."""

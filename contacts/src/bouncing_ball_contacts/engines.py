@@ -134,7 +134,10 @@ class Engine:
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         """Return the parameters of the contact of two bodies."""
-        return {name: self.rules[name].of(value, other[name]) for name, value in one.items()}
+        both = {**other, **one}
+        return {
+            name: self.rules[name].of(value, other.get(name, value)) for name, value in both.items()
+        }
 
     def of_each(self, combined: Parameters) -> dict[str, Any]:
         """Return the parameters that both bodies need alike for those of their contact."""
@@ -584,6 +587,7 @@ _ALL = {
             read=_read_newton_mujoco,
             meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
             rules={"ke": MEAN, "kd": MEAN},
+            ran="Newton 1.8.0",
             notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
         ),
         Engine(
@@ -638,7 +642,7 @@ _ALL = {
             defaults={"kp": 1e12, "kd": 1.0},
             notes=(
                 f"{_BOTH}; {_STEP_ONLY}",
-                "The snippet lifts max_vel, which limits the speed of correction",
+                "The snippet lifts max_vel, which limits the correction",
             ),
             impulse="restitution_coefficient of the surface",
         ),
@@ -648,9 +652,7 @@ _ALL = {
             **_forces(("kn", "gn"), per_mass=True),
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
             rules={"kn": MEAN, "gn": MEAN},
-            notes=(
-                "The damping gn is per unit of the effective mass, and holds for this one only",
-            ),
+            notes=("The damping gn is per unit of the effective mass, and holds for it only",),
         ),
         Engine(
             name="simscape",

@@ -393,10 +393,11 @@ def _another(problem: Problem, step: float) -> str:
         return "no damping of this contact has the wanted r at this step"
     row = found.row
     values = ", ".join(f"{name} = {_typed(value)}" for name, value in row.parameters.items())
-    at = (
-        "" if math.isclose(row.step, step, rel_tol=1e-4) else f" at a step of {show(row.step, 's')}"
+    at = "" if math.isclose(row.step, step, rel_tol=1e-4) else f", at {show(row.step, 's')}"
+    return (
+        f"no damping of this contact has the wanted r at this step; {values} has "
+        f"{row.outcome.around}{at}"
     )
-    return f"no damping of this contact has the wanted r at this step; {values} has {row.outcome.around}{at}"
 
 
 def _least_change(pair: _Pair, step: float) -> Change | None:

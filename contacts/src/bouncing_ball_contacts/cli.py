@@ -156,6 +156,57 @@ def diagnose_command(
     _print(found, as_json)
 
 
+def _lines(text: str | None) -> tuple[int, ...]:
+    """Return the numbers of a text such as '4,7'."""
+    try:
+        return tuple(int(part) for part in (text or "").replace(",", " ").split())
+    except ValueError:
+        raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
+
+
+@main.command("fit")
+@click.argument("recording")
+@click.option("--speed", help="At which r is wanted; the middle of the impacts if not given.")
+@click.option("--resolution", help="Standard deviation of a reading, such as '0.7 ms'.")
+@click.option("--mass", help="Of the ball, for the drag of the air and the engine.")
+@click.option("--diameter", help="Of the ball, for the drag of the air.")
+@click.option("--leave-out", help="Lines of the file, such as 4,7.")
+@click.option("--engine", help="For which the contact is written.")
+@_options(_STEP, *_CONTACT, _JSON)
+def fit_command(
+    recording: str,
+    leave_out: str | None,
+    engine: str | None,
+    time_step: str | None,
+    tolerance: str,
+    pick: str | None,
+    script: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Read a recording of bounces: r over the speed, the laws it allows, and an engine's contact.
+
+    RECORDING is a file, or one of the published experiments, such as croquet.
+    """
+    from bouncing_ball_contacts.fits import fit
+
+    names = ("speed", "resolution", "mass", "diameter")
+    found = fit(recording, leave_out=_lines(leave_out), **{name: options[name] for name in names})
+    if engine is None:
+        if time_step is not None or script is not None:
+            raise Refused("the engine is missing: --engine mujoco")
+        _print(found, as_json)
+        return
+    contact = ("penetration", "stiffness", "contact_time", "friction")
+    bounce = found.bounce(**{name: options[name] for name in contact})
+    written = design(bounce, engine, time_step, tolerance=tolerance, pick=pick)
+    _write_script(written, script)
+    _print(found, as_json)
+    if not as_json:
+        click.echo()
+    _print(written, as_json)
+
+
 @main.command("engines")
 def engines_command() -> None:
     """List the engines, their parameters and whether they were run."""

@@ -8,8 +8,9 @@ where τ is the scatter between impacts, σ the error of a reading (a time, a he
 says how readings enter: an error of a time enters the flights on both of its sides. The slope and
 the curvature are those of a smooth curve. Measured laws have slopes between 0 and about -0.3, so
 that β₁ and β₂ have normal priors of the width 0.25 about 0; β₀ has none. The logarithm of σ is
-uniform on a grid; τ is 0 with the prior weight 0.2, and otherwise has a weight as √τ on one. For each τ and σ, β is normal (generalized least squares), so that r at
-a speed is a mixture of normal distributions over the grid, and the 95 % interval has its quantiles.
+uniform on a grid; τ is 0 with a prior weight of a half (a tenth if σ is stated), and otherwise has
+a weight as √τ on such a grid. For each τ and σ, β is normal (generalized least squares), so that ln r at a speed is a mixture of
+normal distributions over the grid, whose quantiles are the ends of the 95 % interval.
 
 A law is judged by how much worse it fits than the smooth curve without priors, for each τ and σ by
 the χ² distribution of the difference, averaged over the grid. Scatter alone, which both have,
@@ -40,11 +41,12 @@ _CURVATURE = 0.25
 # the median impact.
 _SCATTERS = np.array([0.0, *np.geomspace(3e-4, 0.06, 16)])
 _ERRORS = np.array([0.0, *np.geomspace(1e-4, 0.3, 19)])
-# Prior weights: that of no scatter at all, and the power of τ on the logarithmic grid. Between 0,
-# log τ uniform, and 1, τ uniform. Chosen by simulated recordings of seven impacts, with and without
-# scatter, so that intervals neither miss the scatter nor assume more of it than there is.
-_NO_SCATTER = 0.2
-_TILT = 0.5
+# Prior weights of no scatter at all, for unknown and for stated errors of the readings. If they are
+# unknown, scatter and errors explain the same deviations, and half of each is assumed; beside stated
+# errors the deviations themselves show a scatter. Chosen by simulated recordings of seven impacts,
+# so that intervals neither miss a scatter nor assume one that is not there.
+_NO_SCATTER = 0.5
+_NO_SCATTER_STATED = 0.1
 _LEVEL = 0.95
 REJECTED = 0.005
 """A law with a smaller probability is rejected."""
@@ -189,9 +191,9 @@ def posterior(impacts: Impacts, known: float | Array | None) -> Posterior:
         of_readings = impacts.readings @ impacts.readings.T
         sigmas = np.array([float(known)])
     scatter, sigma = (each.ravel() for each in np.meshgrid(_SCATTERS, sigmas))
-    some = (scatter > 0) | (sigma > 0)
-    scatter = scatter[some]
-    sigma = sigma[some]
+    has_errors = (scatter > 0) | (sigma > 0)
+    scatter = scatter[has_errors]
+    sigma = sigma[has_errors]
     covariances = scatter[:, None, None] ** 2 * unit + sigma[:, None, None] ** 2 * of_readings
     # Rounding errors of a covariance that is nearly singular stay below a millionth of r.
     covariances = covariances + 1e-12 * unit
@@ -199,8 +201,9 @@ def posterior(impacts: Impacts, known: float | Array | None) -> Posterior:
     powers = _powers(impacts, middle)
     prior = powers[:, 1:] @ np.diag([_SLOPE**2, _CURVATURE**2]) @ powers[:, 1:].T
     logs = _log_likelihood(impacts.log_r, covariances + prior)
-    slab = _SCATTERS[1:] ** _TILT
-    prior_weights = np.concatenate([[_NO_SCATTER], (1 - _NO_SCATTER) * slab / slab.sum()])
+    none = _NO_SCATTER if known is None else _NO_SCATTER_STATED
+    some = np.sqrt(_SCATTERS[1:])
+    prior_weights = np.array([none, *((1 - none) * some / some.sum())])
     logs = logs + np.log(np.interp(scatter, _SCATTERS, prior_weights))
     weights = np.exp(logs - logs.max())
     return Posterior(covariances, weights / weights.sum(), scatter)

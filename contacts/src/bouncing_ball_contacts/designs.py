@@ -47,11 +47,21 @@ IMPULSE = "impulse"
 
 _COARSE = offsets(21)
 _FINE = offsets(401)
-# Steps in a contact without damping: first those that most designs need, then finer ones.
-_STEPS = np.array([4.0, 5, 6, 8, 10, 12, 14, 17, 20, 25, 32, 40, 50])
-_MORE_STEPS = np.array([65.0, 85, 120, 170, 250, 400, 600])
-_AT_STEP = np.geomspace(2.5, 100, 14)
-_MORE_AT_STEP = np.geomspace(120, MOST_STEPS / 2, 12)
+# Steps in a contact without damping: first those that most designs need, then finer ones, in groups
+# because a group costs as much as its finest one.
+_STEPS = (
+    np.array([4.0, 5, 6, 8, 10, 12, 14, 17, 20, 25, 32, 40, 50]),
+    np.array([65.0, 85, 120]),
+    np.array([170.0, 250]),
+    np.array([400.0, 600]),
+)
+_AT_STEP = (
+    np.geomspace(2.5, 100, 14),
+    np.array([120.0, 150, 190]),
+    np.array([240.0, 300, 380]),
+    np.array([480.0, 600, 760]),
+    np.array([950.0, 1200, 1500]),
+)
 # A solver with error control is as good as this many steps in a contact.
 _CONTROLLED = 1000
 # ln r is found to this error, a tenth of the last printed digit of r.
@@ -461,7 +471,7 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
     if not problem.engine.fixed_steps:
         step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
         return _kept(problem, kept or limit, step, None, kept is not None)
-    for counts in (_STEPS, _MORE_STEPS):
+    for counts in _STEPS:
         depth = np.full(counts.shape, kept or limit)
         ratio: Array | None = None
         for _ in range(1 if kept else 3):
@@ -503,7 +513,7 @@ def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
     per_step = problem.bounce.impact_speed * step / math.pi
     deepest = problem.engine.deepest * problem.bounce.size
     best = None
-    for counts in (_AT_STEP, _MORE_AT_STEP):
+    for counts in _AT_STEP:
         tried = _tried(problem, counts * per_step, step, deepest)
         if tried is None:
             break

@@ -9,8 +9,9 @@ says how readings enter: an error of a time enters the flights on both of its si
 the curvature are those of a smooth curve. Measured laws have slopes between 0 and about -0.3, so
 that β₁ and β₂ have normal priors of the width 0.25 about 0; β₀ has none. The logarithm of σ is
 uniform on a grid; τ is 0 with a prior weight of a half (a tenth if σ is stated), and otherwise has
-a weight as √τ on such a grid. For each τ and σ, β is normal (generalized least squares), so that ln r at a speed is a mixture of
-normal distributions over the grid, whose quantiles are the ends of the 95 % interval.
+a weight as √τ on such a grid. For each τ and σ, β is normal (generalized least squares), so that
+ln r at a speed is a mixture of normal distributions over the grid, whose quantiles are the ends of
+the 95 % interval.
 
 A law is judged by how much worse it fits than the smooth curve without priors, for each τ and σ by
 the χ² distribution of the difference, averaged over the grid. Scatter alone, which both have,
@@ -41,10 +42,10 @@ _CURVATURE = 0.25
 # the median impact.
 _SCATTERS = np.array([0.0, *np.geomspace(3e-4, 0.06, 16)])
 _ERRORS = np.array([0.0, *np.geomspace(1e-4, 0.3, 19)])
-# Prior weights of no scatter at all, for unknown and for stated errors of the readings. If they are
-# unknown, scatter and errors explain the same deviations, and half of each is assumed; beside stated
-# errors the deviations themselves show a scatter. Chosen by simulated recordings of seven impacts,
-# so that intervals neither miss a scatter nor assume one that is not there.
+# Prior weights of no scatter at all, for unknown and for stated errors of the readings. Unknown
+# errors explain the same deviations as a scatter does, and both explanations have the same weight;
+# beside stated errors the deviations themselves show a scatter. Chosen by simulated recordings of
+# seven impacts, so that intervals neither miss a scatter nor assume one that is not there.
 _NO_SCATTER = 0.5
 _NO_SCATTER_STATED = 0.1
 _LEVEL = 0.95

@@ -184,14 +184,17 @@ class _Table:
 
 
 def _table(name: str, body: list[tuple[int, str]], leave_out: set[int]) -> _Table:
+    first_line = body[0][1]
     last = body[-1][1]
     delimiter: str | None = next((mark for mark in ("\t", ";") if mark in last), None)
     decimal_comma = delimiter is not None
     if delimiter is None and "," in last:
-        # One column of decimal commas, or columns that are separated by commas.
-        alone = all(re.fullmatch(r"\s*-?\d+,\d+\s*", line) for _, line in body[1:])
-        decimal_comma = alone
-        delimiter = "\0" if alone else ","
+        # Commas are decimal signs in a single column, whose heading has no comma.
+        one_column = all(_is_decimal(line) for _, line in body[1:])
+        decimal_comma = one_column and ("," not in first_line or _is_decimal(first_line))
+        delimiter = "\0" if decimal_comma else ","
+    elif delimiter is None and len(last.split()) < 2:
+        delimiter = "\0"
     cells = [
         [cell.strip().strip('"').strip() for cell in line.rstrip("\n").split(delimiter)]
         for _, line in body
@@ -229,6 +232,10 @@ def _table(name: str, body: list[tuple[int, str]], leave_out: set[int]) -> _Tabl
             names = [heading for heading, _ in split]
             units = [unit for _, unit in split]
     return _Table(np.array(rows, float), kept, names, units)
+
+
+def _is_decimal(line: str) -> bool:
+    return re.fullmatch(r"\s*-?\d+,\d+\s*", line) is not None
 
 
 def _heading(cell: str) -> tuple[str, str]:

@@ -30,8 +30,8 @@ MOST_STEPS = 3000
 """In a contact. Finer steps change r by less than 0.001, and are not computed."""
 # Below this share of the impact speed a body that creeps out of a contact counts as at rest. Its
 # speed then also has to be nearly constant, which it is not where the body turns.
-_REST = 1e-3
-_CREEPING = 1e-5
+_REST = 2e-3
+_CREEPING = 2e-5
 
 
 def offsets(count: int) -> Array:

@@ -214,10 +214,11 @@ def lammps(trial):
 
 
 def newton(trial):
-    import newton
     import warp
 
     warp.config.quiet = True
+    import newton
+
     names = {"newton": newton}
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, -trial.gravity))
     names["builder"] = builder

@@ -161,11 +161,10 @@ def _block_diagonal(blocks: list[Array]) -> Array:
 
 @dataclass(frozen=True)
 class Posterior:
-    """The grid of errors: covariances of ln r, their weights, and the scatter and error of each."""
+    """The grid of errors: covariances of ln r, and their weights."""
 
     covariances: Array
     weights: Array
-    scatter: Array
 
 
 def _powers(impacts: Impacts, at: float) -> Array:
@@ -207,7 +206,7 @@ def posterior(impacts: Impacts, known: float | Array | None) -> Posterior:
     prior_weights = np.array([none, *((1 - none) * some / some.sum())])
     logs = logs + np.log(np.interp(scatter, _SCATTERS, prior_weights))
     weights = np.exp(logs - logs.max())
-    return Posterior(covariances, weights / weights.sum(), scatter)
+    return Posterior(covariances, weights / weights.sum())
 
 
 def _log_likelihood(y: Array, covariances: Array) -> Array:
@@ -233,6 +232,18 @@ def predicted(impacts: Impacts, found: Posterior, at: float) -> tuple[Array, Arr
     return best[:, 0], np.sqrt(spread[:, 0, 0])
 
 
+def scatter_of(impacts: Impacts, found: Posterior) -> float:
+    """Return the root mean square of the errors of r about the likeliest smooth curve."""
+    n = len(impacts.log_r)
+    powers = _powers(impacts, math.exp(float(np.mean(np.log(impacts.speed)))))
+    inverse = np.linalg.inv(found.covariances[int(np.argmax(found.weights))])
+    information = powers.T @ inverse @ powers + np.diag([0, _SLOPE**-2, _CURVATURE**-2])
+    best = np.linalg.solve(information, powers.T @ inverse @ impacts.log_r)
+    errors = impacts.restitution - np.exp(powers @ best)
+    # A straight line takes two of the degrees of freedom.
+    return float(np.sqrt(np.sum(errors**2) / max(n - 2, 1)))
+
+
 def quantile(probability: float, means: Array, deviations: Array, weights: Array) -> float:
     """Return a quantile of a mixture of normal distributions, by bisection."""
     low = float(np.min(means - 12 * deviations))
@@ -253,7 +264,7 @@ def _constant(a: float, v: Array) -> Array:
 @functools.cache
 def _viscoelastic() -> tuple[Array, Array]:
     """Return ln r of p″ = -(p^(3/2) + A √p p′)₊ with p′ = 1 at first, over A."""
-    a = np.concatenate([[0.0], np.geomspace(1e-3, 3, 60)])
+    a = np.concatenate([[0.0], np.geomspace(1e-3, 3, 400)])
     h = 0.005
     p = np.zeros_like(a)
     v = np.ones_like(a)
@@ -277,17 +288,24 @@ def _kuwabara_kono(a: float, v: Array) -> Array:
     return np.interp(a * v**0.2, table, log_r)
 
 
-def _hunt_crossley(a: float, v: Array) -> Array:
-    """Return ln r with x (1 + r) = ln((1 + x)/(1 - x r)), x = a v."""
-    x = a * v
+@functools.cache
+def _hunt_and_crossley() -> tuple[Array, Array]:
+    """Return ln r over x, by bisection of x (1 + r) = ln((1 + x)/(1 - x r))."""
+    x = np.concatenate([[0.0], np.geomspace(1e-6, 1e3, 3000)])
     low = np.zeros_like(x)
     high = np.minimum(1.0, (1 - 1e-12) / np.maximum(x, 1e-12))
-    for _ in range(45):
+    for _ in range(50):
         r = (low + high) / 2
         above = x * (1 + r) < np.log1p(x) - np.log1p(-x * r)
         low = np.where(above, low, r)
         high = np.where(above, r, high)
-    return np.log(np.maximum(r, 1e-12))
+    # Below, rounding errors are larger than the next term of ln r = -2x/3.
+    return x, np.where(x < 1e-3, -2 * x / 3, np.log(r))
+
+
+def _hunt_crossley(a: float, v: Array) -> Array:
+    table, log_r = _hunt_and_crossley()
+    return np.interp(a * v, table, log_r)
 
 
 LAWS: dict[str, tuple[Callable[[float, Array], Array], float]] = {
@@ -454,7 +472,7 @@ class Fit:
         return [
             f"{title}: {len(v)} impacts at {span}, from {self.recording.kind}",
             f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {low:.4f} to {high:.4f}; "
-            f"r goes as v^{self.slope:+.3f}, and single impacts scatter by {self.scatter:.4f}",
+            f"r goes as v^{self.slope:+.3f}, and impacts scatter about it by {self.scatter:.4f}",
             "",
             *aligned(self.table),
             *(f"! {note}" for note in self.notes),
@@ -568,7 +586,7 @@ def fit(
         speed=at,
         restitution=math.exp(centre),
         interval=(math.exp(low), min(math.exp(high), 1.0)),
-        scatter=math.exp(centre) * float(found.weights @ found.scatter),
+        scatter=scatter_of(impacts, found),
         slope=float(found.weights @ steep) / (2 * math.log(1.05)),
         laws=tuple(laws),
         mass=kilograms,

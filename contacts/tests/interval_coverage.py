@@ -1,6 +1,7 @@
 """How often the 95 % interval of r holds the truth, in simulated recordings.
 
-``python tests/interval_coverage.py [RECORDINGS]`` prints a table: the share of recordings whose
+``python tests/interval_coverage.py [RECORDINGS]`` prints a table, the last eight lines of which are
+kinds that were made after the priors had been chosen: the share of recordings whose
 interval holds the true r; the median of its half width, beside the bound of 95 % of the errors of
 r, which is the half width that an ideal interval about the same r would have, and beside that of a
 straight line in ln v with known errors; and the share in which the true law is rejected, if it is
@@ -222,6 +223,57 @@ KINDS = [
         7e-4,
     ),
 ]
+# Kinds that were made after the priors of the fit had been chosen.
+FRESH = [
+    (
+        "12 impacts heard, 0.3 ms, scatter 0.005, v^-0.02",
+        partial(power, 0.9, -0.02),
+        None,
+        partial(flights, impacts=12, error=3e-4, scatter=0.005),
+    ),
+    (
+        "5 impacts heard, 1 ms, scatter 0.02",
+        partial(of_law, CONSTANT, 0.7),
+        CONSTANT,
+        partial(flights, impacts=5, error=1e-3, scatter=0.02, start=4.5),
+    ),
+    (
+        "3 recordings of 4 impacts, 0.5 ms, scatter 0.01",
+        partial(of_law, VISCOELASTIC, 0.6),
+        VISCOELASTIC,
+        partial(flights, impacts=4, error=5e-4, scatter=0.01, recordings=3, start=4.0),
+    ),
+    (
+        "6 impacts filmed, times rounded to 1/120 s, v^-0.05",
+        partial(power, 0.85, -0.05),
+        None,
+        partial(rounded, impacts=6, digits=1 / 120, scatter=0),
+    ),
+    (
+        "9 tops read to 1 mm, scatter 0.01",
+        SOFT,
+        VISCOELASTIC,
+        partial(tops, impacts=9, error=1e-3, scatter=0.01),
+    ),
+    (
+        "8 drops read to 2 mm, scatter 0.005, v^-0.1",
+        partial(power, 0.7, -0.1),
+        None,
+        partial(drops, heights=np.array([0.1, 0.3, 0.8, 1.8]), each=2, error=2e-3, scatter=0.005),
+    ),
+    (
+        "20 pairs of speeds to 0.01 m/s, scatter 0.01, Hunt and Crossley",
+        partial(of_law, CROSSLEY, 0.85),
+        CROSSLEY,
+        partial(speeds, v=np.linspace(0.5, 3, 20), error=0.01, scatter=0.01),
+    ),
+    (
+        "25 coefficients over a factor of 10, scatter 0.02, 1 - 0.05 v",
+        lambda v: 1 - 0.05 * np.asarray(v),
+        None,
+        partial(coefficients, v=np.geomspace(0.5, 5, 25), error=0, scatter=0.02, stated=False),
+    ),
+]
 
 
 def ideal(impacts, error, scatter, at):
@@ -271,7 +323,7 @@ def main():
         "a line with known errors | true law rejected, % |"
     )
     print("| --- | --- | --- | --- | --- | --- | --- |")
-    for i, kind in enumerate(KINDS):
+    for i, kind in enumerate(KINDS + FRESH):
         held, width, spread, best, rejected = study(kind, recordings, i)
         share = f"{100 * rejected / recordings:.1f}" if kind[2] else "–"
         print(

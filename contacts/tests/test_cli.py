@@ -30,6 +30,11 @@ def test_everything_in_json(typed):
     assert len(found["laws"]) == 3
 
 
+def test_without_a_command_the_help_is_shown(typed):
+    status, out, err = typed("")
+    assert (status, err) == (0, "") and "Examples:\n  bounce design" in out
+
+
 @pytest.mark.parametrize("command", ["", "design", "diagnose", "fit", "engines"])
 def test_help(typed, command):
     status, out, _ = typed(f"{command} --help")

@@ -67,9 +67,12 @@ Examples:
         )
 
 
-@click.group(cls=_Examples)
-def main() -> None:
+@click.group(cls=_Examples, invoke_without_command=True)
+@click.pass_context
+def main(context: click.Context) -> None:
     """The bounce of a physics engine: what to write, what numbers do, what a recording shows."""
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 def _plain(value: Any) -> Any:

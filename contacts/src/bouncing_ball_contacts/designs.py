@@ -157,7 +157,8 @@ class Bounce:
             shown["points"] = str(self.points)
         if self.other_mass is not None and self.speed is None:
             raise Refused("two free bodies need the speed with which they approach each other")
-        object.__setattr__(self, "given", shown)
+        first = {name: shown[name] for name in ("mass", "restitution") if name in shown}
+        object.__setattr__(self, "given", first | shown)
 
     def _require_one(self, *names: str) -> None:
         given = [name.replace("_", " ") for name in names if getattr(self, name) is not None]
@@ -699,7 +700,7 @@ class Design:
                     show(row.step, "s") if fixed else "–",
                     show(row.stiffness, unit),
                     show(found.depth[1], "m"),
-                    show(found.rest, "m"),
+                    show(found.rest, "m") if self.bounce.load else "–",
                     show(found.force[1], "N"),
                     found.around,
                 ]
@@ -724,9 +725,11 @@ class Design:
         if self.bounce.other_mass is not None:
             reduced = show(self.bounce.reduced_mass, "kg", 4)
             lines.append(f"Two free bodies act as one of the reduced mass {reduced}.")
-        if IMPULSE in self.rows and not text_of(f"{self.engine}-impulse"):
-            other = row.impulse or "PyBullet's, because this engine has none"
-            lines.append(f"The row of the impulse is a restitution by number: {other}.")
+        if IMPULSE in self.rows:
+            how = row.impulse or "PyBullet's, because this engine has none"
+            if text_of(f"{self.engine}-impulse"):
+                how = f"{how} (--pick impulse writes it)"
+            lines.append(f"The row of the impulse is a restitution by number: {how}.")
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
         lines += [f"{note}." for note in row.notes]

@@ -452,6 +452,7 @@ _ALL = {
                 "The numbers of solref are per unit of mass: they hold for every mass, and for two "
                 "free bodies",
                 "Give both geoms the class, because MuJoCo averages their solimp",
+                'With a condim of 4 or 6 r needs the option cone="elliptic"',
             ),
             friction="MuJoCo: condim 1 and 3 keep r; with the pyramidal cone 4 and 6 lower it "
             '(0.706 and 0.643 where 0.75 was designed), cone="elliptic" does not',

@@ -1,4 +1,7 @@
-"""Designs beside what their engines do: ``python tests/engine_table.py`` prints the table."""
+"""Designs beside what their engines do: ``python tests/engine_table.py [ENGINE]...``.
+
+It prints a table. The exit status is 1 if a design differs, or if its engine is not installed.
+"""
 
 import math
 import sys
@@ -192,6 +195,7 @@ def main():
         mark = "" if agrees else " (differs)"
         print("| " + " | ".join(texts) + mark + " |", flush=True)
     print(f"\n{agreed} of {len(cases)} designs agree with their engines.")
+    sys.exit(agreed < len(cases))
 
 
 if __name__ == "__main__":

@@ -213,9 +213,12 @@ def fit_command(
 @main.command("engines")
 def engines_command() -> None:
     """List the engines, their parameters and whether they were run."""
-    head = [["engine", "parameters, of both bodies alike", "run in"]]
-    rows = [[row.name, row.meaning, row.ran or "never run"] for row in ENGINES.values()]
-    click.echo("\n".join(aligned(head + rows)))
+    head = ["engine", "parameters, of both bodies alike", "steps", "two bodies", "run in"]
+    rows = [
+        [row.name, row.meaning, row.steps, row.pairs, row.ran or "never run"]
+        for row in ENGINES.values()
+    ]
+    click.echo("\n".join(aligned([head, *rows])))
 
 
 def run() -> None:

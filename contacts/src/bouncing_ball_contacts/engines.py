@@ -170,9 +170,15 @@ class Engine:
         return Impulsive() if isinstance(law, Impulse) else self.scheme
 
     @property
-    def title(self) -> str:
-        """What the engine is called, with what was run."""
-        return f"{self.name} ({f'run in {self.ran}' if self.ran else 'never run in its engine'})"
+    def steps(self) -> str:
+        """The scheme in a few words."""
+        return self.scheme.text if self.fixed_steps else "error-controlled"
+
+    @property
+    def pairs(self) -> str:
+        """How the parameters of two bodies are combined, in a few words."""
+        texts = dict.fromkeys(self.rules[name].text for name in dict.fromkeys(self.names))
+        return ", ".join(texts)
 
 
 @dataclass(frozen=True)

@@ -249,6 +249,9 @@ class Impulse(_Explicit):
 class Scheme(Protocol):
     """How an engine steps a contact."""
 
+    @property
+    def text(self) -> str: ...
+
     def touches(self, z: Array, free: Array, h: Array) -> Mask:
         """Return whether the contact acts in a step from z with the velocity `free`."""
 
@@ -266,6 +269,13 @@ class SemiImplicit:
 
     pulls: bool = False
     approach: bool = False
+
+    @property
+    def text(self) -> str:
+        """The scheme in a few words."""
+        if self.pulls:
+            return "semi-implicit, the damper pulls"
+        return "semi-implicit, damped on approach" if self.approach else "semi-implicit"
 
     def touches(self, z: Array, free: Array, h: Array) -> Mask:
         return z < 0
@@ -285,6 +295,11 @@ class Implicit:
 
     ahead: bool = False
 
+    @property
+    def text(self) -> str:
+        """The scheme in a few words."""
+        return "implicit, found ahead" if self.ahead else "implicit"
+
     def touches(self, z: Array, free: Array, h: Array) -> Mask:
         return z + h * free < 0 if self.ahead else z < 0
 
@@ -295,6 +310,11 @@ class Implicit:
 @dataclass(frozen=True)
 class Impulsive:
     """A body below the surface is thrown back by its restitution coefficient."""
+
+    @property
+    def text(self) -> str:
+        """The scheme in a few words."""
+        return "impulse"
 
     def touches(self, z: Array, free: Array, h: Array) -> Mask:
         return z < 0

@@ -209,14 +209,14 @@ KINDS = [
         partial(coefficients, v=NEAR, error=0.01, scatter=0, stated=False),
     ),
     (
-        "the first, resolution stated",
+        "7 impacts heard, 0.7 ms, resolution stated",
         FLAT,
         CONSTANT,
         partial(flights, impacts=7, error=7e-4, scatter=0),
         7e-4,
     ),
     (
-        "the second, resolution stated",
+        "7 impacts heard, 0.7 ms, scatter 0.01, resolution stated",
         FLAT,
         CONSTANT,
         partial(flights, impacts=7, error=7e-4, scatter=0.01),

@@ -126,6 +126,8 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
     path.write_text("interval [s]\n" + column(wrong))
     with pytest.raises(Refused, match="follows one of"):
         fit(path)
+    with pytest.raises(Refused, match="no line 99"):
+        fit(path, leave_out=(99,))
     found = fit(path, leave_out=(5,))
     assert len(found.impacts.speed) == 4
     assert found.restitution == pytest.approx(0.82, abs=1e-3)

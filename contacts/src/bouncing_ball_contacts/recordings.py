@@ -170,6 +170,8 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int]) -> Recording:
             body.append((number, line))
     if not body:
         raise Refused(f"{name} is empty")
+    if missing := leave_out - {number for number, _ in body}:
+        raise Refused(f"{name} has no line {min(missing)} of numbers to leave out")
     table = _table(name, body, leave_out)
     columns = _columns(name, table)
     return _measured(name, columns, head, table)

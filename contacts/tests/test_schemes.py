@@ -121,6 +121,30 @@ def test_the_sum_of_energies_is_kept_by_semi_implicit_steps_on_average():
     assert r.min() < 1.0 < r.max()
 
 
+def test_a_drop_is_that_of_a_ball_that_starts_from_rest():
+    """All steps of the fall, the contact and the rise, one by one."""
+    height, g, h, k, c = 0.1, 9.81, 5e-3, 3e3, 20.0
+    z, v, force = height, 0.0, 0.0
+    heights = []
+    for _ in range(200):
+        force = max(-k * z - c * v, 0.0) if z < 0 else 0.0
+        v += h * (force - g)
+        z += h * v
+        heights.append(z)
+    heights = np.array(heights)
+    first = int(np.argmax(heights < 0))
+    speed = (heights[first - 1] - heights[first]) / h
+    offset = -heights[first] / (speed * h)
+    after = heights[first:]
+    out = int(np.argmax(after >= 0))
+    law = Linear(np.asarray(k), np.asarray(c))
+    found = drop(law, SemiImplicit(), h, math.sqrt(2 * g * height), g, np.array([offset]))
+    assert float(found.depth[0]) == pytest.approx(-after[:out].min(), rel=1e-9)
+    # The highest of the steps is below the top of their parabola by at most g h²/8.
+    top = float(found.restitution[0]) ** 2 * height
+    assert 0 <= top - after[out : out + 30].max() <= g * h**2 / 8 + 1e-12
+
+
 def test_a_step_beyond_the_limit_of_stability_throws_the_body_out():
     law = Linear(np.asarray(1e6), np.asarray(0.0))
     assert drop(law, SemiImplicit(), 2.2e-3, 1.0, 0.0, AT).restitution.max() > 1.5

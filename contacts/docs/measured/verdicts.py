@@ -33,8 +33,9 @@ def draw(found):
         v = one.impacts.speed
         axes.plot(v, one.impacts.restitution, "ko", markersize=3)
         speeds = np.geomspace(v.min(), v.max(), 100)
-        for law in one.laws:
-            axes.plot(speeds, np.exp(LAWS[law.law][0](law.parameter, speeds)), label=law.law)
+        of = {law.law: law.parameter for law in one.laws}
+        for law, (log_r, _) in LAWS.items():
+            axes.plot(speeds, np.exp(log_r(of[law], speeds)), label=law)
         spread = np.ptp(one.impacts.restitution)
         middle = float(np.mean(one.impacts.restitution))
         axes.set(

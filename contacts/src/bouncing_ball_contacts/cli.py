@@ -28,6 +28,7 @@ def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Comm
 
 _BODY = [
     click.option("--mass", help="Mass of the body, such as '50 g'."),
+    click.option("--restitution", help="√(h′/h) that is wanted, 0 to 1."),
     click.option("--drop-height", help="Height of the drop; 1 m if no speed is given."),
     click.option("--speed", help="Impact speed, in place of the height."),
     click.option("--radius", help="Radius, or half the height of a box."),
@@ -49,7 +50,6 @@ _STEP = click.option("--time-step", help="Of the engine, such as '2 ms' or 1/240
 _ENGINE = click.option("--engine", default="generic", help="One of those of 'bounce engines'.")
 _ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps its defaults.")
 _JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
-_RESTITUTION = click.option("--restitution", help="√(h′/h) that is wanted, 0 to 1.")
 
 
 class _Examples(click.Group):
@@ -115,7 +115,7 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
 
 
 @main.command("design")
-@_options(*_BODY[:1], _RESTITUTION, *_BODY[1:], *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON)
+@_options(*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON)
 def design_command(script: str | None, as_json: bool, **options: Any) -> None:
     """Write the contact of an engine for the bounce that you want."""
     names = ("engine", "time_step", "tolerance", "one_body", "pick")
@@ -137,7 +137,7 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
 
 @main.command("diagnose")
 @click.argument("parameters", nargs=-1, metavar="[NAME=VALUE]...")
-@_options(*_BODY[:1], _RESTITUTION, *_BODY[1:], _ENGINE, _STEP, _ONE_BODY, _JSON)
+@_options(*_BODY, _ENGINE, _STEP, _ONE_BODY, _JSON)
 @click.option("--other", multiple=True, help="NAME=VALUE of the other body, if it differs.")
 def diagnose_command(
     parameters: tuple[str, ...], other: tuple[str, ...], as_json: bool, **options: Any

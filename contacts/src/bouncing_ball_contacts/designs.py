@@ -436,7 +436,15 @@ def design(
     if pick is not None:
         chosen = _picked(pick, rows, problem)
     notes += _notes(problem, rows[chosen], largest, chosen == WANTED)
-    return Design(bounce, row.name, one_body, step, rows, chosen, tuple(notes))
+    return Design(
+        bounce=bounce,
+        engine=row.name,
+        one_body=one_body,
+        time_step=step,
+        rows=rows,
+        chosen=chosen,
+        notes=tuple(notes),
+    )
 
 
 def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:

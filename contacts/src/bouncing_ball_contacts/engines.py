@@ -262,7 +262,14 @@ def _read_mujoco(p: Parameters, at: Setting) -> Law:
         k = -first / high**2
         b = -second / high
     return Impedance(
-        np.asarray(k), np.asarray(b), at.points, low, high, width, float(middle), power
+        stiffness=np.asarray(k),
+        damping=np.asarray(b),
+        points=at.points,
+        low=low,
+        high=high,
+        width=width,
+        middle=middle,
+        power=power,
     )
 
 

@@ -359,7 +359,15 @@ def _measured(
         duration = in_si("contact time", head["contact time"], "s")
     elif "duration" in have and np.isfinite(columns["duration"]).any():
         duration = float(np.nanmean(columns["duration"]))
-    return Recording(name, kind, tuple(chains), uncertainty, duration, head, tuple(notes))
+    return Recording(
+        name=name,
+        kind=kind,
+        chains=tuple(chains),
+        uncertainty=uncertainty,
+        duration=duration,
+        head=head,
+        notes=tuple(notes),
+    )
 
 
 def _pairs(name: str, lines: list[int], first: Array, second: Array, unit: str) -> Array:

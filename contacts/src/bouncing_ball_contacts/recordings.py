@@ -8,7 +8,7 @@ time, or a signal in which impacts stand out. Lines ``# key: value`` above it na
 
 import re
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
@@ -510,9 +510,3 @@ def _peaks(name: str, times: Array, signal: Array) -> Array:
     if len(starts) < 3:
         raise Refused(f"{name}: {len(starts)} impacts stand out of the signal: three are needed")
     return t[starts]
-
-
-def sources() -> Iterator[tuple[str, Recording]]:
-    """Yield the published experiments by their names."""
-    for name in experiments():
-        yield name, read(name)

@@ -403,7 +403,9 @@ def drop(
         leaves = inside & (z >= 0) & (v > 0)
         if leaves.any():
             if gravity:
-                rise = np.maximum(z + v**2 / (2 * gravity) - v * h / 2, 0.0)
+                # The highest of the steps that follow: n more of them raise the body.
+                n = np.floor(np.maximum(v, 0.0) / (gravity * h))
+                rise = np.maximum(z + n * h * v - gravity * h**2 * n * (n + 1) / 2, 0.0)
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
                 found = np.where(leaves, v / speed, found)

@@ -40,7 +40,7 @@ def test_the_croquet_ball():
     first = found.laws[0]
     assert first.law.startswith("Hertz") and first.rms == pytest.approx(0.0041, abs=1e-4)
     assert first.left_out == pytest.approx(0.0045, abs=1e-4)
-    assert "deviates" in repr(found) and "errors needed" in repr(found)
+    assert "deviates" in str(found) and "errors needed" in str(found)
     assert "<table>" in found._repr_html_()
 
 

@@ -90,7 +90,7 @@ def _plain(value: Any) -> Any:
 
 def _print(found: Any, as_json: bool) -> None:
     if not as_json:
-        click.echo(repr(found))
+        click.echo(str(found))
         return
     values = dataclasses.asdict(found)
     if isinstance(found, Design):

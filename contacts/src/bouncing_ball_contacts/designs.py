@@ -657,7 +657,7 @@ def _steps_in_contact(problem: Problem, row: Row) -> float:
 class Design:
     """The contacts that answer a question, by the names of their rows, and the one written.
 
-    Printed it is the table, the snippet and what was assumed; a notebook shows the table.
+    Its ``repr`` is the table with its notes; printed it also has the snippet and what was assumed.
     """
 
     bounce: Bounce
@@ -744,10 +744,10 @@ class Design:
         return lines
 
     def __repr__(self) -> str:
-        table = aligned(self.table)
-        notes = [f"! {note}" for note in self.notes]
-        snippet = self.snippet.splitlines()
-        return "\n".join([*table, *notes, "", *snippet, "", *self.remarks])
+        return "\n".join([*aligned(self.table), *(f"! {note}" for note in self.notes)])
+
+    def __str__(self) -> str:
+        return "\n".join([repr(self), "", self.snippet, "", *self.remarks])
 
     def _repr_html_(self) -> str:
         rows = "".join(

@@ -94,6 +94,9 @@ class Diagnosis:
         return ", ".join(f"{name} {value}" for name, value in self.bounce.given.items())
 
     def __repr__(self) -> str:
+        return "\n".join(self.lines[:2])
+
+    def __str__(self) -> str:
         return "\n".join(self.lines)
 
     def _repr_html_(self) -> str:

@@ -446,7 +446,6 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
 _BOTH = "Give both bodies these numbers"
 _STEP_ONLY = "they take back what this time step damps, and hold for it only"
 _VERLET = SemiImplicit(pulls=True)
-_OVERLAP = "a grain is lost when its centre passes the wall"
 _ALL = {
     engine.name: engine
     for engine in (

@@ -479,6 +479,9 @@ class Fit:
         ]
 
     def __repr__(self) -> str:
+        return "\n".join(self.lines[:2])
+
+    def __str__(self) -> str:
         return "\n".join(self.lines)
 
     def _repr_html_(self) -> str:

@@ -3,6 +3,7 @@
 import pytest
 
 from bouncing_ball_contacts import Bounce, Refused, design, diagnose
+from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM
 
 KILO = dict(mass="1 kg", radius="10 cm")
 
@@ -129,6 +130,12 @@ def test_one_body_with_a_spring_rests_by_the_spring_of_its_points():
     assert found.outcome.rest == pytest.approx(24.5e-3, abs=1e-4)
     both = asked(None, "pybullet", {"contactStiffness": 100, "contactDamping": 1}, "1/240")
     assert both.outcome.rest == pytest.approx(196e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize("rule", [SERIES, SUM, MEAN, PRODUCT, PAIR], ids=lambda rule: rule.text)
+def test_a_rule_and_its_inverses_agree(rule):
+    assert rule.of(rule.alike(0.3), rule.alike(0.3)) == pytest.approx(0.3)
+    assert rule.of(rule.alone(0.3, 0.9), 0.9) == pytest.approx(0.3)
 
 
 def test_two_bodies_may_have_two_materials():

@@ -113,6 +113,8 @@ def test_a_fit_is_a_bounce_for_an_engine():
     written = found.design("mujoco", "2 ms")
     assert written.bounce.restitution == pytest.approx(found.restitution)
     assert written.bounce.radius == pytest.approx(0.021)
+    other = fit("bouncy_ball", mass="20 g", diameter="30 mm").bounce()
+    assert (other.mass, other.radius) == (0.02, 0.015)
     with pytest.raises(Refused, match="mass is missing"):
         fit("bouncy_ball").design("mujoco", "2 ms")
     assert fit("croquet").bounce().contact_time == pytest.approx(7.314e-4)

@@ -33,7 +33,7 @@ from scipy import special
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive, show
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show
 
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
@@ -443,6 +443,7 @@ class Fit:
     slope: float
     laws: tuple[Judged, ...]
     mass: float | None
+    diameter: float | None
     notes: tuple[str, ...]
 
     @property
@@ -502,9 +503,8 @@ class Fit:
         }
         if self.recording.duration is not None and not given:
             more["contact_time"] = self.recording.duration
-        diameter = self.recording.head.get("diameter")
-        if diameter and more.get("radius") is None and more.get("density") is None:
-            more["radius"] = in_si("diameter", diameter, "m") / 2
+        if self.diameter is not None and more.get("radius") is more.get("density") is None:
+            more["radius"] = self.diameter / 2
         return Bounce(mass=body, restitution=min(self.restitution, 1.0), speed=self.speed, **more)
 
     def design(self, engine: str = "generic", time_step: Quantity = None, **more: Any) -> Design:
@@ -547,10 +547,10 @@ def fit(
     body = mass if mass is not None else head.get("mass")
     across = diameter if diameter is not None else head.get("diameter")
     kilograms = None if body is None else positive("mass", body, "kg")
+    wide = None if across is None else positive("diameter", across, "m")
     drag = 0.0
     if recording.kind in ("flights", "heights", "drops"):
-        if kilograms is not None and across is not None:
-            wide = positive("diameter", across, "m")
+        if kilograms is not None and wide is not None:
             drag = _AIR * _DRAG * math.pi * wide**2 / 8 / kilograms
             notes.append(f"the drag of the air is removed, {drag:.2g} of the speed per metre")
         else:
@@ -593,5 +593,6 @@ def fit(
         slope=float(found.weights @ steep) / (2 * math.log(1.05)),
         laws=tuple(laws),
         mass=kilograms,
+        diameter=wide,
         notes=tuple(notes),
     )

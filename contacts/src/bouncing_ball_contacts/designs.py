@@ -586,8 +586,9 @@ def _too_long(
     way = f"it moves {show(bounce.impact_speed * step, 'm')} in a step"
     if YOURS not in rows:
         return [
-            f"at {show(step, 's')} no spring works in {problem.engine.name}: {way}, and its radius "
-            f"is {show(bounce.size, 'm')}; {what}"
+            f"at {show(step, 's')} no spring works in {problem.engine.name}: none keeps r within "
+            f"{2 * tolerance:g} and lies less deep than the radius of {show(bounce.size, 'm')}, "
+            f"because {way}; {what}"
         ]
     sinks = rows[YOURS].outcome.depth[1]
     found = []

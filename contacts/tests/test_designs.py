@@ -24,6 +24,15 @@ def test_every_engine_keeps_a_permitted_penetration(name):
     assert found.row.step < 2e-3
 
 
+@pytest.mark.parametrize("name", ["mujoco", "drake", "lammps-hertz", "newton"])
+@pytest.mark.parametrize("r", [0.3, 0.9])
+def test_a_penetration_is_kept_and_used_at_a_short_step(name, r):
+    wanted = Bounce(mass="50 g", restitution=r, radius="30 mm", penetration="1 mm")
+    found = design(wanted, name, "5 us")
+    assert found.chosen == YOURS
+    assert 0.98e-3 <= found.row.outcome.depth[1] <= 1e-3
+
+
 @pytest.mark.parametrize("name", STEPPED)
 def test_every_engine_has_a_contact_at_a_given_step(name):
     found = design(Bounce(**BALL), name, "0.5 ms")

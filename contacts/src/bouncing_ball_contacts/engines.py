@@ -467,7 +467,7 @@ _ALL = {
                 'With a condim of 4 or 6 r needs the option cone="elliptic"',
             ),
             friction="MuJoCo: condim 1 and 3 keep r; with the pyramidal cone 4 and 6 lower it "
-            '(0.706 and 0.643 where 0.75 was designed), cone="elliptic" does not',
+            '(0.697 and 0.630 in place of 0.744), cone="elliptic" does not',
         ),
         Engine(
             name="pybullet",

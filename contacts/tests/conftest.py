@@ -1,23 +1,22 @@
-"""What all tests share: short answers about motions, and the texts and data of the docs."""
+"""The command as a user types it."""
+
+import shlex
+import sys
 
 import pytest
 
-from bouncing_ball_contacts.contact import effort
-
-pytest_plugins = ["shared_fixtures"]
+from bouncing_ball_contacts import cli
 
 
 @pytest.fixture
-def short_motions(monkeypatch):
-    """An answer about the motion on which a ball ends follows few impacts."""
-    for kind in ("LINEAR", "OF_LAW"):
-        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(impacts=20))
+def typed(monkeypatch, capsys):
+    """Return a function that runs the command and returns its exit status, output and message."""
 
+    def run(line):
+        monkeypatch.setattr(sys, "argv", ["bounce", *shlex.split(line)])
+        with pytest.raises(SystemExit) as ended:
+            cli.run()
+        found = capsys.readouterr()
+        return ended.value.code or 0, found.out, found.err
 
-@pytest.fixture
-def short_runs(short_motions, monkeypatch):
-    """An answer follows few impacts: long runs are those of contact/test_motion.py."""
-    for kind in ("LINEAR", "OF_LAW"):
-        monkeypatch.setattr(effort, kind, getattr(effort, kind)._replace(starts=3))
-    # Balls of a law that come to rest on a stiff contact take longest.
-    monkeypatch.setattr("bouncing_ball_contacts.contact.starts._IMPACTS", 3)
+    return run

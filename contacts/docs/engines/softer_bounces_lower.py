@@ -1,22 +1,23 @@
 """The first three apexes of a dropped ball over those of a rigid one, by stiffness and r."""
 
-import numpy as np
+import math
 
-import bouncing_ball_beyond
+from bouncing_ball_contacts import Bounce, diagnose
 
-GRAVITY, HEIGHT = 9.81, 0.4  # m/s^2, m above the height at which the ball touches
-MASS = 2600 * 4 / 3 * np.pi * 0.1**3  # kg
-RESTITUTIONS = np.array([0.5, 0.7, 0.9])
+GRAVITY, HEIGHT = 9.81, 0.4  # m/s², m above the height at which the ball touches
+MASS = 2600 * 4 / 3 * math.pi * 0.1**3  # kg
 
-print("k in N/m " + "".join(f"  r = {r:<13}" for r in RESTITUTIONS).rstrip())
+print("k in N/m   r = 0.5            r = 0.7            r = 0.9")
 for stiffness in (5e4, 5e5, 5e6):
-    # The table rests: its angular frequency is only a unit of time, here 1 rad/s.
-    balls = bouncing_ball_beyond.spring_damper(
-        restitution=RESTITUTIONS, frequency_ratio=np.sqrt(stiffness / MASS)
-    )
-    fall = np.sqrt(2 * GRAVITY * HEIGHT) / GRAVITY
-    motion = bouncing_ball_beyond.simulate(balls, amplitude=0.0, velocity=-fall, impacts=4)
-    speed = motion.impact_velocity.values.T
-    rigid = RESTITUTIONS ** np.arange(1, 4)[:, None]
-    apexes = (speed[1:] / speed[0] / rigid) ** 2
-    print(f"{stiffness:.0e}    " + "".join(f"  {x:.3f} {y:.3f} {z:.3f}" for x, y, z in apexes.T))
+    columns = []
+    for r in (0.5, 0.7, 0.9):
+        ratio = -math.log(r) / math.hypot(math.pi, math.log(r))
+        contact = {"kn": stiffness, "gamma_n": 2 * ratio * math.sqrt(stiffness / MASS)}
+        height = HEIGHT
+        shares = []
+        for bounce in range(1, 4):
+            ball = Bounce(mass=MASS, drop_height=height, radius=0.1, gravity=GRAVITY)
+            height *= diagnose(ball, "lammps", contact, 1e-6).limit ** 2
+            shares.append(f"{height / (HEIGHT * r ** (2 * bounce)):.3f}")
+        columns.append(" ".join(shares))
+    print(f"{stiffness:.0e}      " + "  ".join(columns))

@@ -1,15 +1,10 @@
-"""The largest error of r that 50 steps in a contact leave, and the steps for a smaller one."""
+"""The longest step for r = 0.8 to 0.02, 0.01 and 0.002, in contacts of 1 ms, by the engine."""
 
-from bouncing_ball_beyond.models.damping import damping_ratio
-from bouncing_ball_contacts.engines.choice import ENGINES
-from bouncing_ball_contacts.engines.impacts import error_in_steps, steps_for
+from bouncing_ball_contacts import Bounce, design
 
-print("engine   r     50 steps  0.01  0.001")
-for name in ("mujoco", "lammps", "pybullet"):
-    engine = ENGINES[name]
-    release, scheme = engine.releases[0], engine.scheme
-    for r in (0.5, 0.9):
-        zeta = float(damping_ratio(r, release))
-        error = error_in_steps(scheme, zeta, release, 50)
-        steps = [steps_for(scheme, zeta, release, limit) for limit in (0.01, 0.001)]
-        print(f"{name:8} {r:<4}  {error:8.4f}  {steps[0]:4}  {steps[1]:5}")
+ball = Bounce(mass="50 g", restitution=0.8, contact_time="1 ms", radius="30 mm")
+print("engine    0.02      0.01      0.002")
+for name in ("mujoco", "lammps", "pybullet", "drake", "newton"):
+    # The row of what one wants keeps half of the tolerance.
+    steps = [design(ball, name, tolerance=2 * error).row.step for error in (0.02, 0.01, 0.002)]
+    print(f"{name:<9} " + "  ".join(f"{step * 1e6:5.1f} µs" for step in steps))

@@ -1,7 +1,5 @@
-"""``python -m bouncing_ball_contacts``: the same as ``bouncing-ball``."""
+"""``python -m bouncing_ball_contacts``."""
 
-from bouncing_ball_beyond.inherited.cli.main import main
+from bouncing_ball_contacts.cli import run
 
-# Tools that read docstrings import this module, too.
-if __name__ == "__main__":
-    main()
+run()

@@ -1,0 +1,235 @@
+"""The command ``bounce``: design, diagnose, fit and engines."""
+
+import dataclasses
+import json
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from bouncing_ball_contacts.designs import Bounce, Design, aligned, design
+from bouncing_ball_contacts.engines import ENGINES
+from bouncing_ball_contacts.units import Refused
+
+Command = Callable[..., Any]
+
+
+def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    def decorate(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+_BODY = [
+    click.option("--mass", help="Mass of the body, such as '50 g'."),
+    click.option("--restitution", help="√(h′/h) that is wanted, 0 to 1."),
+    click.option("--drop-height", help="Height of the drop; 1 m if no speed is given."),
+    click.option("--speed", help="Impact speed, in place of the height."),
+    click.option("--radius", help="Radius, or half the height of a box."),
+    click.option("--density", help="In place of the radius; also steel, rubber, wood, …"),
+    click.option("--points", type=int, default=1, help="Contact points: 4 for the face of a box."),
+    click.option("--other-mass", help="Mass of a second free body; needs the speed of approach."),
+    click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given."),
+]
+_CONTACT = [
+    click.option("--penetration", help="Depth that must not be exceeded."),
+    click.option("--stiffness", help="Of the contact, in place of the penetration."),
+    click.option("--contact-time", help="Of a contact without damping, in place of these."),
+    click.option("--friction", help="Coefficient of friction, for a word of warning."),
+    click.option("--tolerance", default="0.02", help="Largest deviation of r; 0.02."),
+    click.option("--pick", help="Row that is written, such as 'what you want' or impulse."),
+    click.option("--script", type=click.Path(dir_okay=False), help="File for a script to run."),
+]
+_STEP = click.option("--time-step", help="Of the engine, such as '2 ms' or 1/240.")
+_ENGINE = click.option("--engine", default="generic", help="One of those of 'bounce engines'.")
+_ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps its defaults.")
+_JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
+
+
+class _Examples(click.Group):
+    """A group whose help shows examples as they are typed."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        formatter.write(
+            """
+Examples:
+  bounce design --mass "50 g" --restitution 0.8 --time-step "2 ms" --engine mujoco
+  bounce diagnose --engine mujoco solref="0.02 1" --mass "50 g" --time-step "2 ms" --restitution 0.8
+  bounce fit croquet --engine pybullet --time-step 1/240
+  bounce engines
+"""
+        )
+
+
+@click.group(cls=_Examples, invoke_without_command=True)
+@click.pass_context
+def main(context: click.Context) -> None:
+    """The bounce of a physics engine: what to write, what numbers do, what a recording shows."""
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
+
+
+def _plain(value: Any) -> Any:
+    """Return a value that JSON has: no NaN, no arrays."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    return value
+
+
+def _print(found: Any, as_json: bool) -> None:
+    if not as_json:
+        click.echo(str(found))
+        return
+    values = dataclasses.asdict(found)
+    if isinstance(found, Design):
+        values |= {"parameters": found.parameters, "snippet": found.snippet}
+    click.echo(json.dumps(_plain(values), indent=1, ensure_ascii=False))
+
+
+def _write_script(found: Design, path: str | None) -> None:
+    if path is None:
+        return
+    from bouncing_ball_contacts.scripts import drop_script
+
+    try:
+        Path(path).write_text(drop_script(found), "utf-8")
+    except OSError as error:
+        raise Refused(f"{path} cannot be written: {error.strerror}") from None
+
+
+def _given(options: dict[str, Any]) -> dict[str, Any]:
+    names = {field.name for field in dataclasses.fields(Bounce) if field.init}
+    return {name: value for name, value in options.items() if name in names}
+
+
+@main.command("design")
+@_options(*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON)
+def design_command(script: str | None, as_json: bool, **options: Any) -> None:
+    """Write the contact of an engine for the bounce that you want."""
+    names = ("engine", "time_step", "tolerance", "one_body", "pick")
+    found = design(Bounce(**_given(options)), **{name: options[name] for name in names})
+    _write_script(found, script)
+    _print(found, as_json)
+
+
+def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
+    """Return the values of texts NAME=VALUE."""
+    found: dict[str, str] = {}
+    for text in pairs:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise Refused(f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5")
+        found[name.strip()] = value.strip()
+    return found
+
+
+@main.command("diagnose")
+@click.argument("parameters", nargs=-1, metavar="[NAME=VALUE]...")
+@_options(*_BODY, _ENGINE, _STEP, _ONE_BODY, _JSON)
+@click.option("--other", multiple=True, help="NAME=VALUE of the other body, if it differs.")
+def diagnose_command(
+    parameters: tuple[str, ...], other: tuple[str, ...], as_json: bool, **options: Any
+) -> None:
+    """Say what bounce the numbers of an engine give, why, and the least change for yours.
+
+    Without numbers they are the engine's defaults.
+    """
+    from bouncing_ball_contacts.diagnosis import diagnose
+
+    found = diagnose(
+        Bounce(**_given(options)),
+        options["engine"],
+        _assigned(parameters),
+        options["time_step"],
+        other=_assigned(other),
+        one_body=options["one_body"],
+    )
+    _print(found, as_json)
+
+
+def _lines(text: str | None) -> tuple[int, ...]:
+    """Return the numbers of a text such as '4,7'."""
+    try:
+        return tuple(int(part) for part in (text or "").replace(",", " ").split())
+    except ValueError:
+        raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
+
+
+@main.command("fit")
+@click.argument("recording")
+@click.option("--speed", help="At which r is wanted; the middle of the impacts if not given.")
+@click.option("--resolution", help="Standard deviation of a reading, such as '0.7 ms'.")
+@click.option("--mass", help="Of the ball, for the drag of the air and the engine.")
+@click.option("--diameter", help="Of the ball, for the drag of the air.")
+@click.option("--leave-out", help="Lines of the file, such as 4,7.")
+@click.option("--engine", help="For which the contact is written.")
+@_options(_STEP, *_CONTACT, _JSON)
+def fit_command(
+    recording: str,
+    leave_out: str | None,
+    engine: str | None,
+    time_step: str | None,
+    tolerance: str,
+    pick: str | None,
+    script: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Read a recording of bounces: r over the speed, the laws it allows, and an engine's contact.
+
+    RECORDING is a file, or one of the published experiments, such as croquet.
+    """
+    from bouncing_ball_contacts.fits import fit
+
+    names = ("speed", "resolution", "mass", "diameter")
+    found = fit(recording, leave_out=_lines(leave_out), **{name: options[name] for name in names})
+    if engine is None:
+        if time_step is not None or script is not None:
+            raise Refused("the engine is missing: --engine mujoco")
+        _print(found, as_json)
+        return
+    contact = ("penetration", "stiffness", "contact_time", "friction")
+    bounce = found.bounce(**{name: options[name] for name in contact})
+    written = design(bounce, engine, time_step, tolerance=tolerance, pick=pick)
+    _write_script(written, script)
+    _print(found, as_json)
+    if not as_json:
+        click.echo()
+    _print(written, as_json)
+
+
+@main.command("engines")
+def engines_command() -> None:
+    """List the engines, their parameters and whether they were run."""
+    head = ["engine", "parameters, of both bodies alike", "steps", "two bodies", "run in"]
+    rows = [
+        [row.name, row.meaning, row.steps, row.pairs, row.ran or "never run"]
+        for row in ENGINES.values()
+    ]
+    click.echo("\n".join(aligned([head, *rows])))
+
+
+def run() -> None:
+    """Run the command; a mistake is one line, and the exit status is 2."""
+    try:
+        sys.exit(main(standalone_mode=False))
+    except (Refused, click.ClickException) as mistake:
+        text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
+        click.echo(f"bounce: {' '.join(str(text).split())}", err=True)
+        sys.exit(2)
+    except click.Abort:
+        sys.exit(130)
+    except BrokenPipeError:
+        sys.exit(0)

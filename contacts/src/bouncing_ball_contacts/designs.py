@@ -1,0 +1,768 @@
+"""From the bounce that is wanted to the numbers of an engine.
+
+The engine's own scheme is stepped over all instants of the impact within a step
+(:mod:`.schemes`), and the damping is found by a secant rule in ln r. Implicit steps, gravity during
+the contact and strong damping therefore need no formulas of their own.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball_contacts.engines import Engine, Setting, engine_named, filled, text_of
+from bouncing_ball_contacts.schemes import (
+    MOST_STEPS,
+    Array,
+    Drops,
+    Impulse,
+    Impulsive,
+    Law,
+    drop,
+    offsets,
+)
+from bouncing_ball_contacts.units import (
+    STANDARD_GRAVITY,
+    Refused,
+    density_of,
+    in_si,
+    positive,
+    show,
+    within,
+)
+
+Quantity = Any
+"""A number in SI units, a text with a unit, or a pint quantity."""
+
+TOLERANCE = 0.02
+"""The default of the largest deviation of r at a step."""
+LEAST_RESTITUTION = 0.01
+"""The r that stands for less, which lifts no body visibly: r² is 10⁻⁴ of the height."""
+WANTED = "what you want"
+YOURS = "your step"
+IMPULSE = "impulse"
+
+_COARSE = offsets(21)
+_FINE = offsets(401)
+# Steps in a contact without damping: first those that most designs need, then finer ones, in groups
+# because a group costs as much as its finest one.
+_STEPS = (
+    np.array([4.0, 5, 6, 8, 10, 12, 14, 17, 20, 25, 32, 40, 50]),
+    np.array([65.0, 85, 120]),
+    np.array([170.0, 250]),
+    np.array([400.0, 600]),
+)
+_AT_STEP = (
+    np.geomspace(2.5, 100, 14),
+    np.array([120.0, 150, 190]),
+    np.array([240.0, 300, 380]),
+    np.array([480.0, 600, 760]),
+    np.array([950.0, 1200, 1500]),
+)
+# A solver with error control is as good as this many steps in a contact.
+_CONTROLLED = 1000
+# ln r is found to this error, a tenth of the last printed digit of r.
+_LN_R = 1e-4
+_DIGITS = 6
+
+
+@dataclass(frozen=True)
+class Bounce:
+    """A bounce that is wanted: a body falls on a surface, or meets another free body.
+
+    Quantities are numbers in SI units, texts with units or pint quantities; they are numbers in SI
+    units afterwards.
+
+    Parameters
+    ----------
+    mass, restitution : Quantity
+        The restitution coefficient is √(h′/h) of the drop, 0 to 1.
+    drop_height, speed : Quantity, optional
+        One of both; by default a drop from 1 m.
+    radius, density : Quantity, optional
+        Of the body; the density may be the name of a material. By default a solid ball of steel.
+    penetration, stiffness, contact_time : Quantity, optional
+        At most one of them: the depth that must not be exceeded, or the contact itself. By default
+        the penetration is at most a tenth of the radius and a fifth of the drop height.
+    points : int
+        The number of contact points that share the force, 4 for the face of a box.
+    other_mass : Quantity, optional
+        Of a second free body, in an impact without gravity.
+    friction : Quantity, optional
+        The coefficient of friction, for a word of warning only.
+    gravity : Quantity
+
+    Raises
+    ------
+    Refused
+        If a quantity cannot be read, is out of its range, or contradicts another one.
+    """
+
+    mass: Quantity = None
+    restitution: Quantity = None
+    drop_height: Quantity = None
+    speed: Quantity = None
+    radius: Quantity = None
+    density: Quantity = None
+    penetration: Quantity = None
+    stiffness: Quantity = None
+    contact_time: Quantity = None
+    points: int = 1
+    other_mass: Quantity = None
+    friction: Quantity = None
+    gravity: Quantity = STANDARD_GRAVITY
+    given: Mapping[str, str] = field(init=False, default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.mass is None:
+            raise Refused("the mass is missing: --mass '50 g' or mass='50 g'")
+        units = {
+            "mass": "kg",
+            "drop_height": "m",
+            "speed": "m/s",
+            "radius": "m",
+            "penetration": "m",
+            "stiffness": "N/m",
+            "contact_time": "s",
+            "other_mass": "kg",
+        }
+        values: dict[str, Any] = {}
+        shown: dict[str, str] = {}
+        for name, unit in units.items():
+            given = getattr(self, name)
+            if given is not None:
+                values[name] = positive(name.replace("_", " "), given, unit)
+                shown[name.replace("_", " ")] = show(values[name], unit, 4)
+        if self.density is not None:
+            values["density"] = density_of(self.density)
+            shown["density"] = show(values["density"], "kg/m^3", 4)
+        if self.restitution is not None:
+            values["restitution"] = within("restitution", self.restitution, 0, 1)
+            shown["restitution"] = f"{values['restitution']:g}"
+        if self.friction is not None:
+            values["friction"] = in_si("friction", self.friction, "")
+            shown["friction"] = f"{values['friction']:g}"
+        values["gravity"] = positive("gravity", self.gravity, "m/s^2")
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        self._require_one("drop_height", "speed")
+        self._require_one("radius", "density")
+        self._require_one("penetration", "stiffness", "contact_time")
+        if not (isinstance(self.points, int) and self.points >= 1):
+            raise Refused(f"points = {self.points!r} is no whole number from 1 on")
+        if self.points > 1:
+            shown["points"] = str(self.points)
+        if self.other_mass is not None and self.speed is None:
+            raise Refused("two free bodies need the speed with which they approach each other")
+        first = {name: shown[name] for name in ("mass", "restitution") if name in shown}
+        object.__setattr__(self, "given", first | shown)
+
+    def _require_one(self, *names: str) -> None:
+        given = [name.replace("_", " ") for name in names if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise Refused(f"give either the {given[0]} or the {given[1]}, not both")
+
+    @property
+    def reduced_mass(self) -> float:
+        """m, or m M/(m + M) of two free bodies, in kg."""
+        if self.other_mass is None:
+            return float(self.mass)
+        return float(self.mass * self.other_mass / (self.mass + self.other_mass))
+
+    @property
+    def load(self) -> float:
+        """The gravity that acts during the contact in m/s², which is none between free bodies."""
+        return 0.0 if self.other_mass is not None else float(self.gravity)
+
+    @property
+    def impact_speed(self) -> float:
+        """In m/s."""
+        if self.speed is not None:
+            return float(self.speed)
+        height = 1.0 if self.drop_height is None else self.drop_height
+        return math.sqrt(2 * self.gravity * height)
+
+    @property
+    def size(self) -> float:
+        """The radius of the body in m, by its density if no radius is given."""
+        if self.radius is not None:
+            return float(self.radius)
+        density = density_of("steel") if self.density is None else self.density
+        return float((3 * self.mass / (4 * math.pi * density)) ** (1 / 3))
+
+    @property
+    def reduced_radius(self) -> float:
+        """R of a contact of spheres in m; two free bodies have the same density."""
+        if self.other_mass is None:
+            return self.size
+        other = self.size * (self.other_mass / self.mass) ** (1 / 3)
+        return self.size * other / (self.size + other)
+
+    @property
+    def limit(self) -> float:
+        """The penetration in m that must not be exceeded."""
+        if self.penetration is not None:
+            return float(self.penetration)
+        return min(self.size / 10, self.impact_speed**2 / (10 * self.gravity))
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What was not given, in words."""
+        found = []
+        if self.drop_height is None and self.speed is None:
+            found.append("a drop from 1 m (--drop-height or --speed)")
+        if self.radius is None:
+            of = "steel (--radius or --density)" if self.density is None else "this density"
+            found.append(f"a solid ball of {of}, radius {show(self.size, 'm')}")
+        if (self.penetration, self.stiffness, self.contact_time) == (None, None, None):
+            by = "a tenth of the radius"
+            if self.limit < self.size / 10:
+                by = "a fifth of the drop height"
+            found.append(f"it may sink {show(self.limit, 'm')}, {by} (--penetration)")
+        return tuple(found)
+
+    def slower(self, share: float) -> "Bounce":
+        """Return the same bounce at a share of the impact speed."""
+        return replace(self, drop_height=None, speed=share * self.impact_speed)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a contact does in the steps of an engine, over all instants of the impact.
+
+    Pairs are least and greatest values; ``depth`` and ``rest`` are in m, ``force`` in N, and
+    ``restitution`` has the least, the mean and the greatest value.
+    """
+
+    depth: tuple[float, float]
+    rest: float
+    force: tuple[float, float]
+    restitution: tuple[float, float, float]
+
+    @property
+    def error(self) -> float:
+        """The largest distance of r from its mean."""
+        low, mean, high = self.restitution
+        return max(high - mean, mean - low)
+
+    def deviation(self, wanted: float) -> float:
+        """Return the largest distance of r from the wanted one."""
+        low, _, high = self.restitution
+        return max(abs(high - wanted), abs(low - wanted))
+
+    @property
+    def around(self) -> str:
+        """r as it is printed: mean ± largest distance from it."""
+        return f"{self.restitution[1]:.3f} ± {self.error:.3f}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A contact at a time step.
+
+    ``stiffness`` is k of all points together in N/m (of a Hertz contact in N/m^1.5, NaN of an
+    impulse), ``parameters`` are those that are written, and ``step`` is in s.
+    """
+
+    step: float
+    stiffness: float
+    outcome: Outcome
+    parameters: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A bounce in an engine, for which contacts are tried."""
+
+    bounce: Bounce
+    engine: Engine
+    one_body: bool = False
+
+    @property
+    def target(self) -> float:
+        """The r that designs aim at."""
+        return max(float(self.bounce.restitution), LEAST_RESTITUTION)
+
+    def setting(self, step: float) -> Setting:
+        """Return where a contact is used at a time step in s."""
+        points = self.bounce.points if self.engine.points_share else 1
+        return Setting(self.bounce.reduced_mass, step, points, self.bounce.reduced_radius)
+
+    def law(self, depth: Array, ratio: Array) -> Law:
+        """Return contacts by their undamped depths in m and ratios of damping."""
+        return self.engine.of_depth(depth, ratio, self.bounce.impact_speed)
+
+    def drops(self, law: Law, step: Array | float, at: Array = _COARSE) -> Drops:
+        """Return the drops of contacts at time steps in s."""
+        scheme = self.engine.scheme_of(law)
+        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, at)
+
+    def outcome(self, law: Law, step: float) -> Outcome:
+        """Return what one contact does at a time step in s."""
+        found = self.drops(law, step, _FINE)
+        mass = self.bounce.reduced_mass
+        r = found.restitution
+        rest = float(law.rest(self.bounce.load)) if self.bounce.load else 0.0
+        return Outcome(
+            depth=(float(found.depth.min()), float(found.depth.max())),
+            rest=rest,
+            force=(float(found.peak.min()) * mass, float(found.peak.max()) * mass),
+            restitution=(float(r.min()), float(r.mean()), float(r.max())),
+        )
+
+    def row(self, law: Law, step: float) -> Row:
+        """Return a contact with the parameters as they are written, and what these do."""
+        step = _rounded(step)
+        setting = self.setting(step)
+        combined = self.engine.write(law, setting)
+        engine = self.engine
+        written = engine.of_one(combined) if self.one_body else engine.of_each(combined)
+        parameters = {name: _rounded(value) for name, value in written.items()}
+        stiffness = float(law.stiffness) * self.bounce.reduced_mass
+        return Row(step, stiffness, self.of_parameters(parameters, step), parameters)
+
+    def of_parameters(self, parameters: Mapping[str, Any], step: float) -> Outcome:
+        """Return what written parameters do at a time step in s."""
+        other = self.engine.defaults if self.one_body else parameters
+        combined = self.engine.combined(parameters, other)
+        return self.outcome(self.engine.read(combined, self.setting(step)), step)
+
+    def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
+        """Return the ratios of damping with which the mean r is the target.
+
+        The secant rule in ln r, within a bracket: ln r is nearly linear in the ratio. Where the
+        steps alone damp more, the ratio is 0. Contacts that do not get there keep their best ratio.
+        """
+        goal = math.log(self.target)
+        x = np.full(np.shape(depth), 0.05 - goal / 4) if start is None else start
+        low = np.zeros(x.shape)
+        high = np.full(x.shape, np.inf)
+        best = x
+        least = np.full(x.shape, np.inf)
+        slope = np.full(x.shape, np.nan)
+        x_before = x
+        y_before = np.full(x.shape, np.nan)
+        for _ in range(12):
+            r = self.drops(self.law(depth, x), step).mean
+            y = np.log(np.maximum(r, 1e-3)) - goal
+            best = np.where(np.abs(y) < least, x, best)
+            least = np.minimum(np.abs(y), least)
+            # An r above the target at ratio 0 means that the damping has to grow from there.
+            low = np.where(y > 0, np.maximum(low, x), low)
+            high = np.where(y <= 0, np.minimum(high, x), high)
+            if np.all((least < _LN_R) | (high < 1e-5)):
+                break
+            with np.errstate(divide="ignore", invalid="ignore"):
+                secant = (y - y_before) / (x - x_before)
+            # Without damping r is about 1, which gives the first slope.
+            first = np.minimum(y + goal, -1e-2) / np.maximum(x, 1e-6)
+            slope = np.where(np.isfinite(slope), slope, first)
+            slope = np.where(np.isfinite(secant) & (secant < -1e-2), secant, slope)
+            x_before = x
+            y_before = y
+            guess = x - y / slope
+            middle = np.where(np.isfinite(high), (low + high) / 2, 2 * x + 0.1)
+            inside = (guess > low) & (guess < np.minimum(high, 4 * x + 0.3))
+            x = np.where(inside, guess, middle)
+            x = np.where(least < _LN_R, best, x)
+        return np.where(high < 1e-5, 0.0, best)
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_rounded(each) for each in value)
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def design(
+    bounce: Bounce,
+    engine: str = "generic",
+    time_step: Quantity = None,
+    *,
+    tolerance: Quantity = TOLERANCE,
+    one_body: bool = False,
+    pick: str | None = None,
+) -> "Design":
+    """Return the contacts of an engine with which a body bounces as wanted, and what they do.
+
+    Parameters
+    ----------
+    bounce : Bounce
+    engine : str
+        A name of :data:`.ENGINES`.
+    time_step : Quantity, optional
+        Of the engine. If it is too long for the contact that is wanted, the stiffest contact whose
+        r is within the tolerance at this step is a second row.
+    tolerance : Quantity
+        The largest deviation of r.
+    one_body : bool
+        Whether the parameters of one body are written, and the other one keeps its defaults.
+    pick : str, optional
+        The row that is written, by default the one that keeps what was given.
+
+    Raises
+    ------
+    Refused
+        If there is no such contact.
+    """
+    if bounce.restitution is None:
+        raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
+    row = engine_named(engine)
+    problem = Problem(bounce, row, one_body)
+    largest = within("tolerance", tolerance, 1e-4, 1)
+    step = None if time_step is None else positive("time step", time_step, "s")
+    if step is not None and not row.fixed_steps:
+        raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
+    kept = _undamped_depth(problem)
+    rows = {WANTED: _wanted(problem, largest, kept)}
+    chosen = WANTED
+    notes: list[str] = []
+    if step is not None and step <= rows[WANTED].step:
+        rows[YOURS] = _kept(problem, kept or bounce.limit, step, None, kept is not None)
+        chosen = YOURS
+    elif step is not None:
+        at_step = _at_step(problem, step, largest)
+        if at_step is not None:
+            rows[YOURS] = at_step
+        has_limit = (bounce.penetration, kept) != (None, None)
+        if at_step is not None and not has_limit:
+            chosen = YOURS
+        notes += _too_long(problem, step, rows, largest)
+    if step is not None and bounce.points == 1:
+        rows[IMPULSE] = _impulse(problem, step)
+    if pick is not None:
+        chosen = _picked(pick, rows, problem)
+    notes += _notes(problem, rows[chosen], largest, chosen == WANTED)
+    return Design(
+        bounce=bounce,
+        engine=row.name,
+        one_body=one_body,
+        time_step=step,
+        rows=rows,
+        chosen=chosen,
+        notes=tuple(notes),
+    )
+
+
+def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:
+    name = pick.strip().lower()
+    if name not in rows:
+        raise Refused(f"row {pick!r} is none of this answer: {', '.join(map(repr, rows))}")
+    if name == IMPULSE and not text_of(f"{problem.engine.name}-impulse"):
+        raise Refused(f"no impulse is written for {problem.engine.name}: only for pybullet")
+    return name
+
+
+def _undamped_depth(problem: Problem) -> float | None:
+    """Return the depth in m, without damping, of a contact that is given; None if none is."""
+    bounce = problem.bounce
+    v = bounce.impact_speed
+    unit = float(problem.law(np.asarray(1.0), np.asarray(0.0)).stiffness)
+    if bounce.stiffness is not None:
+        if problem.engine.unit != "N/m":
+            raise Refused(f"{problem.engine.name} has no stiffness in N/m: give the penetration")
+        # The stiffness of an undamped depth d is proportional to 1/d².
+        return math.sqrt(unit * bounce.reduced_mass / bounce.stiffness)
+    if bounce.contact_time is not None:
+        # A contact of unit depth lasts a time that is proportional to the depth.
+        still = problem.law(np.asarray(1.0), np.asarray(0.0))
+        return float(bounce.contact_time / still.duration(v))
+    return None
+
+
+def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
+    """Return the contact that keeps the limit, at the longest step with half of the tolerance."""
+    limit = problem.bounce.limit
+    target = problem.target
+    if not problem.engine.fixed_steps:
+        step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
+        return _kept(problem, kept or limit, step, None, kept is not None)
+    for counts in _STEPS:
+        depth = np.full(counts.shape, kept or limit)
+        ratio: Array | None = None
+        for _ in range(1 if kept else 3):
+            step = math.pi * depth / problem.bounce.impact_speed / counts
+            ratio = problem.ratios(depth, step, ratio)
+            found = problem.drops(problem.law(depth, ratio), step)
+            if kept is None:
+                depth = depth * 0.998 * limit / found.depth.max(axis=-1)
+        good = np.flatnonzero(found.error(target) <= tolerance / 2)
+        if good.size:
+            break
+    best = int(good[0]) if good.size else int(np.argmin(found.error(target)))
+    step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
+    return _kept(problem, float(depth[best]), step_of, None, kept is not None)
+
+
+def _kept(problem: Problem, depth: float, step: float, start: Array | None, is_fixed: bool) -> Row:
+    """Return the contact at a step that keeps the limit, or that has the depth if it `is_fixed`."""
+    limit = problem.bounce.limit
+    ratio = start
+    for _ in range(8):
+        ratio = problem.ratios(np.array([depth]), np.array([step]), ratio)
+        law = problem.law(np.asarray(depth), ratio[0])
+        row = problem.row(law, step)
+        sinks = row.outcome.depth[1]
+        if is_fixed or 0.99 * limit <= sinks <= limit:
+            break
+        depth *= 0.998 * limit / sinks
+    return row
+
+
+def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
+    """Return the stiffest contact within the tolerance at a step in s.
+
+    If none is within the tolerance it is the one with the least error. None if no spring works:
+    if all miss r by more than twice the tolerance, or if the body would lie deeper than its radius
+    or be lost by the engine.
+    """
+    per_step = problem.bounce.impact_speed * step / math.pi
+    deepest = problem.engine.deepest * problem.bounce.size
+    best = None
+    for counts in _AT_STEP:
+        tried = _tried(problem, counts * per_step, step, deepest)
+        if tried is None:
+            break
+        if best is None or tried[1].min() < best[1].min():
+            best = tried
+        if np.any(tried[1] <= tolerance):
+            break
+    if best is None or best[1].min() > 2 * tolerance:
+        return None
+    depth, error, ratio = best
+    good = np.flatnonzero(error <= tolerance)
+    i = int(good[0]) if good.size else int(np.argmin(error))
+    if good.size and i > 0:
+        # Between the last contact that fails and the first one that does not.
+        between = np.geomspace(depth[i - 1], depth[i], 7)[1:]
+        finer = _tried(problem, between, step, deepest)
+        if finer is not None and np.any(finer[1] <= tolerance):
+            depth, error, ratio = finer
+            i = int(np.flatnonzero(error <= tolerance)[0])
+    row = problem.row(problem.law(depth[i], ratio[i]), step)
+    # The tolerance holds over all instants, and not only over those of the search.
+    if good.size and row.outcome.deviation(problem.target) > tolerance and i + 1 < len(depth):
+        row = problem.row(problem.law(depth[i + 1], ratio[i + 1]), step)
+    return row
+
+
+def _tried(
+    problem: Problem, depth: Array, step: float, deepest: float
+) -> tuple[Array, Array, Array] | None:
+    """Return those depths that work, with the errors of r and the ratios of damping."""
+    steps = np.full(depth.shape, step)
+    ratio = problem.ratios(depth, steps)
+    law = problem.law(depth, ratio)
+    found = problem.drops(law, steps)
+    seen = found.depth.max(axis=-1) < deepest
+    seen &= law.rest(problem.bounce.load) < problem.bounce.size
+    if not seen.any():
+        return None
+    return depth[seen], found.error(problem.target)[seen], ratio[seen]
+
+
+def _impulse(problem: Problem, step: float) -> Row:
+    """Return the restitution by number with which the mean r is the wanted one at a step in s."""
+    numbers = np.linspace(0.0, 1.0, 21)
+    law = Impulse(np.zeros(21), numbers)
+    speed = problem.bounce.impact_speed
+    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _COARSE).mean
+    best = float(np.interp(problem.bounce.restitution, mean, numbers))
+    each = _rounded(math.sqrt(best))
+    found = problem.outcome(Impulse(np.asarray(0.0), np.asarray(each**2)), step)
+    return Row(_rounded(step), math.nan, found, {"restitution": each})
+
+
+def _too_long(
+    problem: Problem, step: float, rows: Mapping[str, Row], tolerance: float
+) -> list[str]:
+    """Return what a step that is too long for the wanted contact costs."""
+    bounce = problem.bounce
+    wanted = rows[WANTED]
+    what = f"{show(wanted.outcome.depth[1], 'm')} needs a step of {show(wanted.step, 's')}"
+    way = f"it moves {show(bounce.impact_speed * step, 'm')} in a step"
+    if YOURS not in rows:
+        return [
+            f"at {show(step, 's')} no spring works in {problem.engine.name}: none keeps r within "
+            f"{2 * tolerance:g} and lies less deep than the radius of {show(bounce.size, 'm')}, "
+            f"because {way}; {what}"
+        ]
+    sinks = rows[YOURS].outcome.depth[1]
+    found = []
+    if sinks > bounce.limit:
+        how = f"{100 * sinks / bounce.size:.0f} % of its radius"
+        if sinks > bounce.size:
+            how = "its centre passes the surface"
+        reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
+        found.append(f"at your step it sinks {show(sinks, 'm')}, {how}{reason}; {what}")
+    if rows[YOURS].outcome.deviation(problem.target) > tolerance:
+        found.append(
+            f"at your step no spring has r within {tolerance:g}: the nearest one is written"
+        )
+    if bounce.penetration is not None or _undamped_depth(problem) is not None:
+        found.append(
+            f"your step of {show(step, 's')} cannot keep what you gave: the row for "
+            f"{show(wanted.step, 's')} is written (--pick {YOURS!r} for the other one)"
+        )
+    return found
+
+
+def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> list[str]:
+    """Return what a user of a row has to know."""
+    bounce = problem.bounce
+    found = []
+    low, mean, high = row.outcome.restitution
+    if bounce.restitution < LEAST_RESTITUTION:
+        found.append(
+            f"r = {bounce.restitution:g}: the damping leaves about {mean:.3f}, by which a body "
+            f"rises {mean**2:.1g} of its height"
+        )
+    elif is_wanted and row.outcome.deviation(problem.target) > tolerance:
+        found.append(f"r is {low:.3f} to {high:.3f}: no damping of this contact is nearer")
+    sinks = row.outcome.depth[1]
+    if sinks > problem.engine.deepest * bounce.size:
+        found.append(f"{problem.engine.name} loses a body that sinks more than its radius")
+    if _steps_in_contact(problem, row) > MOST_STEPS:
+        found.append(
+            f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
+            "not computed, and change r by less than 0.001"
+        )
+    if bounce.load:
+        slow = bounce.slower(math.sqrt(0.1))
+        if math.isnan(row.stiffness):
+            e = row.parameters["restitution"] ** 2
+            law: Law = Impulse(np.asarray(0.0), np.asarray(e))
+            slower = replace(problem, bounce=slow).outcome(law, row.step)
+        else:
+            slower = replace(problem, bounce=slow).of_parameters(row.parameters, row.step)
+        if slower.deviation(bounce.restitution) > max(tolerance, 2 * row.outcome.error):
+            found.append(f"from a tenth of the height r is {slower.around}")
+    if bounce.friction:
+        found.append(problem.engine.friction)
+    return found
+
+
+def _steps_in_contact(problem: Problem, row: Row) -> float:
+    if math.isnan(row.stiffness):
+        return 0.0
+    setting = problem.setting(row.step)
+    other = problem.engine.defaults if problem.one_body else row.parameters
+    law = problem.engine.read(problem.engine.combined(row.parameters, other), setting)
+    return float(law.duration(problem.bounce.impact_speed)) / row.step
+
+
+@dataclass(frozen=True, repr=False)
+class Design:
+    """The contacts that answer a question, by the names of their rows, and the one written.
+
+    Its ``repr`` is the table with its notes; printed it also has the snippet and what was assumed.
+    """
+
+    bounce: Bounce
+    engine: str
+    one_body: bool
+    time_step: float | None
+    rows: dict[str, Row]
+    chosen: str
+    notes: tuple[str, ...]
+
+    @property
+    def row(self) -> Row:
+        """The row that is written."""
+        return self.rows[self.chosen]
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The parameters that are written, by their names in the engine."""
+        return self.row.parameters
+
+    @property
+    def snippet(self) -> str:
+        """What is pasted into the engine."""
+        name = self.engine
+        if self.chosen == IMPULSE:
+            name = f"{name}-impulse"
+        elif self.bounce.other_mass is not None and text_of(f"{name}-pair"):
+            name = f"{name}-pair"
+        values = {
+            "step": self.row.step,
+            "mass": show(self.bounce.mass, "kg", 4),
+            "bodies": "one of both bodies" if self.one_body else "both bodies alike",
+            "names": "(one,)" if self.one_body else "(one, other)",
+        }
+        return filled(text_of(name), values | self.parameters).rstrip()
+
+    @property
+    def table(self) -> list[list[str]]:
+        """The cells of the table, the headings first."""
+        unit = engine_named(self.engine).unit
+        cells = [["", "step", "k", "sinks", "at rest", "force", "r"]]
+        for name, row in self.rows.items():
+            found = row.outcome
+            fixed = engine_named(self.engine).fixed_steps
+            cells.append(
+                [
+                    f"{name} *" if name == self.chosen else name,
+                    show(row.step, "s") if fixed else "–",
+                    show(row.stiffness, unit),
+                    show(found.depth[1], "m"),
+                    show(found.rest, "m") if self.bounce.load else "–",
+                    show(found.force[1], "N"),
+                    found.around,
+                ]
+            )
+        return cells
+
+    @property
+    def given(self) -> str:
+        """What was given, so that a wrong unit is seen."""
+        values = dict(self.bounce.given)
+        if self.time_step is not None:
+            values["time step"] = show(self.time_step, "s", 4)
+        return ", ".join(f"{name} {value}" for name, value in values.items())
+
+    @property
+    def remarks(self) -> list[str]:
+        """The lines below the snippet: what was given and assumed, and what the engine needs."""
+        row = engine_named(self.engine)
+        lines = [f"Given: {self.given}."]
+        if self.bounce.assumed:
+            lines.append(f"Assumed: {'; '.join(self.bounce.assumed)}.")
+        if self.bounce.other_mass is not None:
+            reduced = show(self.bounce.reduced_mass, "kg", 4)
+            lines.append(f"Two free bodies act as one of the reduced mass {reduced}.")
+        if IMPULSE in self.rows:
+            how = row.impulse or "PyBullet's, because this engine has none"
+            if text_of(f"{self.engine}-impulse"):
+                how = f"{how} (--pick impulse writes it)"
+            lines.append(f"The row of the impulse is a restitution by number: {how}.")
+        if not row.ran:
+            lines.append(f"The row of {row.name} was never run in its engine.")
+        lines += [f"{note}." for note in row.notes]
+        return lines
+
+    def __repr__(self) -> str:
+        return "\n".join([*aligned(self.table), *(f"! {note}" for note in self.notes)])
+
+    def __str__(self) -> str:
+        return "\n".join([repr(self), "", self.snippet, "", *self.remarks])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in line) + "</tr>"
+            for line in self.table
+        )
+        notes = "".join(f"<p>{escape(note)}</p>" for note in self.notes)
+        return f"<table>{rows}</table>{notes}<pre>{escape(self.snippet)}</pre>"
+
+
+def aligned(table: list[list[str]]) -> list[str]:
+    """Return the lines of a table with columns of equal width."""
+    widths = [max(map(len, column)) + 2 for column in zip(*table, strict=True)]
+    return [
+        "".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in table
+    ]

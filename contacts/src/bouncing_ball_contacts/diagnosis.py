@@ -1,0 +1,481 @@
+"""From the parameters of an engine to the bounce that they give, and to the least change."""
+
+import difflib
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball_contacts.designs import (
+    LEAST_RESTITUTION,
+    TOLERANCE,
+    Bounce,
+    Outcome,
+    Problem,
+    Quantity,
+    design,
+)
+from bouncing_ball_contacts.engines import Engine, Impulse, engine_named
+from bouncing_ball_contacts.schemes import Impedance, Law, Linear, offsets
+from bouncing_ball_contacts.units import Refused, in_si, positive, show
+
+# With as many steps in a contact each scheme is within 0.003 of its limit of short steps.
+_SHORT = 1000
+# Fewer steps than these are named as a reason.
+_FEW = 10
+
+
+@dataclass(frozen=True)
+class Change:
+    """One parameter, and the step in s, with which the contact has the wanted r."""
+
+    name: str
+    value: Any
+    step: float
+    outcome: Outcome
+
+
+@dataclass(frozen=True, repr=False)
+class Diagnosis:
+    """What the parameters of an engine do.
+
+    ``limit`` is r in the limit of short steps and ``free`` the same without gravity; ``stiffness``
+    in N/m and ``damping_ratio`` are those of all points together, NaN if the contact is none of a
+    spring and a damper.
+    """
+
+    engine: str
+    bounce: Bounce
+    time_step: float
+    parameters: Mapping[str, Any]
+    outcome: Outcome
+    limit: float
+    free: float
+    stiffness: float
+    damping_ratio: float
+    reasons: tuple[str, ...]
+    change: Change | None
+
+    @property
+    def lines(self) -> list[str]:
+        """The answer, line by line."""
+        found = self.outcome
+        wanted = self.bounce.restitution
+        aim = "" if wanted is None else f"; {wanted:g} is wanted"
+        lines = [f"{self.engine} at a step of {show(self.time_step, 's')}: r = {found.around}{aim}"]
+        force = show(found.force[1], "N")
+        rest = f", and lies {show(found.rest, 'm')} deep" if self.bounce.load else ""
+        lines.append(f"It sinks {show(found.depth[1], 'm')} under at most {force}{rest}.")
+        if math.isfinite(self.damping_ratio):
+            lines.append(
+                f"The contact has k = {show(self.stiffness, 'N/m')} and a damping ratio of "
+                f"{self.damping_ratio:.3g}; in short steps r is {self.limit:.3f}."
+            )
+        lines += [f"! {reason}" for reason in self.reasons]
+        if self.change is not None:
+            step = ""
+            if not math.isclose(self.change.step, self.time_step):
+                step = f" and a step of {show(self.change.step, 's')}"
+            value = _typed(self.change.value)
+            lines.append(
+                f"Least change: {self.change.name} = {value}{step} gives r = "
+                f"{self.change.outcome.around}."
+            )
+        lines.append(f"Given: {', '.join(_pairs(self.parameters))}; {self._given()}.")
+        row = engine_named(self.engine)
+        if not row.ran:
+            lines.append(f"The row of {row.name} was never run in its engine.")
+        return lines
+
+    def _given(self) -> str:
+        return ", ".join(f"{name} {value}" for name, value in self.bounce.given.items())
+
+    def __repr__(self) -> str:
+        return "\n".join(self.lines[:2])
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+    def _repr_html_(self) -> str:
+        return "".join(f"<p>{escape(line)}</p>" for line in self.lines)
+
+
+def _typed(value: Any) -> str:
+    """Return a value as it is typed on the command line."""
+    if isinstance(value, tuple):
+        return '"' + " ".join(f"{each:.6g}" for each in value) + '"'
+    return f"{value:.6g}"
+
+
+def _pairs(parameters: Mapping[str, Any]) -> Iterator[str]:
+    for name, value in parameters.items():
+        yield f"{name} = {_typed(value)}"
+
+
+def parameters_of(engine: Engine, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of a body in an engine, with the defaults for those that are not given.
+
+    Raises
+    ------
+    Refused
+        If a name is unknown, a value is no number or out of its range, or one is missing.
+    """
+    known = [*dict.fromkeys(engine.names), *engine.optional]
+    values: dict[str, Any] = {}
+    for name, value in given.items():
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1, 0.4)
+            meant = f"; did you mean {near[0]}?" if near else ""
+            raise Refused(f"{engine.name} has no {name!r}: it has {', '.join(known)}{meant}")
+        values[name] = _value(engine, name, value)
+    found = {**engine.defaults, **values}
+    missing = [name for name in engine.names if name not in found]
+    if missing:
+        raise Refused(
+            f"{missing[0]} is missing, and {engine.name} has no default: give "
+            f"{' and '.join(dict.fromkeys(engine.names))}"
+        )
+    return found
+
+
+def _value(engine: Engine, name: str, value: Any) -> Any:
+    if name in ("solref", "solimp"):
+        return _numbers(name, value)
+    number = in_si(name, value, "")
+    unset = engine.name == "pybullet" and number == -1
+    if number < 0 and not unset:
+        raise Refused(f"{name} = {number:g} is negative")
+    if name == engine.names[0] and number == 0:
+        raise Refused(f"{name} = 0 is no contact")
+    shares = ("e", "coefficientRestitution", "restitution", "soft_erp")
+    if name in shares and number > 1:
+        raise Refused(f"{name} = {number:g} is not between 0 and 1")
+    return number
+
+
+def _numbers(name: str, value: Any) -> tuple[float, ...]:
+    texts = (
+        value.replace(",", " ").split() if isinstance(value, str) else list(np.atleast_1d(value))
+    )
+    numbers = tuple(in_si(name, each, "") for each in texts)
+    if name == "solimp":
+        if not 1 <= len(numbers) <= 5:
+            raise Refused(f"solimp has up to five numbers, and not {len(numbers)}")
+        return numbers
+    if len(numbers) != 2:
+        raise Refused(f"solref has two numbers, as in '0.02 1' or '-1000 -20', not {len(numbers)}")
+    first, second = numbers
+    if not (first > 0 and second > 0 or first < 0 and second <= 0):
+        raise Refused(
+            f"solref = '{first:g} {second:g}' is neither two negative numbers, -k/m and -c/m, nor "
+            "two positive ones, a time constant and a damping ratio"
+        )
+    if first > 100:
+        raise Refused(
+            f"solref = '{first:g} {second:g}' is a time constant of {first:g} s: -k/m and -c/m are "
+            f"written '-{first:g} -{second:g}'"
+        )
+    return numbers
+
+
+def diagnose(
+    bounce: Bounce,
+    engine: str,
+    parameters: Mapping[str, Any] | None = None,
+    time_step: Quantity = None,
+    *,
+    other: Mapping[str, Any] | None = None,
+    one_body: bool = False,
+) -> Diagnosis:
+    """Return the bounce that parameters give at a step, and the least change for the one wanted.
+
+    Parameters
+    ----------
+    bounce : Bounce
+        Its restitution is the one that is wanted, and may be left out.
+    engine : str
+    parameters : mapping
+        Those of one body by their names; without any, the engine's defaults.
+    time_step : Quantity
+    other : mapping, optional
+        Those of the other body, by default the same.
+    one_body : bool
+        Whether the other body has the engine's defaults.
+
+    Raises
+    ------
+    Refused
+        If a parameter or the step is missing, unknown or out of its range.
+    """
+    row = engine_named(engine)
+    if time_step is None and row.fixed_steps:
+        raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
+    of_one = parameters_of(row, parameters or {})
+    if one_body and other:
+        raise Refused("give either the parameters of the other body or --one-body, not both")
+    of_other = of_one
+    if other:
+        of_other = parameters_of(row, other)
+    elif one_body:
+        of_other = parameters_of(row, {})
+    problem = Problem(bounce, row)
+    if time_step is None:
+        law = row.read(row.combined(of_one, of_other), problem.setting(1.0))
+        step = float(law.duration(bounce.impact_speed)) / _SHORT
+    else:
+        step = positive("time step", time_step, "s")
+    pair = _Pair(problem, of_one, of_other)
+    law = pair.law(step)
+    outcome = problem.outcome(law, step)
+    limit = free = outcome.restitution[1]
+    if not isinstance(law, Impulse):
+        short = float(law.duration(bounce.impact_speed)) / _SHORT
+        limit = float(problem.drops(law, min(short, step)).mean)
+        weightless = _without_gravity(problem)
+        free = float(weightless.drops(law, min(short, step)).mean)
+    stiffness, ratio = _spring(problem, law)
+    reasons = tuple(_reasons(pair, step, law, outcome, limit, free))
+    change = None
+    if bounce.restitution is not None and outcome.deviation(bounce.restitution) > TOLERANCE:
+        change = _least_change(pair, step)
+        if change is None or not math.isclose(change.step, step):
+            reasons += (_another(problem, step),)
+    return Diagnosis(
+        engine=row.name,
+        bounce=bounce,
+        time_step=step,
+        parameters=of_one,
+        outcome=outcome,
+        limit=limit,
+        free=free,
+        stiffness=stiffness,
+        damping_ratio=ratio,
+        reasons=reasons,
+        change=change,
+    )
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """The parameters of two bodies."""
+
+    problem: Problem
+    one: dict[str, Any]
+    other: dict[str, Any]
+
+    def law(self, step: float) -> Law:
+        engine = self.problem.engine
+        combined = engine.combined(self.one, self.other)
+        return engine.read(combined, self.problem.setting(step))
+
+    def changed(self, name: str, value: Any) -> "_Pair":
+        """Return the pair with another value, of both bodies if they are alike."""
+        one = self.one | {name: value}
+        other = one if self.one == self.other else self.other
+        return _Pair(self.problem, one, other)
+
+    def mean(self, step: float) -> float:
+        """Return the mean r."""
+        return float(self.problem.drops(self.law(step), step, offsets(15)).mean)
+
+
+def _without_gravity(problem: Problem) -> Problem:
+    # A second free body so heavy that it does not move.
+    bounce = problem.bounce
+    alone = replace(
+        bounce, drop_height=None, speed=bounce.impact_speed, other_mass=1e9 * bounce.reduced_mass
+    )
+    return replace(problem, bounce=alone)
+
+
+def _spring(problem: Problem, law: Law) -> tuple[float, float]:
+    """Return k in N/m and ζ of a spring and a damper."""
+    mass = problem.bounce.reduced_mass
+    if isinstance(law, Impedance):
+        k = law.high**2 * law.points * float(law.stiffness)
+        c = law.high * law.points * float(law.damping)
+    elif isinstance(law, Linear):
+        k = float(law.stiffness)
+        c = float(law.damping)
+    else:
+        return math.nan, math.nan
+    return k * mass, c / (2 * math.sqrt(k))
+
+
+def _reasons(
+    pair: _Pair, step: float, law: Law, outcome: Outcome, limit: float, free: float
+) -> Iterator[str]:
+    """Yield what keeps r from the wanted one, and what else is wrong with this contact."""
+    problem = pair.problem
+    bounce = problem.bounce
+    low, mean, high = outcome.restitution
+    if isinstance(law, Impulse):
+        yield "no spring is set: this is an impact by the number restitution, of both bodies"
+        return
+    steps = float(law.duration(bounce.impact_speed)) / step
+    if high > 1.02:
+        yield f"unstable: a contact takes {steps:.2g} steps, and the body leaves faster than before"
+    elif steps < _FEW:
+        yield f"a contact takes {steps:.2g} steps: r depends on where in a step it begins"
+    if abs(mean - limit) > TOLERANCE / 2 and high <= 1.02:
+        yield f"the step changes r by {mean - limit:+.3f}, from {limit:.3f} in short steps"
+    if abs(free - limit) > TOLERANCE / 2:
+        yield f"gravity during the contact changes r by {limit - free:+.3f}, from {free:.3f}"
+    stiffness, ratio = _spring(problem, law)
+    if ratio >= 1:
+        yield f"the damping ratio of {ratio:.3g} is that of a contact without oscillation"
+    if outcome.depth[1] > bounce.size:
+        yield f"it sinks deeper than its radius of {show(bounce.size, 'm')}"
+    if isinstance(law, Impedance):
+        yield from _of_mujoco(pair, step, law)
+    if bounce.restitution is not None:
+        yield from _mistaken(pair, step, free, ratio)
+
+
+def _of_mujoco(pair: _Pair, step: float, law: Impedance) -> Iterator[str]:
+    combined = pair.problem.engine.combined(pair.one, pair.other)
+    time = combined["solref"][0]
+    if 0 < time < 2 * step and combined.get("refsafe", 1):
+        yield (
+            f"MuJoCo raises the time constant of {time:g} s to {2 * step:g} s, two steps (refsafe)"
+        )
+    if law.high > 0.01:
+        yield (
+            f"with the impedance {law.high:g} a contact feels {1 - law.high:.2g} of gravity; a "
+            "spring and a damper feel all of it with solimp = 1e-4 1e-4 0.001"
+        )
+
+
+def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[str]:
+    """Yield the usual mistakes of formulas that explain the parameters."""
+    problem = pair.problem
+    wanted = float(problem.bounce.restitution)
+    engine = problem.engine
+    mass = problem.bounce.reduced_mass
+    if abs(free - wanted) < TOLERANCE:
+        return
+    for name, divided in _per_mass(pair):
+        mean = divided.mean(step)
+        if abs(mean - wanted) < min(TOLERANCE, 0.3 * abs(free - wanted)) and mass != 1:
+            yield (
+                f"{name} is per unit of mass in {engine.name}: divided by {mass:g} kg, r is "
+                f"{mean:.3f}"
+            )
+    if ratio < 1:
+        pulling = math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2))
+        if abs(pulling - wanted) < 0.005:
+            yield (
+                "this damping is that of a contact whose damper pulls until the end, "
+                f"r = exp(-πζ/√(1 - ζ²)); in {engine.name} it ends earlier"
+            )
+
+
+def _per_mass(pair: _Pair) -> Iterator[tuple[str, _Pair]]:
+    """Yield the parameters that are per unit of mass, and the pair with them divided by it."""
+    mass = pair.problem.bounce.reduced_mass
+    name = pair.problem.engine.name
+    if name == "mujoco" and pair.one["solref"][0] < 0:
+        scaled = tuple(value / mass for value in pair.one["solref"])
+        yield "solref", pair.changed("solref", scaled)
+    if name == "newton-mujoco":
+        scaled_pair = pair.changed("ke", pair.one["ke"] / mass)
+        yield "ke and kd", scaled_pair.changed("kd", pair.one["kd"] / mass)
+    if name in ("lammps", "lammps-limit-damping", "liggghts", "liggghts-limit-force", "chrono"):
+        damping = pair.problem.engine.names[1]
+        yield damping, pair.changed(damping, pair.one[damping] / mass)
+
+
+def _another(problem: Problem, step: float) -> str:
+    """Return what has r at this step if no damping of the given contact has it."""
+    try:
+        found = design(problem.bounce, problem.engine.name, step)
+    except Refused:
+        return "no damping of this contact has the wanted r at this step"
+    row = found.row
+    values = ", ".join(f"{name} = {_typed(value)}" for name, value in row.parameters.items())
+    at = "" if math.isclose(row.step, step, rel_tol=1e-4) else f", at {show(row.step, 's')}"
+    return (
+        f"no damping of this contact has the wanted r at this step; {values} has "
+        f"{row.outcome.around}{at}"
+    )
+
+
+def _least_change(pair: _Pair, step: float) -> Change | None:
+    """Return the damping with the wanted r, at this step or at the longest shorter one."""
+    problem = pair.problem
+    if isinstance(pair.law(step), Impulse):
+        return _damping(pair, step, "restitution")
+    for halvings in range(7):
+        found = _damping(pair, step / 2**halvings, problem.engine.names[1])
+        if found is not None:
+            return found
+        if not problem.engine.fixed_steps:
+            return None
+    return None
+
+
+def _damping(pair: _Pair, step: float, name: str) -> Change | None:
+    """Return the value of the parameter with the wanted r at a step; None if none has it."""
+    problem = pair.problem
+    target = max(float(problem.bounce.restitution), LEAST_RESTITUTION)
+    rises = name in ("e", "coefficientRestitution", "restitution", "soft_erp")
+
+    def of(value: float) -> Any:
+        if name != "solref":
+            return value
+        first, second = pair.one["solref"]
+        return (first, -value if first < 0 else value)
+
+    def mean(value: float) -> float:
+        return pair.changed(name, of(value)).mean(step)
+
+    bracket = _shares(mean, target) if rises else _damped(mean, target, _start(pair, name))
+    if bracket is None:
+        return None
+    low, high = bracket
+    for _ in range(18):
+        middle = (low + high) / 2
+        if (mean(middle) > target) == rises:
+            high = middle
+        else:
+            low = middle
+    value = float(f"{(low + high) / 2:.5g}")
+    found = pair.changed(name, of(value))
+    outcome = problem.outcome(found.law(step), step)
+    # A mean that hides large errors is no change for the better.
+    misses = abs(outcome.restitution[1] - target) > TOLERANCE or outcome.error > 3 * TOLERANCE
+    if misses or outcome.restitution[2] > 1.02:
+        return None
+    return Change(name, of(value), step, outcome)
+
+
+def _start(pair: _Pair, name: str) -> float:
+    given = abs(pair.one[name][1] if name == "solref" else pair.one[name])
+    return float(given) if given > 0 else 1.0
+
+
+def _shares(mean: Callable[[float], float], target: float) -> tuple[float, float] | None:
+    """Return the bounds of a parameter between 0 and 1 with which r rises."""
+    if mean(1.0) < target - TOLERANCE:
+        return None
+    return 1e-4, 1.0
+
+
+def _damped(
+    mean: Callable[[float], float], target: float, start: float
+) -> tuple[float, float] | None:
+    """Return neighbouring values between which r falls below the target, from small ones on."""
+    low = 0.0
+    high = start / 4096
+    if mean(high) < target:
+        # A damping this small changes nothing: the steps alone damp more, or nearly so.
+        return (low, high) if mean(high * 1e-6) >= target else None
+    for _ in range(30):
+        low = high
+        high = 2 * high
+        if mean(high) < target:
+            return low, high
+    return None

@@ -1,0 +1,734 @@
+"""Physics engines as rows of a table: what each calls a stiffness and a damping, and how it steps.
+
+A row says how a contact with k, c and m is written in the parameters of an engine, how the
+parameters of two bodies are combined into those of their contact, and which scheme then moves the
+body. Laws are per unit of mass (:mod:`.schemes`); for two free bodies m is their reduced mass.
+"""
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball_contacts.schemes import (
+    Array,
+    Hertz,
+    HuntCrossley,
+    Impedance,
+    Implicit,
+    Impulse,
+    Impulsive,
+    Law,
+    Linear,
+    Scheme,
+    SemiImplicit,
+    Stepped,
+)
+from bouncing_ball_contacts.units import Refused
+
+Parameters = Mapping[str, Any]
+LEAST_IMPEDANCE = 1e-4
+"""MuJoCo's, with which a contact feels its load as a spring and a damper do."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where a contact is used: the (reduced) mass in kg, the step in s, the number of points that
+    share the force, and the (reduced) radius in m.
+    """
+
+    mass: float
+    step: float
+    points: int = 1
+    radius: float = 0.01
+
+
+@dataclass(frozen=True)
+class Rule:
+    """How an engine combines a number of two bodies.
+
+    ``of`` combines two numbers, ``alike`` gives the number that both bodies need for a combined
+    one, and ``alone`` the number of one body if the other one keeps its default.
+    """
+
+    text: str
+    of: Callable[[Any, Any], Any]
+    alike: Callable[[Any], Any]
+    alone: Callable[[Any, Any], Any]
+
+
+SERIES = Rule(
+    "in series",
+    lambda a, b: a * b / (a + b),
+    lambda x: 2 * x,
+    lambda x, other: x / (1 - x / other),
+)
+SUM = Rule("added", lambda a, b: a + b, lambda x: x / 2, lambda x, other: x - other)
+MEAN = Rule("averaged", lambda a, b: (a + b) / 2, lambda x: x, lambda x, other: 2 * x - other)
+PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt, lambda x, other: x / other)
+PAIR = Rule("of the pair", lambda a, b: a, lambda x: x, lambda x, other: x)
+
+
+@dataclass(frozen=True)
+class Engine:
+    """A physics engine and one of its contacts.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The parameters of the stiffness and of the damping; that of the damping sets r.
+    rules : mapping
+        How the engine combines each parameter of two bodies.
+    write : callable
+        The combined parameters of a law in a setting.
+    read : callable
+        The law of combined parameters in a setting.
+    meaning : str
+        The parameters in terms of k, c and m, both bodies alike.
+    of_depth : callable
+        The law of an undamped depth, a ratio of damping and a speed, see :class:`.Linear`.
+    defaults : mapping
+        The parameters of a body for which none are set.
+    sets_pair : bool
+        Whether the snippet sets the contact of a pair, and not of each body.
+    points_share : bool
+        Whether each point of a face has a contact of its own, so that their forces add up.
+    deepest : float
+        The largest penetration in radii at which the engine still sees the contact.
+    fixed_steps : bool
+        False if a solver with error control chooses the steps.
+    ran : str
+        The version in which designs of this row were run; empty if none was.
+    notes : tuple of str
+        What a user has to know.
+    friction : str
+        What friction does to r.
+    impulse : str
+        What sets a restitution coefficient without a spring, if the engine has it.
+    """
+
+    name: str
+    names: tuple[str, str]
+    scheme: Scheme
+    write: Callable[[Law, Setting], dict[str, Any]]
+    read: Callable[[Parameters, Setting], Law]
+    meaning: str
+    rules: Mapping[str, Rule]
+    of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
+    defaults: Parameters = field(default_factory=dict)
+    optional: tuple[str, ...] = ()
+    sets_pair: bool = False
+    points_share: bool = True
+    deepest: float = math.inf
+    fixed_steps: bool = True
+    unit: str = "N/m"
+    ran: str = ""
+    notes: tuple[str, ...] = ()
+    friction: str = "friction acts along the surface only, and leaves r as it is"
+    impulse: str = ""
+
+    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
+        """Return the parameters of the contact of two bodies."""
+        both = {**other, **one}
+        return {
+            name: self.rules[name].of(value, other.get(name, value)) for name, value in both.items()
+        }
+
+    def of_each(self, combined: Parameters) -> dict[str, Any]:
+        """Return the parameters that both bodies need alike for those of their contact."""
+        return {name: self.rules[name].alike(value) for name, value in combined.items()}
+
+    def of_one(self, combined: Parameters) -> dict[str, Any]:
+        """Return the parameters of one body if the other one has the defaults.
+
+        Raises
+        ------
+        Refused
+            If the contact is of the pair in this engine, or cannot be made by one body.
+        """
+        if self.sets_pair or not self.defaults:
+            raise Refused(f"{self.name} has no contact that one body alone sets")
+        values = {
+            name: self.rules[name].alone(value, self.defaults[name])
+            for name, value in combined.items()
+        }
+        for name, value in values.items():
+            if np.min(value) < 0 and name != "solref":
+                raise Refused(
+                    f"one body alone cannot make this contact in {self.name}: with the default "
+                    f"{name} = {self.defaults[name]:g} of the other one it would need {value:.3g}"
+                )
+        return values
+
+    def scheme_of(self, law: Law) -> Scheme:
+        """Return the scheme of a law, which for an impulse is none of a force."""
+        return Impulsive() if isinstance(law, Impulse) else self.scheme
+
+    @property
+    def steps(self) -> str:
+        """The scheme in a few words."""
+        return self.scheme.text if self.fixed_steps else "error-controlled"
+
+    @property
+    def pairs(self) -> str:
+        """How the parameters of two bodies are combined, in a few words."""
+        texts = dict.fromkeys(self.rules[name].text for name in dict.fromkeys(self.names))
+        return ", ".join(texts)
+
+
+@dataclass(frozen=True)
+class DrakeDissipation(Engine):
+    """Drake's dissipations are averaged, each with the share of its body in the penetration."""
+
+    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
+        stiffness, dissipation = self.names
+        k1 = one[stiffness]
+        k2 = other[stiffness]
+        mean = (k2 * one[dissipation] + k1 * other[dissipation]) / (k1 + k2)
+        return {stiffness: SERIES.of(k1, k2), dissipation: mean}
+
+
+def text_of(name: str) -> str:
+    """Return the text of a file of snippets; empty if there is none."""
+    path = files(__package__).joinpath("snippets", f"{name}.txt")
+    return path.read_text("utf-8") if path.is_file() else ""
+
+
+def filled(text: str, values: Mapping[str, Any]) -> str:
+    """Return a text with numbers in place of ``@name@`` and ``@name.0@``."""
+
+    def number(place: re.Match[str]) -> str:
+        name, _, index = place[1].partition(".")
+        value = values[name][int(index)] if index else values[name]
+        return value if isinstance(value, str) else f"{value:.6g}"
+
+    return re.sub(r"@([\w.]+)@", number, text)
+
+
+def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
+    """Return `names`, `write` and `read` of a stiffness in N/m and a damping in N s/m or 1/s."""
+
+    def write(law: Law, at: Setting) -> dict[str, Any]:
+        c = float(law.damping) * (1 if per_mass else at.mass)
+        return {names[0]: float(law.stiffness) * at.mass / at.points, names[1]: c / at.points}
+
+    def read(p: Parameters, at: Setting) -> Law:
+        c = p[names[1]] * at.points / (1 if per_mass else at.mass)
+        return Linear(np.asarray(p[names[0]] * at.points / at.mass), np.asarray(c))
+
+    return {"names": names, "write": write, "read": read}
+
+
+def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
+    # N points of the impedance d act as one of N d/(1 + (N - 1) d).
+    share = (1 + (at.points - 1) * LEAST_IMPEDANCE) / at.points
+    k = float(law.stiffness) * share
+    return {
+        "solref": (-k, -float(law.damping) * share),
+        "solimp": (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001),
+    }
+
+
+def _solimp(values: Any) -> tuple[float, ...]:
+    given = [float(value) for value in np.atleast_1d(values)]
+    low, high, width, middle, power = given + [0.9, 0.95, 0.001, 0.5, 2.0][len(given) :]
+
+    def within_bounds(share: float) -> float:
+        # MuJoCo keeps impedances and the middle within these bounds.
+        return min(max(share, LEAST_IMPEDANCE), 1 - LEAST_IMPEDANCE)
+
+    return (
+        within_bounds(low),
+        within_bounds(high),
+        max(width, 1e-15),
+        within_bounds(middle),
+        max(power, 1.0),
+    )
+
+
+def _read_mujoco(p: Parameters, at: Setting) -> Law:
+    first, second = p["solref"]
+    low, high, width, middle, power = _solimp(p["solimp"])
+    if first > 0:
+        time = max(first, 2 * at.step) if p.get("refsafe", 1) else first
+        k = 1 / (high * time * second) ** 2
+        b = 2 / (high * time)
+    else:
+        k = -first / high**2
+        b = -second / high
+    return Impedance(
+        stiffness=np.asarray(k),
+        damping=np.asarray(b),
+        points=at.points,
+        low=low,
+        high=high,
+        width=width,
+        middle=middle,
+        power=power,
+    )
+
+
+def _mix_solref(one: Any, other: Any) -> tuple[float, ...]:
+    a = np.asarray(one, float)
+    b = np.asarray(other, float)
+    return tuple((a + b) / 2 if min(a[0], b[0]) > 0 else np.minimum(a, b))
+
+
+def _mix_solimp(one: Any, other: Any) -> tuple[float, ...]:
+    return tuple((np.asarray(_solimp(one)) + np.asarray(_solimp(other))) / 2)
+
+
+def _alone_solimp(value: Any, other: Any) -> tuple[float, ...]:
+    raise Refused(
+        "one geom alone cannot make this contact in mujoco, which averages solimp: set both, or "
+        "give the geom a higher priority"
+    )
+
+
+_MUJOCO_RULES = {
+    "solref": Rule("least of both", _mix_solref, lambda x: x, lambda x, other: x),
+    "solimp": Rule("averaged", _mix_solimp, lambda x: x, _alone_solimp),
+    "refsafe": PAIR,
+}
+
+
+def _write_genesis(law: Law, at: Setting) -> dict[str, Any]:
+    c = float(law.damping) / at.points
+    if c <= 0:
+        raise Refused("genesis has no contact without damping: its time constant is 2 m/c")
+    k = float(law.stiffness) / at.points
+    return {"timeconst": 2 / c, "dampratio": c / (2 * math.sqrt(k))}
+
+
+def _read_genesis(p: Parameters, at: Setting) -> Law:
+    time = max(p["timeconst"], 2 * at.step)
+    c = 2 / time * at.points
+    return Linear(np.asarray(at.points / (time * p["dampratio"]) ** 2), np.asarray(c))
+
+
+def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
+    if float(law.damping) <= 0:
+        raise Refused("newton-mujoco has no contact without damping: kd = 0 stands for a default")
+    return {
+        "ke": float(law.stiffness) / at.points,
+        "kd": float(law.damping) / at.points,
+    }
+
+
+def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
+    return Linear(np.asarray(p["ke"] * at.points), np.asarray(p["kd"] * at.points))
+
+
+def _read_pybullet(p: Parameters, at: Setting) -> Law:
+    spring = p.get("contactStiffness", -1)
+    damper = p.get("contactDamping", -1)
+    if spring <= 0 or damper < 0:
+        e = p.get("restitution", 0.0)
+        return Impulse(np.asarray(0.0), np.asarray(e))
+    return Linear(
+        np.asarray(spring * at.points / at.mass), np.asarray(damper * at.points / at.mass)
+    )
+
+
+def _series_if_set(a: float, b: float) -> float:
+    return -1.0 if min(a, b) < 0 else SERIES.of(a, b)
+
+
+def _sum_if_set(a: float, b: float) -> float:
+    return -1.0 if min(a, b) < 0 else a + b
+
+
+def _write_drake(law: Law, at: Setting) -> dict[str, Any]:
+    return {
+        "point_contact_stiffness": float(law.stiffness) * at.mass,
+        "relaxation_time": float(law.damping / law.stiffness),
+    }
+
+
+def _read_drake(p: Parameters, at: Setting) -> Law:
+    k = p["point_contact_stiffness"] / at.mass
+    return Linear(np.asarray(k), np.asarray(p["relaxation_time"] * k))
+
+
+def _write_dissipation(law: Law, at: Setting) -> dict[str, Any]:
+    return {
+        "point_contact_stiffness": float(law.stiffness) * at.mass,
+        "hunt_crossley_dissipation": float(law.damping),
+    }
+
+
+def _read_dissipation(p: Parameters, at: Setting) -> Law:
+    k = p["point_contact_stiffness"] / at.mass
+    return HuntCrossley(np.asarray(k), np.asarray(p["hunt_crossley_dissipation"]))
+
+
+def _tsuji_restitution(law: Law) -> float:
+    beta = min(float(law.damping), 1 - 1e-9)
+    return math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
+
+
+def _tsuji(e: float) -> Array:
+    log = math.log(max(e, 1e-12))
+    return np.asarray(-log / math.hypot(math.pi, log))
+
+
+def _write_hertz(law: Law, at: Setting) -> dict[str, Any]:
+    k = float(law.stiffness) * at.mass / at.points
+    return {"kn": k / math.sqrt(at.radius), "e": _tsuji_restitution(law)}
+
+
+def _read_hertz(p: Parameters, at: Setting) -> Law:
+    k = p["kn"] * math.sqrt(at.radius) * at.points / at.mass
+    return Hertz(np.asarray(k), _tsuji(p["e"]))
+
+
+_POISSON = 0.3
+
+
+def _write_liggghts_hertz(law: Law, at: Setting) -> dict[str, Any]:
+    # Two alike bodies have 1/E* = 2 (1 - ν²)/E, and k = (4/3) E* √R.
+    reduced = 0.75 * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
+    return {
+        "youngsModulus": 2 * (1 - _POISSON**2) * reduced,
+        "coefficientRestitution": _tsuji_restitution(law),
+    }
+
+
+def _read_liggghts_hertz(p: Parameters, at: Setting) -> Law:
+    reduced = p["youngsModulus"] / (2 * (1 - _POISSON**2))
+    k = 4 / 3 * reduced * math.sqrt(at.radius) * at.points / at.mass
+    return Hertz(np.asarray(k), _tsuji(p["coefficientRestitution"]))
+
+
+def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
+    kp = float(law.stiffness) * at.mass / at.points
+    kd = float(law.damping) * at.mass / at.points
+    both = at.step * kp + kd
+    return {"soft_cfm": 1 / both, "soft_erp": at.step * kp / both}
+
+
+def _read_ode(p: Parameters, at: Setting) -> Law:
+    kp = p["soft_erp"] / (p["soft_cfm"] * at.step)
+    kd = (1 - p["soft_erp"]) / p["soft_cfm"]
+    return Linear(np.asarray(kp * at.points / at.mass), np.asarray(kd * at.points / at.mass))
+
+
+def _adams_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
+    return Stepped(
+        1.25 * speed**2 / depth**2.5, 2 * ratio * speed / depth, depth / 10, exponent=1.5
+    )
+
+
+def _simscape_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
+    linear = Linear.of_depth(depth, ratio, speed)
+    return Stepped(linear.stiffness, linear.damping, depth / 10, steps_spring=True)
+
+
+def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -> dict[str, Any]:
+    """Return `names`, `write` and `read` of a damper that is stepped in over a depth in m."""
+
+    def write(law: Any, at: Setting) -> dict[str, Any]:
+        numbers = (law.stiffness * at.mass, law.damping * at.mass, law.depth * at.points)
+        return {name: float(x) / at.points for name, x in zip(names, numbers, strict=True)}
+
+    def read(p: Parameters, at: Setting) -> Law:
+        k, c = (np.asarray(p[name] * at.points / at.mass) for name in names[:2])
+        return Stepped(k, c, np.asarray(p[names[2]]), exponent, steps_spring)
+
+    return {"names": names[:2], "write": write, "read": read, "optional": (names[2],)}
+
+
+_BOTH = "Give both bodies these numbers"
+_STEP_ONLY = "they take back what this time step damps, and hold for it only"
+_VERLET = SemiImplicit(pulls=True)
+_ALL = {
+    engine.name: engine
+    for engine in (
+        Engine(
+            name="mujoco",
+            names=("solref", "solref"),
+            scheme=SemiImplicit(),
+            write=_write_mujoco,
+            read=_read_mujoco,
+            meaning="solref = -k/m -c/m, solimp = 1e-4 1e-4 0.001",
+            rules=_MUJOCO_RULES,
+            defaults={"solref": (0.02, 1.0), "solimp": (0.9, 0.95, 0.001)},
+            optional=("solimp", "refsafe"),
+            ran="MuJoCo 4.0.0",
+            notes=(
+                "The numbers of solref are per unit of mass: they hold for every mass, and for two "
+                "free bodies",
+                "Give both geoms the class, because MuJoCo averages their solimp",
+                'With a condim of 4 or 6 r needs the option cone="elliptic"',
+            ),
+            friction="MuJoCo: condim 1 and 3 keep r; with the pyramidal cone 4 and 6 lower it "
+            '(0.697 and 0.630 in place of 0.744), cone="elliptic" does not',
+        ),
+        Engine(
+            name="pybullet",
+            scheme=Implicit(),
+            **_forces(("contactStiffness", "contactDamping")) | {"read": _read_pybullet},
+            meaning="contactStiffness = 2 k, contactDamping = c/2",
+            rules={
+                "contactStiffness": Rule("in series", _series_if_set, SERIES.alike, SERIES.alone),
+                "contactDamping": Rule("added", _sum_if_set, SUM.alike, SUM.alone),
+                "restitution": PRODUCT,
+            },
+            defaults={"contactStiffness": 1e18, "contactDamping": 0.1, "restitution": 0.0},
+            optional=("restitution",),
+            ran="PyBullet 3.2.7",
+            notes=(
+                f"{_BOTH}; {_STEP_ONLY}",
+                "A box has its four points at once on a box, and one or two on GEOM_PLANE",
+            ),
+            impulse="restitution of both bodies, multiplied",
+        ),
+        Engine(
+            name="drake",
+            names=("point_contact_stiffness", "relaxation_time"),
+            scheme=Implicit(),
+            write=_write_drake,
+            read=_read_drake,
+            meaning="point_contact_stiffness = 2 k, relaxation_time = c/(2 k)",
+            rules={"point_contact_stiffness": SERIES, "relaxation_time": SUM},
+            defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
+            points_share=False,
+            ran="Drake 1.51.1",
+            notes=(f"{_BOTH}; {_STEP_ONLY}", "A pair of shapes has one contact, a box as well"),
+        ),
+        DrakeDissipation(
+            name="drake-hunt-crossley",
+            names=("point_contact_stiffness", "hunt_crossley_dissipation"),
+            scheme=Implicit(),
+            write=_write_dissipation,
+            read=_read_dissipation,
+            meaning="point_contact_stiffness = 2 k, hunt_crossley_dissipation = d in k p (1 + d w)",
+            rules={"point_contact_stiffness": SERIES, "hunt_crossley_dissipation": MEAN},
+            of_depth=HuntCrossley.of_depth,
+            points_share=False,
+            ran="Drake 1.51.1",
+            notes=(f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",),
+        ),
+        Engine(
+            name="lammps",
+            scheme=_VERLET,
+            **_forces(("kn", "gamma_n"), per_mass=True),
+            meaning="kn = k, gamma_n = c/m",
+            rules={"kn": PAIR, "gamma_n": PAIR},
+            sets_pair=True,
+            deepest=1.0,
+            ran="LAMMPS 2025.7.22",
+            notes=("The damping is per unit of the (reduced) mass, and holds for this one only",),
+        ),
+        Engine(
+            name="lammps-limit-damping",
+            scheme=SemiImplicit(),
+            **_forces(("kn", "gamma_n"), per_mass=True),
+            meaning="kn = k, gamma_n = c/m, with limit_damping",
+            rules={"kn": PAIR, "gamma_n": PAIR},
+            sets_pair=True,
+            deepest=1.0,
+            ran="LAMMPS 2025.7.22",
+            notes=("The damping is per unit of the (reduced) mass, and holds for this one only",),
+        ),
+        Engine(
+            name="lammps-hertz",
+            names=("kn", "e"),
+            scheme=_VERLET,
+            write=_write_hertz,
+            read=_read_hertz,
+            meaning="kn = (4/3) E* in Pa, e = r",
+            rules={"kn": PAIR, "e": PAIR},
+            of_depth=Hertz.of_depth,
+            sets_pair=True,
+            deepest=1.0,
+            unit="N/m^1.5",
+            ran="LAMMPS 2025.7.22",
+            notes=("The modulus kn is for this radius; e is the same at every speed",),
+        ),
+        Engine(
+            name="liggghts",
+            scheme=_VERLET,
+            **_forces(("kn", "gamman"), per_mass=True),
+            meaning="kn = k, gamman = c/m (absolute_damping off)",
+            rules={"kn": PAIR, "gamman": PAIR},
+            sets_pair=True,
+            deepest=1.0,
+        ),
+        Engine(
+            name="liggghts-limit-force",
+            scheme=SemiImplicit(),
+            **_forces(("kn", "gamman"), per_mass=True),
+            meaning="kn = k, gamman = c/m, with limitForce on",
+            rules={"kn": PAIR, "gamman": PAIR},
+            sets_pair=True,
+            deepest=1.0,
+        ),
+        Engine(
+            name="liggghts-hertz",
+            names=("youngsModulus", "coefficientRestitution"),
+            scheme=_VERLET,
+            write=_write_liggghts_hertz,
+            read=_read_liggghts_hertz,
+            meaning="youngsModulus = E of both, ν = 0.3, coefficientRestitution = r",
+            rules={"youngsModulus": PAIR, "coefficientRestitution": PAIR},
+            of_depth=Hertz.of_depth,
+            sets_pair=True,
+            deepest=1.0,
+            unit="N/m^1.5",
+        ),
+        Engine(
+            name="newton",
+            scheme=SemiImplicit(approach=True),
+            **_forces(("ke", "kd")),
+            meaning="ke = k, kd = c, in SolverSemiImplicit and SolverFeatherstone",
+            rules={"ke": MEAN, "kd": MEAN},
+            defaults={"ke": 2500.0, "kd": 100.0},
+            ran="Newton 1.8.0",
+            notes=("The damper acts while the bodies approach only", _BOTH),
+        ),
+        Engine(
+            name="newton-mujoco",
+            names=("ke", "kd"),
+            scheme=SemiImplicit(),
+            write=_write_newton_mujoco,
+            read=_read_newton_mujoco,
+            meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
+            rules={"ke": MEAN, "kd": MEAN},
+            ran="Newton 1.8.0",
+            notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
+        ),
+        Engine(
+            name="genesis",
+            names=("timeconst", "dampratio"),
+            scheme=SemiImplicit(),
+            write=_write_genesis,
+            read=_read_genesis,
+            meaning="timeconst = 2 m/c, dampratio = c/√(4 k m)",
+            rules={"timeconst": MEAN, "dampratio": MEAN},
+            notes=("The numbers hold for every mass", _BOTH),
+        ),
+        Engine(
+            name="physx",
+            scheme=Implicit(ahead=True),
+            **_forces(("compliantContactStiffness", "compliantContactDamping")),
+            meaning="compliantContactStiffness = k, compliantContactDamping = c",
+            rules={"compliantContactStiffness": MEAN, "compliantContactDamping": MEAN},
+            notes=(
+                f"Use the solver PGS; {_STEP_ONLY}",
+                "The contactOffset has to be longer than the way of the body in a step",
+            ),
+            impulse="restitution of the material",
+        ),
+        Engine(
+            name="mercurydpm",
+            scheme=_VERLET,
+            **_forces(("stiffness", "dissipation")),
+            meaning="stiffness = k, dissipation = c",
+            rules={"stiffness": PAIR, "dissipation": PAIR},
+            sets_pair=True,
+            deepest=1.0,
+        ),
+        Engine(
+            name="ode",
+            names=("soft_cfm", "soft_erp"),
+            scheme=Implicit(),
+            write=_write_ode,
+            read=_read_ode,
+            meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
+            rules={"soft_cfm": PAIR, "soft_erp": PAIR},
+            sets_pair=True,
+            notes=(f"These are numbers of a contact joint; {_STEP_ONLY}",),
+            impulse="bounce of the contact joint",
+        ),
+        Engine(
+            name="gazebo",
+            scheme=Implicit(),
+            **_forces(("kp", "kd")),
+            meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
+            rules={"kp": SERIES, "kd": SUM},
+            defaults={"kp": 1e12, "kd": 1.0},
+            notes=(
+                f"{_BOTH}; {_STEP_ONLY}",
+                "The snippet lifts max_vel, which limits the correction",
+            ),
+            impulse="restitution_coefficient of the surface",
+        ),
+        Engine(
+            name="chrono",
+            scheme=SemiImplicit(),
+            **_forces(("kn", "gn"), per_mass=True),
+            meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
+            rules={"kn": MEAN, "gn": MEAN},
+            notes=("The damping gn is per unit of the effective mass, and holds for it only",),
+        ),
+        Engine(
+            name="simscape",
+            scheme=SemiImplicit(),
+            **_stepped(("stiffness", "damping", "transition"), 1.0, True),
+            of_depth=_simscape_of_depth,
+            meaning="stiffness = k, damping = c, transition region width = a tenth of the depth",
+            rules={"stiffness": PAIR, "damping": PAIR, "transition": PAIR},
+            sets_pair=True,
+            fixed_steps=False,
+            notes=("The transition is taken as cubic; the manual does not give its formula",),
+        ),
+        Engine(
+            name="adams",
+            scheme=SemiImplicit(),
+            **_stepped(("stiffness", "damping", "penetration"), 1.5, False),
+            of_depth=_adams_of_depth,
+            meaning="IMPACT with exponent 1.5, stiffness K, full damping C at the penetration d",
+            rules={"stiffness": PAIR, "damping": PAIR, "penetration": PAIR},
+            sets_pair=True,
+            fixed_steps=False,
+            unit="N/m^1.5",
+        ),
+        Engine(
+            name="generic",
+            scheme=SemiImplicit(),
+            **_forces(("stiffness", "damping")),
+            meaning="stiffness = k, damping = c; semi-implicit Euler, a contact that never pulls",
+            rules={"stiffness": PAIR, "damping": PAIR},
+            sets_pair=True,
+            ran="a script of NumPy",
+        ),
+    )
+}
+ENGINES: Mapping[str, Engine] = _ALL
+"""The engines by name."""
+
+_ALIASES = {
+    "mujoco-warp": "mujoco",
+    "mjx": "mujoco",
+    "bullet": "pybullet",
+    "isaac": "physx",
+    "isaac-sim": "physx",
+    "isaac-lab": "physx",
+    "newton-semi-implicit": "newton",
+    "newton-featherstone": "newton",
+    "gazebo-classic": "gazebo",
+    "chrono-smc": "chrono",
+}
+
+
+def engine_named(name: str) -> Engine:
+    """Return the engine with this name or one of its other names.
+
+    Raises
+    ------
+    Refused
+        If there is none; the message has the nearest names, or all of them.
+    """
+    wanted = name.strip().lower().replace("_", "-").replace(" ", "-")
+    wanted = _ALIASES.get(wanted, wanted)
+    if wanted in ENGINES:
+        return ENGINES[wanted]
+    near = difflib.get_close_matches(wanted, [*ENGINES, *_ALIASES], 3)
+    known = f"did you mean {' or '.join(near)}?" if near else f"known are {', '.join(ENGINES)}"
+    raise Refused(f"engine {name!r} is not known; {known}")

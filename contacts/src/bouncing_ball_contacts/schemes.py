@@ -1,0 +1,415 @@
+r"""A drop, computed in the steps of an engine, over all instants of the impact within a step.
+
+The height of the body above the surface is z, its velocity v; p = -z is the penetration and
+w = -v its rate. Everything is per unit of mass. Every engine here moves a body by::
+
+    v⁺ = v - h g + h a,    z⁺ = z + h v⁺
+
+and the engines differ in the acceleration a of the contact: at which instant it is taken, when it
+ends, and by which law. Velocity Verlet (LAMMPS, LIGGGHTS, MercuryDPM) is of this form as well, if
+v is the velocity of half steps, by which its dampers act.
+
+A ball that starts from rest at the height H has velocities -n g h. Let -s u h be its first height
+below the surface, and u its speed then. Its start gives::
+
+    u²/(2g) + u h (1/2 - s) = H,   u = g [√(τ² + 2H/g) - τ],   τ = h (1/2 - s)
+
+where the offset s is anything between 0 and 1. All results are taken over many offsets.
+"""
+
+from dataclasses import dataclass, fields, replace
+from typing import Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+MOST_STEPS = 3000
+"""In a contact. Finer steps change r by less than 0.001, and are not computed."""
+# Below this share of the impact speed a body that creeps out of a contact counts as at rest. Its
+# speed then also has to be nearly constant, which it is not where the body turns.
+_REST = 2e-3
+_CREEPING = 2e-5
+
+
+def offsets(count: int) -> Array:
+    """Return instants of the impact within a step, evenly from one end of it to the other."""
+    return np.linspace(1e-3, 1 - 1e-3, count)
+
+
+class Law(Protocol):
+    """A contact force per unit of mass; the parameters are arrays, one entry for each contact."""
+
+    @property
+    def stiffness(self) -> Array: ...
+
+    @property
+    def damping(self) -> Array: ...
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s."""
+
+    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
+        """Return v⁺ of an implicit step from z, if v is the velocity without the contact."""
+
+    def rest(self, gravity: float) -> Array:
+        """Return the depth at rest in m."""
+
+    def duration(self, speed: float) -> Array:
+        """Return the order of the contact time in s."""
+
+
+class _Explicit:
+    """A law that no engine steps implicitly."""
+
+    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
+        raise NotImplementedError(f"implicit steps of {type(self).__name__}")
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A spring and a damper: a = k p + c w, with k in 1/s² and c in 1/s; ratio ζ = c/(2√k)."""
+
+    stiffness: Array
+    damping: Array
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        return self.stiffness * p + self.damping * w
+
+    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
+        return (v - h * self.stiffness * z) / (1 + h * self.damping + h * h * self.stiffness)
+
+    def rest(self, gravity: float) -> Array:
+        return gravity / self.stiffness
+
+    def duration(self, speed: float) -> Array:
+        return np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
+
+    @classmethod
+    def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
+        """Return the contact that sinks in by `depth` without damping."""
+        return cls((speed / depth) ** 2, 2 * ratio * speed / depth)
+
+
+@dataclass(frozen=True)
+class HuntCrossley:
+    """Drake's a = k p (1 + d w)₊, with k in 1/s² and d in s/m; the ratio is d times the speed."""
+
+    stiffness: Array
+    damping: Array
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        return self.stiffness * p * np.maximum(1 + self.damping * w, 0.0)
+
+    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
+        # v⁺ = v + h k (-z - h v⁺)(1 - d v⁺) is a quadratic equation a v⁺² - b v⁺ + e = 0, whose
+        # root of the smaller amount is the one with a force.
+        a = h * h * self.stiffness * self.damping
+        b = h * self.stiffness * (h - z * self.damping) + 1
+        e = v - h * self.stiffness * z
+        return 2 * e / (b + np.sqrt(np.maximum(b * b - 4 * a * e, 0.0)))
+
+    def rest(self, gravity: float) -> Array:
+        return gravity / self.stiffness
+
+    def duration(self, speed: float) -> Array:
+        return (np.pi + self.damping * speed) / np.sqrt(self.stiffness)
+
+    @classmethod
+    def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
+        return cls((speed / depth) ** 2, ratio / speed)
+
+
+@dataclass(frozen=True)
+class Hertz(_Explicit):
+    """Hertz with Tsuji's damper: a = K p^(3/2) + β √(5 K) p^(1/4) w, K in 1/(s² √m).
+
+    Its r = exp(-πβ/√(1 - β²)) is the same at every speed; the ratio is β.
+    """
+
+    stiffness: Array
+    damping: Array
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        root = np.sqrt(np.maximum(p, 0.0))
+        return self.stiffness * root * p + self.damping * np.sqrt(5 * self.stiffness * root) * w
+
+    def rest(self, gravity: float) -> Array:
+        return (gravity / self.stiffness) ** (2 / 3)
+
+    def duration(self, speed: float) -> Array:
+        free = 2.943 * (1.25 / self.stiffness) ** 0.4 * speed**-0.2
+        return free / np.sqrt(np.maximum(1 - self.damping**2, 0.01))
+
+    @classmethod
+    def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
+        return cls(1.25 * speed**2 / depth**2.5, ratio)
+
+
+@dataclass(frozen=True)
+class Stepped(_Explicit):
+    """The contacts of Adams and Simscape: a = K pⁿ + C s w, where s(p/d) = x²(3 - 2x), x ≤ 1.
+
+    Simscape multiplies the spring by s as well. In designs d is a tenth of the penetration without
+    damping, and the ratio is that of a linear contact of the same penetration.
+    """
+
+    stiffness: Array
+    damping: Array
+    depth: Array
+    exponent: float = 1.0
+    steps_spring: bool = False
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        x = np.clip(p / self.depth, 0.0, 1.0)
+        share = x * x * (3 - 2 * x)
+        spring = self.stiffness * np.maximum(p, 0.0) ** self.exponent
+        return (share if self.steps_spring else 1.0) * spring + self.damping * share * w
+
+    def rest(self, gravity: float) -> Array:
+        # Fixed point with half steps, because s is 1 below the depth of the step.
+        depth = (gravity / self.stiffness) ** (1 / self.exponent)
+        for _ in range(60 if self.steps_spring else 0):
+            x = np.clip(depth / self.depth, 1e-6, 1.0)
+            depth = 0.5 * (depth + gravity / self.stiffness / (x * x * (3 - 2 * x)))
+        return depth
+
+    def duration(self, speed: float) -> Array:
+        n = self.exponent
+        scale = ((n + 1) / 2 * speed**2 / self.stiffness) ** (1 / (n + 1))
+        return np.pi * scale / speed + 2 * self.damping * scale ** (1 - n) / self.stiffness
+
+
+@dataclass(frozen=True)
+class Impedance(_Explicit):
+    """MuJoCo's contact: of N points with the impedance d(p) it is a = D (g + K d p + b w).
+
+    D = N d/(1 + (N - 1) d) is the share of all points together. d rises from `low` at the surface
+    to `high` at the depth `width`, by a power curve through the middle (`solimp`).
+    """
+
+    stiffness: Array
+    damping: Array
+    points: int = 1
+    low: float = 0.9
+    high: float = 0.95
+    width: float = 0.001
+    middle: float = 0.5
+    power: float = 2.0
+
+    def _impedance(self, p: Array) -> Array:
+        if self.low == self.high:
+            return np.full(np.shape(p), self.high)
+        x = np.clip(p / self.width, 0.0, 1.0)
+        rising = x**self.power / self.middle ** (self.power - 1)
+        falling = 1 - (1 - x) ** self.power / (1 - self.middle) ** (self.power - 1)
+        return self.low + (self.high - self.low) * np.where(x <= self.middle, rising, falling)
+
+    def _shared(self, d: Array) -> Array:
+        return self.points * d / (1 + (self.points - 1) * d)
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        d = self._impedance(p)
+        return self._shared(d) * (gravity + self.stiffness * d * p + self.damping * w)
+
+    def rest(self, gravity: float) -> Array:
+        # D (g + K d p) = g, by a fixed point with half steps because d changes with p.
+        depth = gravity / np.asarray(self.stiffness)
+        for _ in range(100):
+            d = self._impedance(depth)
+            shared = self._shared(d)
+            depth = 0.5 * (depth + gravity * (1 - shared) / (shared * self.stiffness * d))
+        return depth
+
+    def duration(self, speed: float) -> Array:
+        shared = self._shared(np.asarray(self.high))
+        k = shared * self.high * self.stiffness
+        return np.pi / np.sqrt(k) + 2 * shared * self.damping / k
+
+
+@dataclass(frozen=True)
+class Impulse(_Explicit):
+    """An impact without a duration, whose restitution coefficient is a number (`damping`)."""
+
+    stiffness: Array
+    damping: Array
+
+    def push(self, p: Array, w: Array, gravity: float) -> Array:
+        raise NotImplementedError("an impulse is no force")
+
+    def rest(self, gravity: float) -> Array:
+        return np.zeros(np.shape(self.damping))
+
+    def duration(self, speed: float) -> Array:
+        return np.zeros(np.shape(self.damping))
+
+
+class Scheme(Protocol):
+    """How an engine steps a contact."""
+
+    @property
+    def text(self) -> str: ...
+
+    def touches(self, z: Array, free: Array, h: Array) -> Mask:
+        """Return whether the contact acts in a step from z with the velocity `free`."""
+
+    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: float) -> Array:
+        """Return the velocity after the step; `free` is that without the contact."""
+
+
+@dataclass(frozen=True)
+class SemiImplicit:
+    """The force is that of the beginning of the step.
+
+    It never pulls unless the damper `pulls` (the release of LAMMPS and MercuryDPM). The damper of
+    Newton acts on `approach` only.
+    """
+
+    pulls: bool = False
+    approach: bool = False
+
+    @property
+    def text(self) -> str:
+        """The scheme in a few words."""
+        if self.pulls:
+            return "semi-implicit, the damper pulls"
+        return "semi-implicit, damped on approach" if self.approach else "semi-implicit"
+
+    def touches(self, z: Array, free: Array, h: Array) -> Mask:
+        return z < 0
+
+    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: float) -> Array:
+        rate = np.maximum(-v, 0.0) if self.approach else -v
+        push = law.push(-z, rate, g)
+        return free + h * (push if self.pulls else np.maximum(push, 0.0))
+
+
+@dataclass(frozen=True)
+class Implicit:
+    """The force is that of the end of the step, and never pulls.
+
+    If contacts are found `ahead`, it acts already in the step that would end below the surface.
+    """
+
+    ahead: bool = False
+
+    @property
+    def text(self) -> str:
+        """The scheme in a few words."""
+        return "implicit, found ahead" if self.ahead else "implicit"
+
+    def touches(self, z: Array, free: Array, h: Array) -> Mask:
+        return z + h * free < 0 if self.ahead else z < 0
+
+    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: float) -> Array:
+        return np.maximum(free, law.implicit_velocity(z, free, h))
+
+
+@dataclass(frozen=True)
+class Impulsive:
+    """A body below the surface is thrown back by its restitution coefficient."""
+
+    @property
+    def text(self) -> str:
+        """The scheme in a few words."""
+        return "impulse"
+
+    def touches(self, z: Array, free: Array, h: Array) -> Mask:
+        return z < 0
+
+    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: float) -> Array:
+        return np.where(free < 0, -law.damping * free, free)
+
+
+@dataclass(frozen=True)
+class Drops:
+    """Results of drops; the last axis is that of the offsets.
+
+    ``restitution`` is √(h′/h), or the ratio of the speeds without gravity; ``depth`` is in m, and
+    ``peak`` is the largest acceleration by the contact in m/s².
+    """
+
+    restitution: Array
+    depth: Array
+    peak: Array
+
+    @property
+    def mean(self) -> Array:
+        return self.restitution.mean(axis=-1)
+
+    def error(self, wanted: float) -> Array:
+        """Return the largest deviation of r from the one that is wanted."""
+        return np.abs(self.restitution - wanted).max(axis=-1)
+
+
+def _beside_offsets(law: Law) -> Law:
+    """Return the law with one more axis at the end of its arrays, for the offsets."""
+    values = {field.name: getattr(law, field.name) for field in fields(law)}  # type: ignore[arg-type]
+    arrays = {
+        name: value[..., None] for name, value in values.items() if isinstance(value, np.ndarray)
+    }
+    return replace(law, **arrays)  # type: ignore[type-var]
+
+
+def drop(
+    law: Law, scheme: Scheme, step: Array | float, speed: float, gravity: float, at: Array
+) -> Drops:
+    """Drop bodies from the height speed²/(2g), or throw them without gravity.
+
+    Parameters
+    ----------
+    law : Law
+        With parameters of the shape of ``step``.
+    scheme : Scheme
+    step : array
+        Time steps in s.
+    speed : float
+        Of the impact, in m/s.
+    gravity : float
+        In m/s²; 0 for two free bodies.
+    at : array, shape (n,)
+        Offsets of the impact within a step, between 0 and 1.
+    """
+    columns = _beside_offsets(law)
+    duration = columns.duration(speed)
+    h = np.maximum(np.asarray(step, float)[..., None], duration / MOST_STEPS)
+    if gravity:
+        height = speed**2 / (2 * gravity)
+        lag = h * (0.5 - at)
+        arrival = gravity * (np.sqrt(lag**2 + 2 * height / gravity) - lag)
+    else:
+        height = 0.0
+        arrival = speed + 0 * h * at
+    # The step that ends below the surface comes first, for contacts that are found ahead.
+    z = (1 - at) * arrival * h
+    v = gravity * h - arrival
+    depth = np.zeros(z.shape)
+    peak = np.zeros(z.shape)
+    found = np.zeros(z.shape)
+    inside = np.ones(z.shape, bool)
+    # A contact that is stable has ended, or has come to rest, within a few contact times.
+    for _ in range(20 + int(np.max(12 * duration / h))):
+        free = v - gravity * h
+        touching = scheme.touches(z, free, h)
+        new = np.where(touching, scheme.velocity(columns, z, v, free, h, gravity), free)
+        peak = np.maximum(peak, np.where(inside, new - free, 0.0))
+        rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)
+        sinks_again = (v > 0) & (new <= 0) & (z < 0)
+        z = z + h * new
+        v = new
+        depth = np.maximum(depth, np.where(inside, -z, 0.0))
+        leaves = inside & (z >= 0) & (v > 0)
+        if leaves.any():
+            if gravity:
+                # The highest of the steps that follow: n more of them raise the body.
+                n = np.floor(np.maximum(v, 0.0) / (gravity * h))
+                rise = np.maximum(z + n * h * v - gravity * h**2 * n * (n + 1) / 2, 0.0)
+                found = np.where(leaves, np.sqrt(rise / height), found)
+            else:
+                found = np.where(leaves, v / speed, found)
+        inside = inside & ~(leaves | sinks_again | rests)
+        if not inside.any():
+            break
+    return Drops(found, depth, peak / h)

@@ -1,0 +1,172 @@
+"""Numbers with units, as they are typed and as they are shown."""
+
+import functools
+import math
+import re
+from typing import Any
+
+STANDARD_GRAVITY = 9.80665
+"""In m/s²."""
+
+# The units that most people type. Importing pint costs more than a whole design, so that only
+# other units, such as lb or inch, are left to it.
+_COMMON = {
+    "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3},
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9},
+    "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6},
+    "m/s^2": {"m/s^2": 1.0, "m/s²": 1.0},
+    "kg/m^3": {"kg/m^3": 1.0, "kg/m³": 1.0, "g/cm^3": 1e3, "g/cm³": 1e3},
+    "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
+    "": {"%": 1e-2},
+}
+DENSITIES = {
+    "steel": 7850.0,
+    "aluminium": 2700.0,
+    "aluminum": 2700.0,
+    "glass": 2500.0,
+    "rubber": 1100.0,
+    "nylon": 1150.0,
+    "wood": 700.0,
+    "ice": 917.0,
+}
+"""Of solid materials, in kg/m³."""
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_EXAMPLES = {
+    "kg": "50 g",
+    "m": "2 mm",
+    "s": "2 ms",
+    "m/s": "3 m/s",
+    "m/s^2": "9.81 m/s^2",
+    "kg/m^3": "1100 kg/m^3",
+    "N/m": "100 kN/m",
+    "": "0.8",
+}
+
+
+class Refused(ValueError):
+    """A question without an answer; the message is one line for whoever asked."""
+
+
+@functools.cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(cache_folder=":auto:")
+
+
+def in_si(name: str, value: Any, unit: str) -> float:
+    """Return a number in the SI unit.
+
+    Parameters
+    ----------
+    name : str
+        What the number is, for messages.
+    value : float, str or pint.Quantity
+        A plain number is in the SI unit already. A text is a number with a unit, a plain number,
+        or a fraction such as ``1/240``.
+    unit : str
+        The SI unit; empty for a number without one.
+
+    Raises
+    ------
+    Refused
+        If the value is no finite number of this unit, or if it can be read in two ways.
+    """
+    if isinstance(value, str):
+        value = _read(name, value, unit)
+    elif hasattr(value, "to"):
+        value = _converted(name, value, unit, str(value))
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise Refused(f"{name}: {value!r} is not a number; {_wanted(unit)}") from None
+    if not math.isfinite(number):
+        raise Refused(f"{name}: {number} is not a finite number")
+    return number
+
+
+def _read(name: str, text: str, unit: str) -> float:
+    plain = text.strip().replace("−", "-")
+    if re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain):
+        both = (plain.replace(",", ""), plain.replace(",", "."))
+        raise Refused(f"{name}: {text!r} can be read as {both[0]!r} or as {both[1]!r}; write one")
+    plain = re.sub(r"(?<=\d),(?=\d)", ".", plain)
+    found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", plain)
+    if not found:
+        raise Refused(f"{name}: {text!r} does not begin with a number; {_wanted(unit)}")
+    divisor = float(found[2] or 1)
+    if divisor == 0:
+        raise Refused(f"{name}: {text!r} divides by zero")
+    number = float(found[1]) / divisor
+    typed = found[3]
+    if not typed:
+        return number
+    if typed in _COMMON[unit]:
+        return number * _COMMON[unit][typed]
+    try:
+        quantity = _registry().Quantity(number, typed)
+    except Exception:  # pint raises errors of many kinds, also those of Python's tokenizer
+        raise Refused(f"{name}: the unit of {text!r} is not known; {_wanted(unit)}") from None
+    return _converted(name, quantity, unit, text)
+
+
+def _converted(name: str, quantity: Any, unit: str, text: str) -> float:
+    try:
+        return float(quantity.to(unit).magnitude)
+    except Exception:
+        raise Refused(f"{name}: the unit of {text!r} does not fit; {_wanted(unit)}") from None
+
+
+def _wanted(unit: str) -> str:
+    return f"write it as in '{_EXAMPLES[unit]}'"
+
+
+def positive(name: str, value: Any, unit: str) -> float:
+    """Return a number in SI units as :func:`in_si`, and refuse it if it is not positive."""
+    number = in_si(name, value, unit)
+    if number <= 0:
+        raise Refused(f"{name} = {show(number, unit)} is not positive")
+    return number
+
+
+def within(name: str, value: Any, low: float, high: float) -> float:
+    """Return a number without a unit, which may be in per cent, and refuse it outside a range."""
+    number = in_si(name, value, "")
+    if not low <= number <= high:
+        raise Refused(f"{name} = {number:g} is not between {low:g} and {high:g}")
+    return number
+
+
+def density_of(value: Any) -> float:
+    """Return a density in kg/m³, given as a quantity or as the name of a material."""
+    if isinstance(value, str) and value.strip().lower() in DENSITIES:
+        return DENSITIES[value.strip().lower()]
+    if isinstance(value, str) and not re.search(r"\d", value):
+        raise Refused(f"density: {value!r} is none of {', '.join(DENSITIES)}, and no number")
+    return positive("density", value, "kg/m^3")
+
+
+def show(value: float, unit: str, digits: int = 3) -> str:
+    """Return a number with its unit and a prefix, without powers of ten: ``2.2 kN/m``."""
+    if unit == "kg":
+        value = value * 1000
+        unit = "g"
+    if not math.isfinite(value):
+        return "–"
+    if value == 0:
+        return f"0 {unit}".strip()
+    rounded = float(f"{value:.{digits}g}")
+    power = 3 * math.floor(math.log10(abs(rounded)) / 3)
+    power = max(-9, min(power, 9))
+    # Kilometres, kiloseconds and km/s are rarely read; masses above a tonne stay in kilograms.
+    if unit in ("m", "s", "m/s"):
+        power = min(power, 0)
+    if unit == "g":
+        power = min(power, 3)
+    if unit in ("", "m/s", "kg/m^3", "m/s^2"):
+        power = 0
+    scaled = float(f"{value / 10.0**power:.{digits}g}")
+    text = f"{scaled:.0f}" if abs(scaled) >= 100 else f"{scaled:.{digits}g}"
+    return f"{text} {_PREFIXES[power]}{unit}".strip()

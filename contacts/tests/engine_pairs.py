@@ -1,0 +1,142 @@
+"""Two bodies of different materials in MuJoCo, PyBullet and Drake, beside their diagnoses.
+
+``python tests/engine_pairs.py`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m and prints r
+and the depth at rest: as diagnosed, and in the engine. The exit status is 1 if one differs.
+"""
+
+import math
+import sys
+
+import numpy as np
+
+from bouncing_ball_contacts import Bounce, diagnose
+
+HEIGHT = 0.5
+G = 9.80665
+BALL = Bounce(mass=1.0, drop_height=HEIGHT, radius=0.1)
+STEP = 1e-3
+FALL = int(math.sqrt(2 * HEIGHT / G) / STEP)
+
+
+def mujoco(one, other):
+    import mujoco
+
+    def geom(values):
+        return " ".join(f'{name}="{value}"' for name, value in values.items())
+
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="{STEP}" gravity="0 0 {-G}"/><worldbody>
+        <geom type="plane" size="1 1 1" {geom(other)}/>
+        <body pos="0 0 {0.1 + HEIGHT}"><freejoint/><geom size="0.1" mass="1" {geom(one)}/></body>
+        </worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    heights = []
+    for _ in range(20000):
+        mujoco.mj_step(model, data)
+        heights.append(data.qpos[2] - 0.1)
+    return heights
+
+
+def pybullet(one, other):
+    import pybullet
+
+    if not pybullet.isConnected():
+        pybullet.connect(pybullet.DIRECT)
+    pybullet.resetSimulation()
+    pybullet.setGravity(0, 0, -G)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP, numSubSteps=1, contactSlop=0)
+    table = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
+    sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.1)
+    ball = pybullet.createMultiBody(1, sphere, basePosition=[0, 0, 0.1 + HEIGHT])
+    for body, values in ((ball, one), (table, other)):
+        pybullet.changeDynamics(body, -1, linearDamping=0, contactProcessingThreshold=0)
+        pybullet.changeDynamics(body, -1, **values)
+    heights = []
+    for _ in range(20000):
+        pybullet.stepSimulation()
+        heights.append(pybullet.getBasePositionAndOrientation(ball)[0][2] - 0.1)
+    return heights
+
+
+def drake(one, other):
+    import pydrake.all as pydrake
+
+    builder = pydrake.DiagramBuilder()
+    near = "sap" if "relaxation_time" in one else "lagged"
+    config = pydrake.MultibodyPlantConfig(time_step=STEP, discrete_contact_approximation=near)
+    plant, _ = pydrake.AddMultibodyPlant(config, builder)
+    plant.mutable_gravity_field().set_gravity_vector([0, 0, -G])
+    inertia = pydrake.SpatialInertia.SolidSphereWithMass(1.0, 0.1)
+    ball = plant.AddRigidBody("ball", inertia)
+    shapes = {
+        plant.world_body(): (pydrake.HalfSpace(), other, -0.1 - HEIGHT),
+        ball: (pydrake.Sphere(0.1), one, 0.0),
+    }
+    for body, (shape, values, place) in shapes.items():
+        properties = pydrake.ProximityProperties()
+        friction = pydrake.CoulombFriction(0, 0)
+        pydrake.AddContactMaterial(
+            values.get("hunt_crossley_dissipation"),
+            values.get("point_contact_stiffness"),
+            friction,
+            properties,
+        )
+        if "relaxation_time" in values:
+            properties.AddProperty("material", "relaxation_time", values["relaxation_time"])
+        here = pydrake.RigidTransform([0, 0, place])
+        plant.RegisterCollisionGeometry(body, here, shape, body.name(), properties)
+    plant.Finalize()
+    log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, STEP)
+    simulator = pydrake.Simulator(builder.Build())
+    simulator.AdvanceTo(20.0)
+    return log.FindLog(simulator.get_context()).data()[6, 1:] + HEIGHT
+
+
+DIRECT = {"solref": "-20000 -30", "solimp": "1e-4 1e-4 0.001"}
+SPRING = {"contactStiffness": 2e4, "contactDamping": 10.0}
+SAP = {"point_contact_stiffness": 2e4, "relaxation_time": 0.002}
+LAGGED = {"point_contact_stiffness": 2e4, "hunt_crossley_dissipation": 0.1}
+# Engine, its drop, and the parameters of the ball and of the table; None are the defaults.
+CASES = [
+    ("mujoco", mujoco, DIRECT, None),
+    ("mujoco", mujoco, DIRECT, {"solref": "-5000 -60", "solimp": "0.2 0.2 0.001"}),
+    ("mujoco", mujoco, {"solref": "0.05 0.1"}, {"solref": "0.02 0.3"}),
+    ("pybullet", pybullet, SPRING, None),
+    ("pybullet", pybullet, SPRING, {"contactStiffness": 1e4, "contactDamping": 2.0}),
+    ("drake", drake, SAP, {"point_contact_stiffness": 6e4, "relaxation_time": 0.001}),
+    ("drake", drake, SAP, None),
+    (
+        "drake-hunt-crossley",
+        drake,
+        LAGGED,
+        {"point_contact_stiffness": 8e4, "hunt_crossley_dissipation": 0.8},
+    ),
+]
+
+
+def main():
+    wrong = 0
+    print("| engine | ball | table | r | engine | at rest, mm | engine |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for name, run, one, other in CASES:
+        found = diagnose(BALL, name, one, STEP, other=other, one_body=other is None)
+        heights = np.asarray(run(one, other or {}))
+        start = int(np.argmax(heights < 0))
+        after = heights[start:]
+        after = after[int(np.argmax(after >= 0)) :]
+        again = int(np.argmax(after < 0)) if (after < 0).any() else len(after)
+        r = math.sqrt(max(after[:again].max(), 0.0) / HEIGHT) if after[0] >= 0 else 0.0
+        rest = -float(np.mean(heights[-2000:]))
+        low, _, high = found.outcome.restitution
+        agrees = low - 1e-3 <= r <= high + 1e-3
+        agrees &= bool(np.isclose(rest, found.outcome.rest, rtol=0.02))
+        wrong += not agrees
+        texts = [name, str(one), str(other or "defaults"), f"{low:.4f} to {high:.4f}", f"{r:.4f}"]
+        texts += [f"{found.outcome.rest * 1e3:.4g}", f"{rest * 1e3:.4g}"]
+        print(f"| {' | '.join(texts)} |{'' if agrees else ' (differs)'}", flush=True)
+    sys.exit(wrong > 0)
+
+
+if __name__ == "__main__":
+    main()

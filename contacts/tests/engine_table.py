@@ -1,0 +1,202 @@
+"""Designs beside what their engines do: ``python tests/engine_table.py [ENGINE]...``.
+
+It prints a table. The exit status is 1 if a design differs, or if its engine is not installed.
+"""
+
+import math
+import sys
+
+import engine_runs
+import numpy as np
+
+from bouncing_ball_contacts import Bounce, design
+
+CASES = [
+    ("mujoco", "ball", dict(mass="50 g", restitution=0.8), "2 ms", {}),
+    ("mujoco", "ball", dict(mass="50 g", restitution=0.8, penetration="2 mm"), "2 ms", {}),
+    ("mujoco", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "1 ms", {}),
+    ("mujoco", "ball", dict(mass="1 kg", restitution=0.02, density="rubber"), "2 ms", {}),
+    ("mujoco", "ball", dict(mass="1 kg", restitution=0.99, radius="10 cm"), "1 ms", {}),
+    ("mujoco", "ball", dict(mass="2 t", restitution=0.3, radius="0.5 m"), "10 ms", {}),
+    ("mujoco", "ball", dict(mass="2 mg", restitution=0.7, drop_height="5 cm"), "20 us", {}),
+    ("mujoco", "box", dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4), "1 ms", {}),
+    (
+        "mujoco",
+        "two",
+        dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
+        None,
+        {},
+    ),
+    (
+        "mujoco",
+        "two",
+        dict(mass="1 kg", restitution=0.5, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
+        "1 ms",
+        {},
+    ),
+    ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
+    ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1/240", {"pick": "impulse"}),
+    (
+        "pybullet",
+        "ball",
+        dict(mass="1 kg", restitution=0.3, penetration="5 mm", density="rubber"),
+        None,
+        {},
+    ),
+    ("pybullet", "ball", dict(mass="1 kg", restitution=0.02, radius="5 cm"), "1 ms", {}),
+    ("pybullet", "ball", dict(mass="1 kg", restitution=0.99, radius="5 cm"), "50 us", {}),
+    (
+        "pybullet",
+        "ball",
+        dict(mass="1 kg", restitution=0.5, radius="5 cm"),
+        "1 ms",
+        {"one_body": True},
+    ),
+    ("pybullet", "box", dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4), "1 ms", {}),
+    (
+        "pybullet",
+        "box",
+        dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4, penetration="5 mm"),
+        None,
+        {},
+    ),
+    (
+        "pybullet",
+        "two",
+        dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
+        None,
+        {},
+    ),
+    ("drake", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
+    (
+        "drake",
+        "ball",
+        dict(mass="1 kg", restitution=0.1, penetration="5 mm", density="rubber"),
+        None,
+        {},
+    ),
+    ("drake", "ball", dict(mass="2 t", restitution=0.6, radius="0.5 m"), "10 ms", {}),
+    ("drake", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "20 us", {}),
+    ("drake", "box", dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4), "1 ms", {}),
+    (
+        "drake",
+        "two",
+        dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
+        None,
+        {},
+    ),
+    (
+        "drake-hunt-crossley",
+        "ball",
+        dict(mass="50 g", restitution=0.7, penetration="5 mm", radius="30 mm"),
+        None,
+        {},
+    ),
+    ("lammps", "ball", dict(mass="50 g", restitution=0.8, radius="30 mm"), "1 ms", {}),
+    ("lammps", "ball", dict(mass="2 mg", restitution=0.99, drop_height="5 cm"), "20 us", {}),
+    ("lammps", "ball", dict(mass="1 kg", restitution=0.05, radius="5 cm"), "200 us", {}),
+    (
+        "lammps",
+        "two",
+        dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
+        None,
+        {},
+    ),
+    (
+        "lammps-limit-damping",
+        "ball",
+        dict(mass="50 g", restitution=0.5, radius="30 mm"),
+        "200 us",
+        {},
+    ),
+    (
+        "lammps-hertz",
+        "ball",
+        dict(mass="50 g", restitution=0.8, penetration="3 mm", radius="30 mm"),
+        None,
+        {},
+    ),
+    (
+        "lammps-hertz",
+        "two",
+        dict(mass="1 kg", restitution=0.6, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
+        None,
+        {},
+    ),
+    (
+        "newton",
+        "ball",
+        dict(mass="500 g", restitution=0.75, penetration="15 mm", radius="10 cm"),
+        None,
+        {},
+    ),
+    ("newton-mujoco", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
+]
+HEAD = [
+    "engine, shape",
+    "given",
+    "step",
+    "r",
+    "r in the engine",
+    "sinks, mm",
+    "engine",
+    "force, N",
+    "engine",
+    "at rest, mm",
+    "engine",
+]
+
+
+def cells(name, shape, wanted, time_step, more):
+    """Return the cells of a row of the table, and whether the engine agrees."""
+    found = design(Bounce(**wanted), name, time_step, **more)
+    outcome = found.row.outcome
+    low, _, high = outcome.restitution
+    measured = engine_runs.measure(found, shape)
+    at_least, at_most = measured.restitution
+    given = ", ".join(str(value) for value in wanted.values())
+    texts = [f"{name}, {shape}", given + "".join(f", {key}" for key in more)]
+    texts += [
+        f"{found.row.step * 1e3:.4g} ms",
+        f"{low:.4f} to {high:.4f}",
+        f"{at_least:.4f} to {at_most:.4f}",
+        f"{outcome.depth[1] * 1e3:.4g}",
+        f"{measured.depth * 1e3:.4g}",
+        f"{outcome.force[1]:.4g}",
+        f"{measured.force:.4g}",
+        f"{outcome.rest * 1e3:.4g}" if outcome.rest else "–",
+        "–" if math.isnan(measured.rest) else f"{measured.rest * 1e3:.4g}",
+    ]
+    # Thirteen instants do not meet the extremes of 401, which differ by less than a thirteenth of
+    # the range, where r is a smooth function of the instant.
+    slack = 0.001 + (high - low) / 13
+    agrees = low - slack <= at_least and at_most <= high + slack
+    spread = (outcome.depth[1] - outcome.depth[0]) / 13
+    agrees &= bool(np.isclose(measured.depth, outcome.depth[1], rtol=0.02, atol=spread))
+    spread = (outcome.force[1] - outcome.force[0]) / 13
+    agrees &= bool(np.isclose(measured.force, outcome.force[1], rtol=0.02, atol=spread))
+    agrees &= math.isnan(measured.rest) or bool(np.isclose(measured.rest, outcome.rest, rtol=0.02))
+    return texts, agrees
+
+
+def main():
+    wanted = sys.argv[1:]
+    print("| " + " | ".join(HEAD) + " |")
+    print("|" + " --- |" * len(HEAD))
+    agreed = 0
+    cases = [case for case in CASES if not wanted or case[0] in wanted]
+    for case in cases:
+        try:
+            texts, agrees = cells(*case)
+        except ImportError as missing:
+            print(f"| {case[0]}, {case[1]} | not installed: {missing.name} |", flush=True)
+            continue
+        agreed += agrees
+        mark = "" if agrees else " (differs)"
+        print("| " + " | ".join(texts) + mark + " |", flush=True)
+    print(f"\n{agreed} of {len(cases)} designs agree with their engines.")
+    sys.exit(agreed < len(cases))
+
+
+if __name__ == "__main__":
+    main()

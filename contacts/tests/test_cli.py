@@ -1,0 +1,160 @@
+"""The command as it is typed: answers, and one line for each mistake."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+BALL = 'design --mass "50 g" --restitution 0.8'
+MUJOCO = "diagnose --engine mujoco --mass 1 --time-step 2ms"
+LAMMPS = "diagnose --engine lammps --mass 1 --time-step 2ms"
+
+
+def test_the_first_sentence_that_one_types(typed):
+    """It was refused, because --drop-height wanted a --rebound-height."""
+    line = f'{BALL} --drop-height "1 m" --time-step "2 ms" --engine mujoco'
+    status, out, err = typed(line)
+    assert (status, err) == (0, "")
+    assert out.startswith("               step ")
+    assert "your step *" in out and 'timestep="0.002"' in out and "Given: mass 50 g" in out
+
+
+def test_everything_in_json(typed):
+    found = json.loads(typed(f"{BALL} --engine pybullet --time-step 1/240 --json")[1])
+    assert found["rows"]["impulse"]["stiffness"] is None
+    assert found["parameters"]["contactStiffness"] > 0 and "changeDynamics" in found["snippet"]
+    found = json.loads(typed(f"{MUJOCO} --restitution 0.5 --json")[1])
+    assert found["parameters"]["solref"] == [0.02, 1.0]
+    found = json.loads(typed("fit croquet --json")[1])
+    assert len(found["laws"]) == 3
+
+
+def test_without_a_command_the_help_is_shown(typed):
+    status, out, err = typed("")
+    assert (status, err) == (0, "") and "Examples:\n  bounce design" in out
+
+
+@pytest.mark.parametrize("command", ["", "design", "diagnose", "fit", "engines"])
+def test_help(typed, command):
+    status, out, _ = typed(f"{command} --help")
+    assert status == 0 and "Usage" in out
+
+
+def test_engines_are_listed_with_what_was_run(typed):
+    out = typed("engines")[1]
+    assert "never run" in out and "MuJoCo 4.0.0" in out
+
+
+def test_a_recording_becomes_a_contact_in_one_command(typed, tmp_path):
+    script = tmp_path / "drop.py"
+    line = f'fit golf_ball --engine pybullet --time-step "1 ms" --script {script}'
+    status, out, _ = typed(line)
+    assert status == 0 and "Golf ball on marble" in out and "contactStiffness=" in out
+    compile(script.read_text(), "drop.py", "exec")
+    assert "it rises to" in script.read_text()
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet", "drake", "lammps", "newton"])
+def test_scripts_are_python(typed, tmp_path, engine):
+    script = tmp_path / "drop.py"
+    status, _, _ = typed(f'{BALL} --radius "30 mm" --engine {engine} --script {script}')
+    assert status == 0
+    text = script.read_text()
+    compile(text, "drop.py", "exec")
+    assert "@" not in text
+
+
+MISTAKES = {
+    "design": "mass is missing",
+    'design --mass "50 g"': "restitution is missing",
+    "design --restitution 0.8": "mass is missing",
+    'design --mass "50 g" --restitution 1.2': "not between 0 and 1",
+    'design --mass "50 g" --restitution -0.1': "not between 0 and 1",
+    'design --mass "50 g" --restitution high': "does not begin with a number",
+    'design --mass "0 g" --restitution 0.8': "not positive",
+    'design --mass "-5 g" --restitution 0.8': "not positive",
+    'design --mass "50 m" --restitution 0.8': "does not fit; write it as in '50 g'",
+    'design --mass "50 grams of" --restitution 0.8': "is not known",
+    'design --mass "1,500 g" --restitution 0.8': "'1500 g' or as '1.500 g'",
+    f"{BALL} --engine mujocco": "did you mean mujoco",
+    f"{BALL} --engine unity": "known are mujoco",
+    f"{BALL} --time-step 0": "not positive",
+    f"{BALL} --time-step 1/0": "divides by zero",
+    f'{BALL} --time-step "2 mm"': "does not fit",
+    f"{BALL} --time-step": "requires an argument",
+    f'{BALL} --drop-height "1 m" --speed "2 m/s"': "either the drop height or the speed",
+    f'{BALL} --radius "1 cm" --density steel': "either the radius or the density",
+    f'{BALL} --penetration "1 mm" --stiffness "1 kN/m"': "either the penetration or the stiffness",
+    f'{BALL} --stiffness "1 kN/m" --contact-time "1 ms"': "the stiffness or the contact time",
+    f'{BALL} --stiffness "1,500 N/m"': "can be read as",
+    f'{BALL} --stiffness "1 kN/m" --engine lammps-hertz': "no stiffness in N/m",
+    f"{BALL} --density cheese": "none of steel",
+    f"{BALL} --points 0": "no whole number from 1 on",
+    f"{BALL} --points two": "is not a valid integer",
+    f'{BALL} --other-mass "1 kg"': "need the speed",
+    f"{BALL} --tolerance 0": "not between",
+    f"{BALL} --tolerance 5": "not between",
+    f"{BALL} --pick nothing": "none of this answer",
+    f"{BALL} --pick impulse": "none of this answer",
+    f"{BALL} --time-step 1ms --pick impulse --engine drake": "no impulse is written for drake",
+    f"{BALL} --gravity 0": "not positive",
+    f"{BALL} --friction slippery": "does not begin",
+    f"{BALL} --one-body --engine mujoco": "averages solimp",
+    f"{BALL} --one-body --engine lammps": "no contact that one body alone sets",
+    f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
+    f"{BALL} --script drop.py --engine physx": "no script is written for physx",
+    f"{BALL} --script /no/such/folder/drop.py --engine mujoco": "cannot be written",
+    f"{BALL} --script drop.py --engine mujoco --points 4": "a script drops one ball",
+    f"{BALL} --damping-ratio 2": "No such option",
+    f"{BALL} --restitutionn 2": "No such option",
+    f"{BALL} extra": "unexpected extra argument",
+    "designn": "No such command",
+    "diagnose": "mass is missing",
+    "diagnose --mass 1": "time step is missing",
+    "diagnose solref --mass 1": "is not NAME=VALUE",
+    "diagnose =3 --mass 1": "is not NAME=VALUE",
+    f"{MUJOCO} solref=0.02": "two numbers",
+    f"{MUJOCO} solref=": "two numbers",
+    f"{MUJOCO} solref=1,2,3": "two numbers",
+    f"{MUJOCO} solreff=0.02": "did you mean solref",
+    f"{MUJOCO} kn=1": "it has solref, solimp, refsafe",
+    LAMMPS: "kn is missing",
+    f"{LAMMPS} kn=1e5": "gamma_n is missing",
+    f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
+    f"{LAMMPS} kn=-1 gamma_n=1": "negative",
+    f"{LAMMPS} kn=1e5 gamma_n=1 --points 0": "no whole number",
+    f"{LAMMPS} kn=1e5 gamma_n=1 --restitution 2": "not between 0 and 1",
+    f"{MUJOCO} --one-body --other solref=1": "not both",
+    "fit": "Missing argument",
+    "fit nothing.csv": "no file, and none of",
+    "fit croquet --speed fast": "does not begin",
+    "fit croquet --speed 0": "not positive",
+    "fit croquet --leave-out one": "numbers of lines",
+    "fit croquet --time-step 1ms": "the engine is missing",
+    "fit bouncy_ball --engine mujoco": "mass is missing",
+    "fit croquet --resolution 1ms": "resolution",
+    'fit croquet --mass "a lot"': "does not begin",
+    "engines --all": "No such option",
+}
+
+
+@pytest.mark.parametrize("line", MISTAKES)
+def test_a_mistake_is_one_line(typed, line):
+    status, out, err = typed(line)
+    assert (status, out) == (2, "")
+    assert err.startswith("bounce: ") and err.count("\n") == 1
+    assert MISTAKES[line] in err
+
+
+def test_the_command_starts_quickly():
+    """Neither pint nor SciPy is imported for a design with common units."""
+    code = (
+        "import sys; sys.argv = ['bounce', 'design', '--mass', '50 g', '--restitution', '0.8']\n"
+        "from bouncing_ball_contacts.cli import run\n"
+        "try: run()\n"
+        "except SystemExit: pass\n"
+        "print(sorted({'pint', 'scipy', 'mujoco'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"

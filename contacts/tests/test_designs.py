@@ -1,0 +1,248 @@
+"""Designs: what they keep, what they say, and the faults of the old ones."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
+from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS
+from bouncing_ball_contacts.engines import engine_named
+
+STEPPED = [name for name, row in ENGINES.items() if row.fixed_steps]
+BALL = dict(mass="50 g", restitution=0.8, drop_height="1 m", radius="30 mm")
+
+
+@pytest.mark.parametrize("name", STEPPED)
+def test_every_engine_keeps_a_permitted_penetration(name):
+    found = design(Bounce(**BALL, penetration="1 mm"), name, "2 ms")
+    assert found.chosen == WANTED
+    outcome = found.row.outcome
+    assert 0.98e-3 <= outcome.depth[1] <= 1e-3
+    assert outcome.deviation(0.8) <= 0.02
+    assert found.row.step < 2e-3
+
+
+@pytest.mark.parametrize("name", ["mujoco", "drake", "lammps-hertz", "newton"])
+@pytest.mark.parametrize("r", [0.3, 0.9])
+def test_a_penetration_is_kept_and_used_at_a_short_step(name, r):
+    wanted = Bounce(mass="50 g", restitution=r, radius="30 mm", penetration="1 mm")
+    found = design(wanted, name, "5 us")
+    assert found.chosen == YOURS
+    assert 0.98e-3 <= found.row.outcome.depth[1] <= 1e-3
+
+
+@pytest.mark.parametrize("name", STEPPED)
+def test_every_engine_has_a_contact_at_a_given_step(name):
+    found = design(Bounce(**BALL), name, "0.5 ms")
+    assert found.chosen == YOURS
+    assert found.row.step == 0.5e-3
+    assert found.row.outcome.deviation(0.8) <= 0.0205
+
+
+@pytest.mark.parametrize("name", [name for name in ENGINES if name not in STEPPED])
+def test_a_solver_with_error_control_has_no_step(name):
+    found = design(Bounce(**BALL), name)
+    assert found.row.outcome.deviation(0.8) < 0.005
+    with pytest.raises(Refused, match="chooses its steps itself"):
+        design(Bounce(**BALL), name, "1 ms")
+
+
+@pytest.mark.parametrize("name", ["mujoco", "pybullet", "drake", "lammps", "newton"])
+@pytest.mark.parametrize("r", [0.0, 0.02, 0.1, 0.135, 0.3, 0.6, 0.9, 0.97])
+def test_every_restitution_is_reached(name, r):
+    """e⁻² = 0.135 is where a damping ratio of 1 is passed."""
+    found = design(Bounce(mass="1 kg", restitution=r, radius="5 cm"), name)
+    mean = found.row.outcome.restitution[1]
+    assert mean == pytest.approx(max(r, 0.01), abs=0.015)
+
+
+def test_the_stiffest_contact_within_the_tolerance_is_taken():
+    strict, normal, lax = (
+        design(Bounce(**BALL), "mujoco", "1 ms", tolerance=t).rows[YOURS] for t in (0.01, 0.02, 0.1)
+    )
+    assert strict.stiffness < normal.stiffness < lax.stiffness
+    assert strict.outcome.depth[1] > normal.outcome.depth[1] > lax.outcome.depth[1]
+
+
+def test_a_stiffer_contact_can_be_asked_for():
+    """Stiffness, contact time and penetration beside a step once had one answer, 647 N/m."""
+    contacts = [
+        design(Bounce(**BALL, **more), "mujoco", "2 ms").row.stiffness
+        for more in (
+            {"stiffness": "20 kN/m"},
+            {"stiffness": "80 kN/m"},
+            {"contact_time": "3 ms"},
+            {"penetration": "2 mm"},
+        )
+    ]
+    assert contacts[0] == pytest.approx(2e4, rel=1e-5)
+    assert contacts[1] == pytest.approx(8e4, rel=1e-5)
+    # π √(m/k)
+    assert contacts[2] == pytest.approx(0.05 * (math.pi / 3e-3) ** 2, rel=1e-5)
+    assert len({round(k) for k in contacts}) == 4
+
+
+def test_a_step_that_is_short_enough_is_taken_with_what_was_given():
+    found = design(Bounce(**BALL, stiffness="2 kN/m"), "mujoco", "20 us")
+    assert found.chosen == YOURS
+    assert found.row.stiffness == pytest.approx(2e3, rel=1e-5)
+    assert found.row.step == 2e-5
+
+
+def test_the_note_speaks_of_the_contact_that_is_written():
+    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms")
+    row = found.row
+    assert f"it sinks {row.outcome.depth[1] * 1e3:.1f} mm" in found.notes[0]
+    assert "its centre passes the surface" in found.notes[0]
+    assert row.outcome.depth[1] > found.bounce.size
+
+
+def test_without_a_penetration_it_is_a_tenth_of_the_radius():
+    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco")
+    assert 0.098 * found.bounce.size <= found.row.outcome.depth[1] <= 0.1 * found.bounce.size
+    assert "a tenth of the radius" in str(found)
+
+
+def test_a_step_at_which_no_spring_works_is_said_so():
+    """5 g at r = 0.95 and 10 ms once lay 877 mm deep in Drake."""
+    bounce = Bounce(mass="5 g", restitution=0.95, drop_height="1 m")
+    found = design(bounce, "drake", "10 ms")
+    assert YOURS not in found.rows
+    assert "no spring works in drake" in found.notes[0]
+    assert "moves 44.3 mm in a step" in found.notes[0]
+    assert found.rows[IMPULSE].outcome.restitution[1] == pytest.approx(0.95, abs=0.002)
+    assert found.row.outcome.rest < 1e-3
+
+
+@pytest.mark.parametrize("name", ["lammps", "lammps-hertz", "liggghts", "mercurydpm"])
+@pytest.mark.parametrize("step", ["1 ms", "4 ms"])
+def test_grains_are_not_lost_in_a_wall(name, step):
+    """A grain whose centre passes the wall was lost: "Lost atoms"."""
+    found = design(Bounce(mass="50 g", restitution=0.8, radius="30 mm"), name, step)
+    for row in found.rows.values():
+        assert math.isnan(row.stiffness) or row.outcome.depth[1] < 0.03
+
+
+def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
+    found = design(Bounce(mass="50 g", restitution=0.8), "pybullet", "1/240", pick=IMPULSE)
+    assert found.parameters == {"restitution": pytest.approx(math.sqrt(0.798), abs=0.003)}
+    assert "restitution=0.89" in found.snippet
+    assert found.row.outcome.error < 0.01
+    with pytest.raises(Refused, match="no impulse is written for mujoco"):
+        design(Bounce(mass="50 g", restitution=0.8), "mujoco", "1/240", pick=IMPULSE)
+
+
+@pytest.mark.parametrize("name", STEPPED)
+def test_points_share_the_force(name):
+    one = design(Bounce(**BALL), name, "0.2 ms")
+    four = design(Bounce(**BALL, points=4), name, "0.2 ms")
+    assert four.row.outcome.restitution == pytest.approx(one.row.outcome.restitution, abs=1e-3)
+    if ENGINES[name].points_share and name not in ("ode", "genesis", "mujoco"):
+        first = ENGINES[name].names[0]
+        assert four.parameters[first] == pytest.approx(one.parameters[first] / 4, rel=1e-3)
+
+
+def test_drake_has_one_contact_for_a_pair_of_shapes():
+    one, four = (design(Bounce(**BALL, points=n), "drake", "1 ms") for n in (1, 4))
+    assert one.parameters == four.parameters
+
+
+@pytest.mark.parametrize("name", ["pybullet", "lammps", "mujoco", "drake"])
+def test_two_free_bodies_act_by_their_reduced_mass(name):
+    pair = design(Bounce(mass=1, restitution=0.8, other_mass=3, speed=2, radius=0.05), name)
+    setting = (pair.row.stiffness, pair.row.outcome.restitution)
+    alone = Bounce(mass=1, restitution=0.8, other_mass=1e9, speed=2, radius=0.05)
+    heavy = design(alone, name)
+    # The same depth needs k in proportion to the reduced mass.
+    assert setting[0] == pytest.approx(0.75 * heavy.row.stiffness, rel=2e-3)
+    assert setting[1] == pytest.approx(heavy.row.outcome.restitution, abs=2e-3)
+    same = pair.parameters == heavy.parameters
+    assert same == (name == "mujoco") or name == "lammps"
+
+
+def test_one_body_may_have_the_spring_alone():
+    both = design(Bounce(mass=1, restitution=0.5, radius=0.05), "pybullet", "1 ms")
+    one = design(Bounce(mass=1, restitution=0.5, radius=0.05), "pybullet", "1 ms", one_body=True)
+    assert one.parameters["contactStiffness"] == pytest.approx(
+        both.parameters["contactStiffness"] / 2, rel=1e-5
+    )
+    # The other body keeps its damping of 0.1.
+    expected = 2 * both.parameters["contactDamping"] - 0.1
+    assert one.parameters["contactDamping"] == pytest.approx(expected, rel=1e-3)
+    assert one.row.outcome.restitution == pytest.approx(both.row.outcome.restitution, abs=1e-3)
+    with pytest.raises(Refused, match="averages solimp"):
+        design(Bounce(mass=1, restitution=0.5), "mujoco", one_body=True)
+    with pytest.raises(Refused, match="no contact that one body alone sets"):
+        design(Bounce(mass=1, restitution=0.5), "lammps", one_body=True)
+
+
+def test_friction_is_named_where_it_changes_the_bounce():
+    found = design(Bounce(**BALL, friction=0.5), "mujoco")
+    assert any("0.697 and 0.630 in place of 0.744" in note for note in found.notes)
+    assert 'cone="elliptic"' in str(design(Bounce(**BALL), "mujoco"))
+    assert not design(Bounce(**BALL), "mujoco").notes
+
+
+def test_a_row_that_was_never_run_says_so():
+    for name, row in ENGINES.items():
+        text = str(design(Bounce(**BALL), name))
+        assert ("never run in its engine" in text) == (not row.ran)
+
+
+def test_no_depth_is_negative_and_no_number_has_a_power_of_ten():
+    for name in STEPPED:
+        for height in ("1 mm", "1 km"):
+            wanted = Bounce(mass="1 kg", restitution=0.4, drop_height=height, radius="10 cm")
+            found = design(wanted, name)
+            table = str(found).split("\n\n")[0]
+            assert "−" not in table and "-0" not in table
+            assert not re.search(r"\de[+-]?\d", table)
+
+
+def test_the_answer_begins_with_the_table_then_the_snippet_then_the_assumptions():
+    text = str(design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms"))
+    places = [text.index(part) for part in ("what you want", "<option", "Given:", "Assumed:")]
+    assert places == sorted(places)
+    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms")
+    assert text.startswith(repr(found)) and "<option" not in repr(found)
+    html = design(Bounce(mass="50 g", restitution=0.8), "mujoco")._repr_html_()
+    assert "<table>" in html and "&lt;option" in html
+
+
+@pytest.mark.parametrize("name", list(ENGINES))
+def test_every_snippet_has_the_numbers_that_were_computed(name):
+    found = design(Bounce(**BALL), name)
+    assert "@" not in found.snippet
+    for value in found.parameters.values():
+        for number in np.atleast_1d(value):
+            assert f"{number:.6g}" in found.snippet or number == 1e-4
+
+
+def test_a_random_ball_bounces_as_wanted():
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        name = str(rng.choice(STEPPED))
+        r = float(rng.uniform(0.1, 0.95))
+        mass = float(10 ** rng.uniform(-5, 2))
+        wanted = Bounce(mass=mass, restitution=r, drop_height=float(10 ** rng.uniform(-1, 1)))
+        outcome = design(wanted, name).row.outcome
+        assert outcome.deviation(r) <= 0.02, (name, r, mass)
+        assert outcome.depth[1] <= wanted.limit
+
+
+def test_a_fine_step_in_a_compliant_contact_keeps_its_damping():
+    """A limit of 3,000 steps once left a damping of 0 and r = 0 without a word."""
+    wanted = Bounce(mass="1 kg", restitution=0.8, stiffness="10 N/m", radius="1 m")
+    found = design(wanted, "generic", "5 us")
+    assert found.parameters["damping"] > 0.1
+    assert found.row.outcome.restitution[1] > 0.3
+    assert any("3000 of these steps" in note for note in found.notes)
+
+
+def test_names_of_engines_are_forgiving():
+    assert engine_named("MuJoCo").name == "mujoco"
+    assert engine_named("isaac_lab").name == "physx"
+    with pytest.raises(Refused, match="did you mean mujoco"):
+        engine_named("mujocco")

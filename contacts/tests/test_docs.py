@@ -1,0 +1,44 @@
+"""What the pages show is what the commands print."""
+
+import doctest
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+SHOWN = [
+    (page.name, command, shown)
+    for page in PAGES
+    for command, shown in re.findall(
+        r"^```\n\$ bounce ([^\n]*)\n(.*?)^```$", page.read_text("utf-8"), re.DOTALL | re.MULTILINE
+    )
+]
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+@pytest.mark.parametrize(("page", "command", "shown"), SHOWN, ids=lambda each: each[:30])
+def test_a_page_shows_what_the_command_prints(typed, page, command, shown):
+    """Words are the same; numbers differ by at most a unit or two of their last digits."""
+    status, out, err = typed(command)
+    assert (status, err) == (0, "")
+    assert NUMBER.sub("0", out).split() == NUMBER.sub("0", shown).split()
+    for printed, expected in zip(NUMBER.findall(out), NUMBER.findall(shown), strict=True):
+        assert float(printed) == pytest.approx(float(expected), rel=0.03, abs=2e-3), shlex.quote(
+            out
+        )
+
+
+def test_the_examples_in_python():
+    failed, tried = doctest.testfile(str(ROOT / "docs" / "python.md"), module_relative=False)
+    assert failed == 0 and tried > 10
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_within_the_package_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text("utf-8")):
+        path = (page.parent / target).resolve()
+        # Pages of the other packages are theirs.
+        assert path.exists() or ROOT not in path.parents, target

@@ -1,0 +1,87 @@
+"""Numbers with units, in and out."""
+
+import pint
+import pytest
+
+from bouncing_ball_contacts import Bounce, Refused
+from bouncing_ball_contacts.units import density_of, in_si, show
+
+REGISTRY = pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "expected"),
+    [
+        ("50 g", "kg", 0.05),
+        ("50g", "kg", 0.05),
+        (0.05, "kg", 0.05),
+        ("0.05", "kg", 0.05),
+        ("1/240", "s", 1 / 240),
+        ("1/3 ms", "s", 1e-3 / 3),
+        ("1,5 mm", "m", 1.5e-3),
+        ("20 µs", "s", 2e-5),
+        ("2 lb", "kg", 0.90718474),
+        ("1 inch", "m", 0.0254),
+        ("64 %", "", 0.64),
+        ("1e5 N/m", "N/m", 1e5),
+        ("2.5 kN/mm", "N/m", 2.5e6),
+        ("−3", "s", -3.0),
+        (REGISTRY.Quantity(5, "cm"), "m", 0.05),
+    ],
+)
+def test_a_quantity_is_read(given, unit, expected):
+    assert in_si("value", given, unit) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "said"),
+    [
+        ("1,500 N/m", "N/m", "'1500 N/m' or as '1.500 N/m'"),
+        ("five g", "kg", "does not begin with a number"),
+        ("5 furlong/moon", "kg", "unit of '5 furlong/moon' is not known"),
+        ("5 s", "kg", "does not fit; write it as in '50 g'"),
+        ("1/0", "s", "divides by zero"),
+        ("nan", "s", "does not begin"),
+        (float("inf"), "s", "not a finite number"),
+        (None, "s", "is not a number"),
+        (REGISTRY.Quantity(5, "s"), "m", "does not fit"),
+    ],
+)
+def test_a_text_that_is_no_quantity_is_refused_in_one_line(given, unit, said):
+    with pytest.raises(Refused, match=said) as refused:
+        in_si("value", given, unit)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected"),
+    [
+        (0.99999, "m", "1 m"),
+        (0.9996, "m", "1 m"),
+        (0.0999996, "m", "100 mm"),
+        (1234.0, "m", "1230 m"),
+        (1e-7, "m", "100 nm"),
+        (2200.0, "N/m", "2.2 kN/m"),
+        (0.05, "kg", "50 g"),
+        (2000.0, "kg", "2000 kg"),
+        (0.0, "m", "0 m"),
+        (float("nan"), "N/m", "–"),
+        (4.429, "m/s", "4.43 m/s"),
+        (999.6, "N", "1 kN"),
+    ],
+)
+def test_a_number_is_shown_without_powers_of_ten(value, unit, expected):
+    assert show(value, unit) == expected
+
+
+def test_a_material_is_a_density():
+    assert density_of("Rubber") == density_of("1100 kg/m^3") == 1100
+    with pytest.raises(Refused, match="none of steel"):
+        density_of("unobtainium")
+
+
+def test_a_bounce_takes_texts_and_pint_quantities_alike():
+    one = Bounce(mass="50 g", restitution="80 %", drop_height="1 m")
+    other = Bounce(mass=REGISTRY.Quantity(50, "g"), restitution=0.8, drop_height=1.0)
+    assert one == other
+    assert one.impact_speed == pytest.approx(4.4287, abs=1e-4)

@@ -59,7 +59,7 @@ BRANCHES = [
 def test_a_branch_is_that_of_the_closed_form(n, ratio, r, release, amplitude_max, points):
     zeta = independent.restitution_to_damping(r)
     family = Family(n, Contact(ratio, zeta, release))
-    branch = continuation.branch(family, r, amplitude_max, points)
+    branch = continuation.branch(family, amplitude_max, points)
     y = branch.orbits
     assert y.shape == (4, points)
     assert_on_closed_form(n, ratio, zeta, release, y)
@@ -109,7 +109,7 @@ def test_a_branch_is_that_of_the_closed_form(n, ratio, r, release, amplitude_max
 def test_the_special_points_of_figure_8():
     """At ϖ = 2 the family turns twice and ends where permanent contact does."""
     zeta = damping_ratio(0.85)
-    branch = continuation.branch(Family(1, Contact(2.0, zeta)), 0.85, 1.3, 20)
+    branch = continuation.branch(Family(1, Contact(2.0, zeta)), 1.3, 20)
     found = [(special.kind, round(float(special.orbit[0]), 8)) for special in branch.special]
     # Known from computations with other methods and more digits.
     assert found == [
@@ -132,9 +132,9 @@ def test_the_special_points_of_figure_8():
 )
 def test_the_points_of_a_branch_do_not_depend_on_the_steps(n, ratio, release, amplitude_max):
     family = Family(n, Contact(ratio, damping_ratio(0.85), release))
-    reference = continuation.branch(family, 0.85, amplitude_max, 60, 0.2)
+    reference = continuation.branch(family, amplitude_max, 60, 0.2)
     for largest_step in (0.06, 0.5):
-        branch = continuation.branch(family, 0.85, amplitude_max, 60, largest_step)
+        branch = continuation.branch(family, amplitude_max, 60, largest_step)
         # Chords are equal to 1e-12 of their mean, so that the points are, over the whole length.
         np.testing.assert_allclose(branch.orbits, reference.orbits, atol=1e-9)
         assert branch.ends == reference.ends
@@ -164,7 +164,7 @@ def test_the_period_doubling_of_an_undamped_contact_is_known(n, ratio, expected)
     [(1, 0.61, 2.1), (2, 2.2260684470825036, 1.5), (3, 3.7, 1.2), (1, 1.0, 2.1)],
 )
 def test_the_branch_of_an_undamped_contact_has_its_period_doubling(n, ratio, amplitude_max):
-    branch = continuation.branch(Family(n, Contact(ratio, 0.0)), 1.0, amplitude_max, 40)
+    branch = continuation.branch(Family(n, Contact(ratio, 0.0)), amplitude_max, 40)
     known = continuation.bifurcations(n, "period doubling", ratio, Contact(ratio, 0.0))[0, 0, 0]
     doublings = [each.orbit[0] for each in branch.special if each.kind == "period doubling"]
     assert known == pytest.approx(doublings[-1], rel=1e-9)
@@ -273,13 +273,17 @@ def test_where_there_is_no_orbit_there_is_none():
     np.testing.assert_array_equal(np.isnan(y), np.array(lowest) > 3.5)
     assert np.isnan(y).sum() == 2
     with pytest.raises(NoOrbit, match=r"no 5-T orbit is found at Λ = 3.5 and ϖ = 1$"):
-        continuation.branch(Family(5, Contact(1.0, zeta)), 0.65, 3.5, 20)
+        continuation.branch(Family(5, Contact(1.0, zeta)), 3.5, 20)
 
 
 def test_below_the_saddle_node_of_the_restitution_model_there_is_no_orbit():
-    message = r"Λ = 0.25 is below the 1-T orbits, from Λ = 0.254724 on \(Eq. 7\)"
+    found = continuation.stable_orbits(1, 0.85, [0.3, 0.25], [10.0])
+    assert np.isfinite(found[:, 0]).all()
+    assert np.isnan(found[:, 1]).all()
+    message = r"1-T orbits exist from Λ = 0.254724 on \(Eq. 7 .* r = 0.85\).* largest Λ is 0.25"
     with pytest.raises(NoOrbit, match=message):
-        continuation.stable_orbits(1, 0.85, [0.3, 0.25], [10.0])
+        continuation.stable_orbits(1, 0.85, [0.2, 0.25], [10.0])
+
 
 
 def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():

@@ -171,8 +171,8 @@ def test_multipliers_are_those_of_the_motion_over_a_cycle():
             determinant, abs=ROUNDING * np.abs(matrix).max() ** 2
         )
         assert determinant == pytest.approx(np.exp(-2 * one.zeta * one.y[3]))
-        assert one.family.saddle_node(one.y) == pytest.approx(1 - trace + determinant)
-        assert one.family.period_doubling(one.y) == pytest.approx(1 + trace + determinant)
+        assert one.family.saddle_node_test(one.y) == pytest.approx(1 - trace + determinant)
+        assert one.family.period_doubling_test(one.y) == pytest.approx(1 + trace + determinant)
         multipliers = one.family.multipliers(one.y)
         assert abs(multipliers[0]) >= abs(multipliers[1]) * (1 - ROUNDING)
         np.testing.assert_allclose(multipliers.sum(), trace, atol=ROUNDING * size)

@@ -249,3 +249,14 @@ def test_the_departure_from_the_table_is_the_next_time_at_which_its_force_would_
 def test_a_ball_comes_to_rest_on_a_table_with_a_small_amplitude():
     with pytest.raises(ValueError, match=r"Λ = 0.9 comes to rest: Λ must exceed 1 \(Eq. 9\)"):
         restitution.simulate(0.3, 0.9, 0.7, 1.0, 500)
+
+
+@pytest.mark.parametrize("before_the_end", [1e-4, 1e-3, 1e-2])
+def test_a_short_flight_from_a_table_that_begins_to_hold_the_ball_again(before_the_end):
+    """Without relative velocity the height is (Λ sin τ - 1)s²/2 + Λ cos τ s³/6 + O(s⁴)."""
+    amplitude = 1.2
+    time = np.pi - np.arcsin(1 / amplitude) - before_the_end
+    found = restitution.flight_time(amplitude, time, amplitude * np.cos(time))
+    expected = 3 * (amplitude * np.sin(time) - 1) / (-amplitude * np.cos(time))
+    # The next order is the square of this time.
+    assert found == pytest.approx(expected, abs=expected**2)

@@ -41,8 +41,8 @@ Eq. 16     `spring_damper.damping_ratio`
 Eq. 17     `orbits.Family.apparent_restitution`
 Eqs. 18-27 `orbits.Family.equations`
 Eqs. 28-33 `spring_damper.permanent_contact`
-Eq. 34     `spring_damper.permanent_contact_ratios`
-Eqs. 35-36 `spring_damper.lowest_permanent_contact`
+Eqs. 34-35 `spring_damper.permanent_contact_ratios`
+Eq. 36     `spring_damper.lowest_permanent_contact`
 Eqs. 37-38 `errors.relative_error`, `errors.threshold`
 =========  =====================================================================================
 """

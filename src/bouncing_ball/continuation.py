@@ -21,19 +21,19 @@ from bouncing_ball.spring_damper import Contact, damping_ratio
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
 """A function of orbits y, shape (4, ...), whose zero is wanted, and its derivative by y."""
 
-STIFF = 1e3
+WALK_START = 1e3
 """The frequency ratio at which walks start, from the orbit of the restitution model."""
 
 STEPS_PER_DECADE = 16
-"""Steps of a walk per decade of ϖ: the prediction error is then a percent of the orbit's change."""
+"""Steps of a walk per decade of ϖ; a step is predicted to about an eighth of the orbit's change."""
 
 SMALLEST_STEP = 1e-6
 """The step at which a continuation gives up."""
 
 LEAST_FLIGHT = 8e-4
 """Flight at which a branch counts as merged with permanent contact. Its Λ then exceeds that of
-permanent contact by the square of this, and the multipliers, which are divided by the squared
-velocity of the impact, still have ten digits."""
+permanent contact by less than the square of this, and the multipliers, which are divided by the
+squared velocity of the impact, still have some digits."""
 
 VANISHES = "the amplitude vanishes, as it does for undamped contacts only"
 """Why the branch of an undamped contact ends: its phase is not defined at Λ = 0."""
@@ -76,7 +76,7 @@ def on_plane(point: NDArray, normal: NDArray) -> Condition:
 
 
 def at_bifurcation(test: Callable[[Family, NDArray], NDArray]) -> Condition:
-    """The condition that a test function of orbits vanishes, such as `Family.saddle_node`.
+    """The condition that a test function of orbits vanishes, such as `Family.saddle_node_test`.
 
     Its derivative is by central differences with a step of 1e-6: errors of 1e-9 in it slow
     Newton's method down a little, and do not change the orbit to which it converges.
@@ -167,7 +167,7 @@ def walk(
 ) -> NDArray:
     """Orbits under a condition along ϖ, shape (4, cases, ratios), NaN where they are not reached.
 
-    The walk starts at STIFF, or at twice the largest ratio, with the orbit of the restitution
+    The walk starts at WALK_START, or at twice the largest ratio, with the orbit of the restitution
     model, and goes in equal steps of log ϖ to the most compliant contact; each orbit is predicted
     from the two before it. The orbits at the given ratios are then corrected side by side, from
     predictions of the same kind.
@@ -183,7 +183,7 @@ def walk(
     x, lift : ndarray, shape (cases, 1)
         X and Y of the orbits of the restitution model.
     """
-    stiffest = max(STIFF, 2 * ratios.max())
+    stiffest = max(WALK_START, 2 * ratios.max())
     count = 3 + int(STEPS_PER_DECADE * np.log10(stiffest / ratios.min()))
     nodes = np.geomspace(stiffest, ratios.min(), count)
     stiff = _at_ratio(family, nodes[0])
@@ -244,22 +244,25 @@ def stable_orbits(
     Raises
     ------
     NoOrbit
-        If Λ lies below the saddle-node of the stiff limit, the restitution model (Eq. 7); orbits of
-        compliant contacts alone are not searched for.
+        If all amplitudes lie below the saddle-node of the stiff limit, the restitution model
+        (Eq. 7); orbits of compliant contacts alone are not searched for.
     """
-    r, amplitude = (
-        np.atleast_1d(each)[:, np.newaxis] for each in np.broadcast_arrays(r, amplitude)
-    )
-    contact = Contact(STIFF, damping_ratio(r), release)
-    x = restitution.saddle_node(n, contact.restitution)
-    for one, lowest in zip(amplitude.flat, x.flat, strict=True):
-        if one < lowest:
-            raise NoOrbit(
-                f"Λ = {one:g} is below the {n}-T orbits, from Λ = {lowest:.6g} on (Eq. 7)"
-            )
-    lift = np.sqrt(amplitude**2 - x**2)
-    family = Family(n, contact)
-    return walk(family, np.atleast_1d(ratios), at_amplitude(amplitude), x, lift)
+    r, amplitude = np.broadcast_arrays(np.atleast_1d(r), np.atleast_1d(amplitude))
+    contact = Contact(WALK_START, damping_ratio(r)[:, np.newaxis], release)
+    return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis], np.atleast_1d(ratios))
+
+
+def _upper_orbits(family: Family, amplitude: NDArray, ratios: NDArray) -> NDArray:
+    """The orbits of `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
+    r = family.contact.restitution
+    x = np.broadcast_to(restitution.saddle_node(family.n, r), amplitude.shape)
+    if np.all(amplitude < x):
+        raise NoOrbit(
+            f"{family.n}-T orbits exist from Λ = {x.min():.6g} on (Eq. 7 for a free impact with "
+            f"r = {np.max(r):.6g}), and the largest Λ is {amplitude.max():g}"
+        )
+    lift = np.sqrt(np.where(amplitude < x, np.nan, amplitude**2 - x**2))
+    return walk(family, ratios, at_amplitude(amplitude), x, lift)
 
 
 def bifurcations(n: Numbers, kind: str, ratios: Numbers, contact: Contact) -> NDArray:
@@ -282,10 +285,10 @@ def bifurcations(n: Numbers, kind: str, ratios: Numbers, contact: Contact) -> ND
     n = np.atleast_1d(n)[:, np.newaxis]
     x = restitution.saddle_node(n, contact.restitution)
     lift = np.zeros_like(x)
-    test = Family.saddle_node
+    test = Family.saddle_node_test
     if kind == "period doubling":
         lift = lift + restitution.period_doubling_lift(contact.restitution)
-        test = Family.period_doubling
+        test = Family.period_doubling_test
     return walk(Family(n, contact), np.atleast_1d(ratios), at_bifurcation(test), x, lift)
 
 
@@ -314,17 +317,13 @@ class Branch:
     ends: tuple[str, str]
 
 
-def branch(
-    family: Family, r: float, amplitude_max: float, points: int, largest_step: float = 0.2
-) -> Branch:
+def branch(family: Family, amplitude_max: float, points: int, largest_step: float = 0.2) -> Branch:
     """Follow the orbits of a family from the stable side at an amplitude round the saddle-node.
 
     Parameters
     ----------
     family : Family
         With one frequency ratio.
-    r : float
-        The restitution coefficient.
     amplitude_max : float
         Λ at which the branch begins, and at which it ends unless the flight vanishes before.
     points : int
@@ -338,7 +337,7 @@ def branch(
         If there is no orbit to begin with, or the continuation fails.
     """
     ratio = float(family.contact.frequency_ratio)
-    start = stable_orbits(int(family.n), r, amplitude_max, ratio, family.contact.release)[:, 0, 0]
+    start = _upper_orbits(family, np.array([[amplitude_max]]), np.array([ratio]))[:, 0, 0]
     if np.isnan(start).any():
         raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
     reached = f"amplitude = {amplitude_max:g} is reached"
@@ -357,7 +356,7 @@ def branch(
 
 def _tests(family: Family) -> dict[str, Callable[[NDArray], NDArray]]:
     """The functions that vanish at each kind of special point."""
-    functions = (family.saddle_node, family.period_doubling, family.clearance)
+    functions = (family.saddle_node_test, family.period_doubling_test, family.clearance)
     return dict(zip(SPECIAL, functions, strict=True))
 
 
@@ -423,10 +422,13 @@ def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
         if np.isnan(orbits).any():
             raise NoOrbit(f"a {family.n}-T branch cannot be sampled at {points} points")
         chords = np.linalg.norm(np.diff(orbits), axis=0)
-        if np.ptp(chords) < 1e-12 * chords.mean():
+        # Rounding errors of orbits are some 1e-14, and chords are differences of them.
+        if np.ptp(chords) < 1e-12 * max(chords.mean(), 0.1):
             break
         passed = np.concatenate([[0], np.cumsum(chords)])
         places = np.interp(np.linspace(0, passed[-1], points), passed, places)
+    else:
+        raise NoOrbit(f"the {points} points of a {family.n}-T branch do not become equidistant")
     return orbits
 
 
@@ -444,7 +446,8 @@ def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) ->
             return guess if np.isnan(found).any() else found
 
         zero = orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15))
-        # At a pole of the test function its sign changes, too.
+        # At a pole of the test function its sign changes, too, but its value does not become small;
+        # at Λ = 0 the phase is not defined.
         if zero[0] > 1e-6 and abs(test(zero)) < 1e-3 * np.abs(values[i : i + 2]).max():
             found.append(zero)
     return found

@@ -75,7 +75,7 @@ VARIABLES = {
     "tolerance": Variable("relative error tolerated", equation="Eqs. 37-38"),
     # Motions
     "ball": Variable("height of the ball", "z", "Eqs. 4, 12, 14"),
-    "ball_velocity": Variable("velocity of the ball", "z′", "Eqs. 4, 13, 15"),
+    "ball_velocity": Variable("velocity of the ball", "z′", "Eqs. 3, 13, 15"),
     "table": Variable("height of the table", "w", "Eq. 4"),
     "contact": Variable("whether the ball touches the table"),
     "restitution_ball": Variable("height of the ball, restitution model", "z_CR", "Eq. 4"),
@@ -86,7 +86,7 @@ VARIABLES = {
         "phase of the table when the contact ends", "φ + τ_b", "Eq. 23", "rad"
     ),
     "impact_velocity": Variable("velocity of the ball as contact starts", "z′_i", "Eq. 22"),
-    "bounce_velocity": Variable("bouncing-off velocity of the ball", "z′_b", "Eq. 27"),
+    "bounce_velocity": Variable("bouncing-off velocity of the ball", "z′_b", "Eqs. 24, 27"),
     "apparent_restitution": Variable("apparent restitution coefficient", "r_a", "Eq. 17"),
     "max_height": Variable("greatest height of the ball over the cycle", "max z", "Eq. 37"),
     "damping_ratio": Variable("damping ratio of the contact", "ζ", "Eq. 16"),
@@ -145,7 +145,7 @@ VARIABLES = {
         "threshold of permanent contact, restitution model", "Λ_CR", "Eq. 9"
     ),
     "minimum_frequency_ratio": Variable(
-        "where the lowest threshold is", "1/√(1-2ζ²)", "Eqs. 34-36"
+        "where the lowest threshold is", "1/√(1-2ζ²)", "Eq. 36"
     ),
     "minimum_threshold": Variable("lowest threshold of permanent contact", "2ζ√(1-ζ²)", "Eq. 36"),
     # Errors of the restitution model

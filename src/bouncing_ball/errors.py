@@ -41,8 +41,8 @@ class Threshold(NamedTuple):
     """A frequency ratio, and how it was found.
 
     The status is ``found``; ``within`` if the error is within the tolerance at every ratio of the
-    scan; and ``outside`` if it is not at the largest, or if there is no orbit right below those at
-    which it is. The ratio is NaN if it is not found.
+    scan; and ``outside`` if it is not so at the largest, or if the error jumps into the tolerance
+    because there is no orbit at the ratio before. The ratio is NaN if it is not found.
     """
 
     ratio: float
@@ -115,10 +115,10 @@ def orbit_errors(
 def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
     """The errors of the amplitudes of both bifurcations, by their names."""
     kinds = {
-        "saddle_node": ("saddle-node", Family.saddle_node, restitution.saddle_node(n, r)),
+        "saddle_node": ("saddle-node", Family.saddle_node_test, restitution.saddle_node(n, r)),
         "period_doubling": (
             "period doubling",
-            Family.period_doubling,
+            Family.period_doubling_test,
             restitution.period_doubling(n, r),
         ),
     }
@@ -192,7 +192,7 @@ def lowest_period_doublings(
 
         def amplitude(logarithm, n=families[k], guess=orbits[:, k, lowest]):
             family = Family(n, replace(contact, frequency_ratio=np.exp(logarithm)))
-            return float(correct(family, guess, at_bifurcation(Family.period_doubling))[0])
+            return float(correct(family, guess, at_bifurcation(Family.period_doubling_test))[0])
 
         around = np.log(ratios[[lowest - 1, lowest + 1]])
         found = minimize_scalar(

@@ -193,12 +193,12 @@ class Family:
         matrix = self.return_map(y)
         return matrix[0, 0] + matrix[1, 1], np.exp(-2 * self.contact.damping_ratio * y[3])
 
-    def saddle_node(self, y: NDArray) -> NDArray:
+    def saddle_node_test(self, y: NDArray) -> NDArray:
         """1 - trace + determinant, zero where a Floquet multiplier is 1."""
         trace, determinant = self.trace_and_determinant(y)
         return 1 - trace + determinant
 
-    def period_doubling(self, y: NDArray) -> NDArray:
+    def period_doubling_test(self, y: NDArray) -> NDArray:
         """1 + trace + determinant, zero where a Floquet multiplier is -1."""
         trace, determinant = self.trace_and_determinant(y)
         return 1 + trace + determinant
@@ -251,7 +251,7 @@ class Family:
             s = part * end.duration
             return x * np.sin(s) + lift * np.cos(s) + self.contact.motion(s, u, x, lift)[0]
 
-        # The summit is at the end of the flight if the ball falls, or rises, throughout.
+        # The summit is at an end of the flight if the ball falls, or rises, throughout.
         rise = np.clip(end.velocity, 0, end.flight)
         summit = end.table_height + end.gap + end.velocity * rise - rise**2 / 2
         return np.maximum(summit, -_least(lambda part: -in_contact(part), summit.shape))
@@ -315,19 +315,20 @@ class Family:
 
 
 def _least(function, shape: tuple[int, ...], samples: int = 33) -> NDArray:
-    """The smallest value of functions on the open interval from 0 to 1, for an array of functions.
+    """The smallest value of functions between 0 and 1, for an array of functions.
 
-    The functions are sampled, and sampled again four times between the neighbours of their smallest
-    samples. The last samples are 5e-7 of the interval apart, so that the smallest of them is the
-    minimum of a smooth function up to the square of this.
+    The functions are sampled at places that are denser towards the ends, where they need not be
+    defined, and sampled again four times between the neighbours of their smallest samples. The last
+    samples are 1e-6 of the interval apart at most, so that the smallest of them is the minimum of a
+    smooth function up to the square of this.
     """
-    steps = np.linspace(0, 1, samples).reshape(-1, *np.ones(len(shape), dtype=int))
-    grid = np.broadcast_to(1 / (samples + 1) + steps * (1 - 2 / (samples + 1)), (samples, *shape))
+    axes = (-1, *np.ones(len(shape), dtype=int))
+    places = (1 - np.cos(np.pi * np.arange(1, samples + 1) / (samples + 1))) / 2
+    grid = np.broadcast_to(places.reshape(axes), (samples, *shape))
+    steps = np.linspace(0, 1, 33).reshape(axes)
     for _ in range(4):
-        best = np.clip(np.argmin(function(grid), axis=0), 1, samples - 2)[np.newaxis]
+        best = np.clip(np.argmin(function(grid), axis=0), 1, len(grid) - 2)[np.newaxis]
         low = np.take_along_axis(grid, best - 1, axis=0)
         high = np.take_along_axis(grid, best + 1, axis=0)
-        steps = np.linspace(0, 1, 33).reshape(-1, *np.ones(len(shape), dtype=int))
-        samples = 33
         grid = low + steps * (high - low)
     return function(grid).min(axis=0)

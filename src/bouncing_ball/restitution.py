@@ -139,8 +139,8 @@ def grazing_lift(n: int, r: float) -> float:
 
     largest = -np.inf
     for k in range(n):
-        # The function tends to minus infinity at the ends of each period, up to the last, at which
-        # both the flight and the table's turn end.
+        # Between two whole periods after the impact 1 - cos s is positive, and at each of them the
+        # function tends to minus infinity, so that it has a maximum in between.
         grid = 2 * np.pi * (k + np.linspace(0, 1, 202)[1:-1])
         best = int(np.argmax(needed(grid)))
         low = grid[max(best - 1, 0)]
@@ -169,9 +169,13 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
     def gap_rate(s):
         return velocity - s - amplitude * np.cos(time + s)
 
-    # The relative acceleration is at least -(1 + Λ), so that the ball does not land before this. A
-    # ball that has stuck to the table is above it for more than the first step.
-    earliest = 2 * relative / (1 + amplitude) if relative > STICKING else 0.01
+    # The relative acceleration is at least -(1 + Λ), so that the ball does not land before this.
+    earliest = 2 * relative / (1 + amplitude)
+    if relative <= STICKING:
+        # The height above the table begins with (Λ sin τ - 1)s²/2 + Λ cos τ s³/6, which is positive
+        # unless cos τ < 0: half of its zero is taken then.
+        slowing = max(-amplitude * np.cos(time), 0.0)
+        earliest = min(0.01, 1.5 * (start - 1) / slowing) if slowing else 0.01
     # At this time the flight is at the lowest level of the table.
     latest = velocity + np.sqrt(velocity**2 + 2 * (start + amplitude))
     grid = np.linspace(earliest, latest, 2 + int(20 * (latest - earliest)))
@@ -301,7 +305,7 @@ def lyapunov_exponent(path: Impacts, block: int = 32) -> tuple[float, float]:
     """Largest Lyapunov exponent per period of the table, and its standard error.
 
     The first quarter of the impacts is left out. The error is that of a ratio of means over blocks
-    of impacts.
+    of impacts. Both are NaN if the ball sticks to the table in the others.
     """
     blocks = 3 * path.growth.size // (4 * block)
     grown = path.growth[-blocks * block :].reshape(blocks, block).sum(axis=1)

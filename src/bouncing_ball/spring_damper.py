@@ -1,4 +1,4 @@
-"""The spring-damper model: an impact is a contact of finite duration (Eqs. 10-17 and 28-36).
+"""The spring-damper model: an impact is a contact of finite duration (Eqs. 10-13, 16, 28-36).
 
 In contact the height δ = z - w of the ball above the table obeys (Eq. 11)
 
@@ -22,13 +22,15 @@ RELEASES = ("displacement", "force")
 def damping_ratio(r: Numbers) -> NDArray:
     """Damping ratio ζ of the contact on which a free impact has the restitution r (Eq. 16).
 
-    Free means without weight, and with a contact that ends at δ = 0.
+    Free means without weight, and with a contact that ends at δ = 0. `free_restitution` is the
+    inverse, which has to follow a change of this formula.
 
     >>> round(float(damping_ratio(0.85)), 5)
     0.05166
     """
     logarithm = np.log(r)
-    return -logarithm / np.hypot(np.pi, logarithm)
+    # The sum has no negative zero for r = 1.
+    return 0.0 - logarithm / np.hypot(np.pi, logarithm)
 
 
 def free_restitution(zeta: Numbers) -> NDArray:
@@ -96,6 +98,9 @@ class Contact:
     def __post_init__(self):
         if self.release not in RELEASES:
             raise ValueError(f"release is {self.release!r}; allowed are {', '.join(RELEASES)}")
+        # NaN stays allowed, as the answer where there is no contact.
+        if np.any(np.less(self.damping_ratio, 0) | np.greater_equal(self.damping_ratio, 1)):
+            raise ValueError(f"the damping ratio is {self.damping_ratio}; it must be 0 <= ζ < 1")
 
     @property
     def lag(self) -> NDArray:
@@ -134,25 +139,25 @@ class Contact:
             cosine=wave.real,
         )
 
-    def motion(self, s: Numbers, u: Numbers, x: Numbers, y: Numbers) -> Motion:
+    def motion(self, s: Numbers, u: Numbers, x: Numbers, lift: Numbers) -> Motion:
         """Motion in contact (Eqs. 12 and 13) at times s, from δ = 0 and δ′ = u.
 
-        x and y are Λ cos φ and Λ sin φ at the start of the contact.
+        x and lift are Λ cos φ and Λ sin φ at the start of the contact.
         """
         response = self.responses(s)
         displacement = (
             u * response.impulse
             - self.weight * response.constant
             + x * response.sine
-            + y * response.cosine
+            + lift * response.cosine
         )
         velocity = (
             u * response.impulse_rate
             - self.weight * response.impulse
             + x * response.cosine
-            + y * (response.impulse - response.sine)
+            + lift * (response.impulse - response.sine)
         )
-        force = x * np.sin(s) + y * np.cos(s) - self.weight
+        force = x * np.sin(s) + lift * np.cos(s) - self.weight
         damping = 2 * np.asarray(self.damping_ratio) * self.frequency_ratio
         acceleration = force - damping * velocity - self.frequency_ratio**2 * displacement
         return Motion(displacement, velocity, acceleration)
@@ -185,7 +190,7 @@ def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacemen
 
 
 def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tuple[float, float]:
-    """The frequency ratio at which Λ_SD is lowest, and its value there (Eqs. 35 and 36).
+    """The frequency ratio at which Λ_SD is lowest, and its value there (Eq. 36).
 
     With the displacement release they are 1/√(1 - 2ζ²) and 2ζ√(1 - ζ²) for ζ < 1/√2; beyond, Λ_SD
     falls towards 1 as the stiffness grows, and the frequency ratio is infinite. With the force
@@ -200,7 +205,7 @@ def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tupl
 
 
 def permanent_contact_ratios(amplitude: float, zeta: float) -> tuple[float, float]:
-    """The frequency ratios at which Λ_SD has a value below 1, the smaller first (Eq. 34).
+    """The frequency ratios at which Λ_SD has a value below 1, the smaller first (Eqs. 34 and 35).
 
     They are NaN below the lowest Λ_SD.
 

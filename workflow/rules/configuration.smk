@@ -67,14 +67,16 @@ def crossed(parameters, keys=()):
     # The n-T orbit of the restitution model exists from its saddle-node on, Eq. 7. Branches of
     # several families need the orbit of the highest.
     n = max(parameters["n"]) if isinstance(parameters["n"], list) else parameters["n"]
-    for case in parameters.get("cases", [parameters]):
+    cases = parameters.get("cases", [parameters])
+    for index, case in enumerate(cases):
+        inside = (*keys, "cases", index) if "cases" in parameters else keys
         r = case["restitution"]
         lowest = n * math.pi * (1 - r) / (1 + r)
         for key in {"amplitude", "amplitude_max"} & case.keys():
             for amplitude in case[key] if isinstance(case[key], list) else [case[key]]:
                 if amplitude < lowest:
                     yield (
-                        f"{place(keys)}.{key} = {amplitude}: must be at least {lowest:.6g}, the "
+                        f"{place(inside)}.{key} = {amplitude}: must be at least {lowest:.6g}, the "
                         f"saddle-node of the {n}-T orbit at r = {r} (Eq. 7)"
                     )
 

@@ -18,10 +18,9 @@ BOUNDS = ("saddle-node", "period doubling")
 
 def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
     """The branch of a family; if it cannot be followed, NaN, with the reason at its ends."""
-    r = parameters["restitution"]
     points = parameters["points"]
     try:
-        return branch(family, r, parameters["amplitude_max"], points, largest_step)
+        return branch(family, parameters["amplitude_max"], points, largest_step)
     except NoOrbit as error:
         return Branch(np.full((4, points), np.nan), [], (str(error), str(error)))
 

@@ -219,8 +219,8 @@ def test_a_key_like_no_other_is_named_with_all_that_are_allowed():
         # At r = 0.1 the saddle-node is at 9π/11.
         (
             nested("apparent_restitution.fig05.cases", [CASE | {"restitution": 0.1}]),
-            "apparent_restitution.fig05.amplitude = 1.0: must be at least 2.57039, the saddle-node "
-            "of the 1-T orbit at r = 0.1 (Eq. 7)",
+            "apparent_restitution.fig05.cases[0].amplitude = 1.0: must be at least 2.57039, the "
+            "saddle-node of the 1-T orbit at r = 0.1 (Eq. 7)",
         ),
         (
             nested("apparent_restitution.fig10.amplitude", [1.0, 0.5]),

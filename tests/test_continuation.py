@@ -285,7 +285,6 @@ def test_below_the_saddle_node_of_the_restitution_model_there_is_no_orbit():
         continuation.stable_orbits(1, 0.85, [0.2, 0.25], [10.0])
 
 
-
 def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
     # Without tension the impact is more elastic than Eq. 16 has it.
     zeta = damping_ratio(0.05)

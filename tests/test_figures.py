@@ -14,7 +14,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from PIL import Image
 
-from bouncing_ball import datasets, drawing, figures
+from bouncing_ball import datasets, drawing, figures, restitution
 
 REFERENCE = Path(__file__).parents[1] / "figures"
 NAMES = sorted(figures.FIGURES)
@@ -193,6 +193,31 @@ def test_marks_are_at_the_special_points(name):
     assert count >= 4
 
 
+@pytest.mark.parametrize("name", ["fig03", "fig15"])
+def test_the_period_doublings_of_eq_8_are_marked(name):
+    """They are orbits of Eq. 6, at the Λ of Eq. 8."""
+    given = drawing.parameters(reference(name))
+    n, r = np.unique(given["n"]), given["restitution"]
+    marks = lines_of(of_reference(name), "period doubling, Eq. 8")
+    places = np.array([line.get_xydata()[0] for line in marks])
+    amplitude = np.unique(places[:, 0])
+    assert amplitude == pytest.approx(restitution.holmes_period_doubling(n, r))
+    cosines = places[:, 0] * np.cos(np.pi * places[:, 1])
+    assert np.unique(cosines.round(12)) == pytest.approx(n * np.pi * (1 - r) / (1 + r))
+
+
+def test_a_short_stable_range_is_seen_between_its_marks():
+    axes = of_reference("fig08").axes[0]
+    branch = drawing.spring_damper_branch(reference("fig08").sel(frequency_ratio=2.0))
+    special = branch.isel(special=np.flatnonzero(branch.special_kind != ""))
+    special = special.sortby("special_along")
+    places = np.stack([special.special_amplitude, special.special_release_phase / np.pi], axis=1)
+    points = axes.transData.transform(places) * drawing.POINTS / axes.figure.dpi
+    size = max(drawing.MARKS[kind]["markersize"] for kind in special.special_kind.values)
+    # What is seen of the line is at least as long as a mark.
+    assert np.linalg.norm(np.diff(points, axis=0), axis=1).min() > 2 * size
+
+
 def test_the_end_of_a_branch_at_permanent_contact_is_marked():
     data = reference("fig08")
     marks = lines_of(of_reference("fig08"), "joins permanent contact")
@@ -255,10 +280,45 @@ def test_a_motion_repeats_before_and_after_its_cycle():
     data = reference("fig12")
     period = 2 * np.pi
     motions = [data.table.values, data.restitution_ball.values, *data.ball.values[::-1]]
-    for line, height in zip(of_reference("fig12").axes[0].lines, motions, strict=True):
+    axes = of_reference("fig12").axes[0]
+    for line, height in zip(axes.lines, motions, strict=True):
         for shift in (-1, 0, 1):
             at_times = np.interp(data.table_phase.values / period + shift, *line.get_data())
             assert at_times == pytest.approx(height)
+    # The table is the body below its line.
+    (body,) = axes.collections
+    assert body.get_label() == "table $w$"
+    edges = {tuple(point) for point in body.get_paths()[0].vertices}
+    assert {tuple(point) for point in axes.lines[0].get_xydata()} <= edges
+
+
+@pytest.mark.parametrize("name", ["fig05", "fig11", "fig14", "fig16"])
+def test_both_ends_of_the_axis_of_the_frequency_ratio_have_numbers(name):
+    data = reference(name)
+    axis = of_reference(name).axes[-1].xaxis
+    numbers = [float(tick.get_text()) for tick in drawn_tick_labels(axis)]
+    ends = float(data.frequency_ratio.min()), float(data.frequency_ratio.max())
+    assert (numbers[0], numbers[-1]) == pytest.approx(ends)
+
+
+def test_an_end_beside_a_power_of_ten_has_no_number():
+    (data,) = data_of("fig14")
+    figure = laid_out("fig14", data.isel(frequency_ratio=data.frequency_ratio >= 9))
+    assert drawn_tick_labels(figure.axes[1].xaxis)[0].get_text() == "10"
+    assert_readable(figure)
+
+
+def test_the_frequency_ratios_of_the_poincare_map_have_lines_to_their_points():
+    data = reference("fig13").isel(case=0)
+    axes = of_reference("fig13").axes[0]
+    names = [text.get_text() for text in axes.texts if text.get_text()]
+    once = ["$\\varpi=1$", "$\\varpi=2$", "$\\varpi=5$", "$\\varpi=10$", "$\\varpi\\geq100$"]
+    assert names == 2 * once
+    ends = [text.xy for text in axes.texts if text.arrow_patch]
+    shown = data.sel(frequency_ratio=[1, 2, 5, 10, 100], method="nearest")
+    starts = np.stack([shown.phase, shown.impact_velocity], axis=1)
+    releases = np.stack([shown.release_phase, shown.bounce_velocity], axis=1)
+    assert np.array(ends) == pytest.approx(np.concatenate([starts, releases]) / np.pi)
 
 
 def test_an_error_that_changes_its_sign_is_zero_between():

@@ -70,14 +70,14 @@ KINDS: Mapping[str, Any] = {
 """Line style of each kind of orbit."""
 
 MARKS: Mapping[str, Look] = {
-    "saddle-node": {"marker": "o", "markersize": 5},
-    "period doubling": {"marker": "s", "markersize": 5},
-    "grazing": {"marker": "^", "markersize": 5},
-    "period doubling, Eq. 8": {"marker": "x", "markersize": 3.5},
-    "joins permanent contact": {"marker": "D", "markersize": 4.5, "fillstyle": "full"},
-    "end of the branch": {"marker": "h", "markersize": 5, "fillstyle": "full"},
+    "saddle-node": {"marker": "o", "markersize": 3.4},
+    "period doubling": {"marker": "s", "markersize": 3.4},
+    "grazing": {"marker": "^", "markersize": 3.4},
+    "period doubling, Eq. 8": {"marker": "x", "markersize": 5.5},
+    "joins permanent contact": {"marker": "D", "markersize": 3.4, "fillstyle": "full"},
+    "end of the branch": {"marker": "h", "markersize": 3.4, "fillstyle": "full"},
 }
-"""Mark of each special orbit; hollow marks that coincide can all be seen."""
+"""Mark of each special orbit, so small that short stable ranges are seen between two of them."""
 
 WIDE, NARROW = 3.4, 1.1
 """Line widths of the phases at the start and at the end of a contact."""
@@ -180,8 +180,16 @@ def panels(height: float, rows: int = 1, **options: Any) -> tuple[Figure, Any]:
 
 
 def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
-    """A logarithmic axis of ϖ from the least to the greatest, with plain numbers."""
-    axes.set(xscale="log", xlim=(float(ratio.min()), float(ratio.max())))
+    """A logarithmic axis of ϖ from the least to the greatest, with plain numbers.
+
+    Powers of ten have numbers, and so has each end that is far enough from them.
+    """
+    ends = np.array([ratio.min(), ratio.max()], dtype=float)
+    low, high = np.log10(ends)
+    powers = np.arange(np.ceil(low), np.floor(high) + 1)
+    distance = np.abs(np.log10(ends)[:, np.newaxis] - powers).min(axis=1, initial=np.inf)
+    alone = ends[distance > 0.1 * (high - low)]
+    axes.set(xscale="log", xlim=ends, xticks=np.sort([*10**powers, *alone]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
     axes.set_xlabel(r"frequency ratio $\varpi$")
@@ -264,7 +272,7 @@ def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Datase
     """The branch of the restitution model, along which φ increases; its contact ends as it starts.
 
     `bifurcations` has Λ and φ of the saddle-node and the period doubling, and may have those of
-    the grazing orbit.
+    the grazing orbit. The branch has those of the period doubling of Eq. 8, too.
     """
     kinds = {
         "saddle-node": "saddle_node",
@@ -274,9 +282,13 @@ def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Datase
     known = {kind: name for kind, name in kinds.items() if f"{name}_phase" in bifurcations}
     phases = [float(bifurcations[f"{name}_phase"]) for name in known.values()]
     amplitudes = [float(bifurcations[f"{name}_amplitude"]) for name in known.values()]
+    # The orbits have Λ cos φ = Λ_SN (Eqs. 6, 7), and that of Eq. 8 has Λ² = 1 + Λ_SN².
+    saddle_node = bifurcations.saddle_node_amplitude
     return curve.assign(
         release_phase=curve.phase,
         along=curve.phase,
+        holmes_amplitude=np.hypot(1, saddle_node),
+        holmes_phase=np.arctan2(1, saddle_node),
         special_kind=("special", list(known)),
         special_along=("special", phases),
         special_amplitude=("special", amplitudes),
@@ -318,6 +330,8 @@ def mark_special(axes: Axes, branch: xr.Dataset, phase: str, colour: str) -> Non
     for kind in MARKS:
         there = branch[f"special_{phase}"].where(branch.special_kind == kind)
         mark(axes, kind, branch.special_amplitude, there, colour)
+    if "holmes_phase" in branch:
+        mark(axes, "period doubling, Eq. 8", branch.holmes_amplitude, branch.holmes_phase, colour)
     for kind, point in inner_ends(branch):
         end = branch.isel(point=point)
         mark(axes, kind, end.amplitude, end[phase], colour)
@@ -413,7 +427,8 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
 
 def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
     """A label beside a point of the data, at the place where it hides the fewest curves, marks and
-    labels; of equally good places the nearest is taken. The panel must have been laid out.
+    labels; of equally good places the nearest is taken. A line joins the label and the point. The
+    panel must have been laid out.
     """
     labels = [other.get_window_extent() for other in axes.texts]
     note = axes.annotate(text, point, (0, 0), textcoords="offset points")
@@ -435,8 +450,11 @@ def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
         return covered + box.count_overlaps(labels) + outside
 
     sides = [(1, 1), (-1, -1), (1, -1), (-1, 1), (1, 0), (-1, 0), (0, 1), (0, -1)]
-    places = [(far * x, far * y) for far in (4, 8, 14, 20) for x, y in sides]
-    move(note, min(places, key=hidden))
+    places = [(far * x, far * y) for far in (8, 12, 16, 20) for x, y in sides]
+    place = min(places, key=hidden)
+    move(note, place)
+    line: Look = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": MARK_RADIUS}
+    axes.annotate("", point, place, textcoords="offset points", arrowprops=line)
 
 
 def move(note: Annotation, place: tuple[float, float]) -> None:

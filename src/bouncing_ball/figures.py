@@ -29,7 +29,6 @@ from bouncing_ball.drawing import (
     draw_branch,
     label,
     legend_below,
-    mark,
     mark_special,
     name_at_right,
     name_beside,
@@ -127,7 +126,7 @@ def fig02(data: xr.Dataset) -> Figure:
 
 
 def fig03(data: xr.Dataset) -> Figure:
-    """Branches of n-T orbits of the restitution model, with the period doubling of Eq. 8."""
+    """Branches of n-T orbits of the restitution model, with the period doublings of Eq. 8."""
     figure, axes = panels(3.6)
     names = []
     for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
@@ -135,10 +134,6 @@ def fig03(data: xr.Dataset) -> Figure:
         branch = restitution_branch(family, family.sel(impact_map="exact"))
         draw_branch(axes, branch, "phase", colour, width=1.2)
         mark_special(axes, branch, "phase", colour)
-        # Eq. 8 is the period doubling of Holmes' map.
-        holmes = family.sel(impact_map="holmes")
-        place = holmes.period_doubling_amplitude, holmes.period_doubling_phase
-        mark(axes, "period doubling, Eq. 8", *place, colour)
         if branch.amplitude.notnull().any():
             names.append((label(n=n), right_end(branch, "phase"), colour))
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
@@ -240,26 +235,32 @@ def fig13(data: xr.Dataset) -> Figure:
         entries |= {name: sample(color=colour, **square) for name, colour in pairs}
     legend_below(figure, entries, columns=1)
     figure.draw_without_rendering()
-    shown = data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values))
-    name_ratios(axes, shown, "phase", "impact_velocity")
-    name_ratios(axes, shown, "release_phase", "bounce_velocity")
+    name_ratios(axes, data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values)))
     return figure
 
 
-def name_ratios(axes: Axes, case: xr.Dataset, phase: str, velocity: str) -> None:
-    """Names of the marked ϖ; those beside the point of the stiffest contact share one name."""
+def name_ratios(axes: Axes, case: xr.Dataset) -> None:
+    """Names of the marked ϖ at the start and at the end of contact.
+
+    Those at which both points are beside the points of the stiffest contact share one name.
+    """
     marked = case.isel(frequency_ratio=np.flatnonzero(case.labelled & case.phase.notnull()))
     marked = marked.sortby("frequency_ratio")
     if not marked.sizes["frequency_ratio"]:
         return
-    places = np.stack([marked[phase], marked[velocity]], axis=1) / np.pi
-    points = axes.transData.transform(places) * POINTS / axes.figure.dpi
-    beside = np.hypot(*(points - points[-1]).T) < CLOSE
-    ratios = marked.frequency_ratio.values
-    for ratio, place in zip(ratios[~beside], places[~beside], strict=True):
-        name_beside(axes, label(frequency_ratio=ratio), tuple(place))
+    starts = np.stack([marked.phase, marked.impact_velocity], axis=1) / np.pi
+    ends = np.stack([marked.release_phase, marked.bounce_velocity], axis=1) / np.pi
+    both = np.stack([starts, ends])
+    points = axes.transData.transform(both.reshape(-1, 2)).reshape(both.shape)
+    distances = np.linalg.norm(points - points[:, -1:], axis=2) * POINTS / axes.figure.dpi
+    beside = (distances < CLOSE).all(axis=0)
     relation = r"\geq" if beside.sum() > 1 else "="
-    name_beside(axes, rf"$\varpi{relation}{number(ratios[beside][0])}$", tuple(places[beside][0]))
+    ratios = marked.frequency_ratio.values
+    for places in both:
+        for ratio, place in zip(ratios[~beside], places[~beside], strict=True):
+            name_beside(axes, label(frequency_ratio=ratio), tuple(place))
+        shared = rf"$\varpi{relation}{number(ratios[beside][0])}$"
+        name_beside(axes, shared, tuple(places[beside][0]))
 
 
 # Permanent contact
@@ -353,14 +354,18 @@ def draw_velocity(
 
 def fig12(data: xr.Dataset) -> Figure:
     """Orbits of both models over time on one table; below, the summit of the stiffest contact."""
-    figure, (axes, summit) = panels(4.6, rows=2, height_ratios=(3, 2))
+    figure, (axes, summit) = panels(4.9, rows=2, height_ratios=(3, 2))
     time, table = three_cycles(data, data.table)
-    axes.plot(time, table, color=TABLE, linewidth=2.0, label="table $w$")
+    axes.plot(time, table, color=TABLE, linewidth=0.8)
     broad: Look = {"color": "0.72", "linewidth": 3.4, "label": "restitution model"}
     for part in (axes, summit):
         part.plot(*three_cycles(data, data.restitution_ball), **broad)
         draw_contacts(part, data)
-    axes.set(ylabel="height $z$, $w$", xlim=(-0.1, parameters(data)["n"] + 0.35))
+    bottom = axes.get_ylim()[0]
+    body: Look = {"facecolor": "white", "edgecolor": TABLE, "hatch": "////", "zorder": 0}
+    axes.fill_between(time, table, bottom, label="table $w$", **body)
+    axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(-0.1, parameters(data)["n"] + 0.35))
+    axes.set_ylim(bottom=bottom)
     axes.set_title(title(data, "n", "restitution", "amplitude"))
     show_summit(summit, data)
     summit.set(xlabel=TIME, ylabel="height at the summit")

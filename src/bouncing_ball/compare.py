@@ -53,6 +53,7 @@ from bouncing_ball import (
     restitution,
     spring_damper,
     tables,
+    verdicts,
 )
 
 Datasets = Mapping[str, xr.Dataset]
@@ -82,8 +83,19 @@ class Product:
 
 PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
 DRAWING: Code = (figures.__file__, drawing.__file__)
-JUDGING: Code = (claims.__file__, restitution.__file__, spring_damper.__file__, PRINTED)
-WRITING: Code = (article.__file__, *JUDGING, *sorted(article.TEMPLATES.glob("*.md.j2")))
+JUDGING: Code = (
+    claims.__file__,
+    verdicts.__file__,
+    restitution.__file__,
+    spring_damper.__file__,
+    PRINTED,
+)
+WRITING: Code = (
+    article.__file__,
+    tables.__file__,
+    *JUDGING,
+    *sorted(article.TEMPLATES.glob("*.md.j2")),
+)
 
 
 def picture(name: str, *needs: str) -> Product:
@@ -114,7 +126,7 @@ def text(
 
 def table(name: str, rows: Callable[[xr.Dataset], list[list[str]]]) -> list[Product]:
     """A table of a dataset as Markdown and as CSV."""
-    code = (tables.__file__, claims.__file__)
+    code = (tables.__file__, claims.__file__, verdicts.__file__)
     return [
         text(f"figures/{name}.md", (name,), lambda data: tables.markdown(rows(data[name])), code),
         text(
@@ -128,10 +140,10 @@ def table(name: str, rows: Callable[[xr.Dataset], list[list[str]]]) -> list[Prod
 
 def judge(data: Datasets, folder: Path) -> None:
     """Write the verdicts on the claims, with what the dataset of claims records of itself."""
-    verdicts = claims.judge({name: data[name] for name in STUDIES}, claims.printed_table(PRINTED))
+    judged = claims.judge({name: data[name] for name in STUDIES}, datasets.printed_table(PRINTED))
     title = data["claims"].attrs["title"]
     path = folder / "figures" / "claims.nc"
-    datasets.save(verdicts, path, title, record(data["claims"], "parameters"), code=[])
+    datasets.save(judged, path, title, record(data["claims"], "parameters"), code=[])
 
 
 FIGURES = [f"fig{number:02}" for number in range(1, 17)]
@@ -146,8 +158,8 @@ PRODUCTS = [
     *(picture(name, name) for name in FIGURES if name not in SCHEMATICS),
     *(product for name, rows in tables.TABLES.items() for product in table(name, rows)),
     Product(("figures/claims.nc",), ALL, judge, JUDGING),
-    text("figures/claims.md", ("claims",), lambda data: claims.claims_markdown(data["claims"])),
-    table("claims", claims.all_rows)[1],
+    text("figures/claims.md", ("claims",), lambda data: tables.claims_markdown(data["claims"])),
+    table("claims", tables.all_claims)[1],
     text("paper.md", ALL, article.paper),
     text("supplement.md", ALL, article.supplement),
     text("figures/README.md", ALL, article.figure_list),

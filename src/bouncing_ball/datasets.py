@@ -12,6 +12,7 @@ floor the tolerance is absolute, so that a zero need not be met to the last bit.
 booleans agree only if they are equal.
 """
 
+import csv
 import hashlib
 import json
 import os
@@ -295,6 +296,30 @@ def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:
 def read(path: str | Path) -> xr.Dataset:
     """The dataset of a netCDF file, in memory and with the file closed."""
     return xr.load_dataset(path, engine="netcdf4")
+
+
+def parameters(dataset: xr.Dataset) -> dict:
+    """The parameters with which a dataset was computed; none if it does not say."""
+    return json.loads(dataset.attrs.get("parameters", "{}"))
+
+
+def printed_table(path: str | Path) -> xr.DataArray:
+    """The printed ends of Table 1 as texts with their digits, from a CSV file.
+
+    The columns are frequency_ratio, n, saddle-node and period doubling. The result has the
+    dimensions frequency_ratio, n and bound; `astype(float)` makes numbers of it.
+    """
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    bounds = list(rows[0])[2:]
+    ratios = list(dict.fromkeys(float(row["frequency_ratio"]) for row in rows))
+    families = list(dict.fromkeys(int(row["n"]) for row in rows))
+    texts = np.array([[row[bound] for bound in bounds] for row in rows])
+    return xr.DataArray(
+        texts.reshape(len(ratios), len(families), len(bounds)),
+        {"frequency_ratio": ratios, "n": families, "bound": bounds},
+        ("frequency_ratio", "n", "bound"),
+    )
 
 
 def plain(value):

@@ -11,7 +11,6 @@ Nothing here is drawn by pyplot, and nothing depends on the settings of the user
 from matplotlib's defaults.
 """
 
-import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -28,6 +27,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter
+
+from bouncing_ball.datasets import parameters
 
 Look = dict[str, Any]
 """Keywords of a line, a mark or a text."""
@@ -89,7 +90,7 @@ def style() -> AbstractContextManager:
     return matplotlib.rc_context(settings)
 
 
-# Labels and parameters
+# Labels
 
 SYMBOLS = {
     "n": "n",
@@ -98,11 +99,6 @@ SYMBOLS = {
     "frequency_ratio": r"\varpi",
     "damping_ratio": r"\zeta",
 }
-
-
-def parameters(data: xr.Dataset) -> dict[str, Any]:
-    """The parameters with which a dataset was computed, from its attribute of that name."""
-    return json.loads(data.attrs["parameters"])
 
 
 def number(value: float) -> str:

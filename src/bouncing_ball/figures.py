@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
+from bouncing_ball.datasets import parameters
 from bouncing_ball.drawing import (
     COLOURS,
     DASHES,
@@ -36,7 +37,6 @@ from bouncing_ball.drawing import (
     number,
     pale,
     panels,
-    parameters,
     parted,
     restitution_branch,
     right_end,

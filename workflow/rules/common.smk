@@ -42,7 +42,7 @@ SETTINGS = {
 # The modules of the package that each script imports, directly or by another module. A change of
 # one of them runs the script again. A test compares these lists with the imports.
 ORBITS = ["restitution", "spring_damper", "orbits", "continuation"]
-CLAIMS = ["restitution", "spring_damper", "claims", "tables"]
+CLAIMS = ["restitution", "spring_damper", "verdicts", "claims", "tables"]
 COMPARISON = [*CLAIMS, "article", "drawing", "figures", "compare", "datasets"]
 MODULES = {
     "restitution_model": ["restitution", "datasets"],

@@ -1,6 +1,5 @@
 """Stage: branches of n-T orbits along Λ, and their bifurcations (Figs. 8, 9 and 15, Table 1)."""
 
-import csv
 import sys
 
 import numpy as np
@@ -8,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import Branch, NoOrbit, bifurcations, branch
-from bouncing_ball.datasets import grid, save
+from bouncing_ball.datasets import grid, printed_table, save
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
@@ -109,7 +108,7 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     )
 
 
-def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
+def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
     """Ranges of Λ in which the orbits are stable, computed and printed, and those of both maps of
     the restitution model. An end beyond the largest amplitude is NaN.
     """
@@ -122,14 +121,12 @@ def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
     duration = angle / np.array(ratios)[:, np.newaxis]
     fold = restitution.saddle_node(n, r)
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
-    unknown = [np.nan, np.nan]
     shape = ("n", "frequency_ratio", "bound")
-    return xr.Dataset(
+    dataset = xr.Dataset(
         {
             "computed": (shape, amplitude),
             "special_phase": (shape, phase),
             "special_contact_duration": (shape, duration),
-            "printed": (shape, [[printed.get((ratio, k), unknown) for ratio in ratios] for k in n]),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
                 [np.stack([fold, each], axis=-1) for each in doublings],
@@ -141,17 +138,10 @@ def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
             "bound": list(BOUNDS),
             "impact_map": ["exact", "holmes"],
         },
-    ).transpose("impact_map", "frequency_ratio", "n", "bound")
-
-
-def read_printed(path: str) -> dict[tuple[float, int], list[float]]:
-    """The printed ends of Table 1 by frequency ratio and n."""
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {
-        (float(row["frequency_ratio"]), int(row["n"])): [float(row[bound]) for bound in BOUNDS]
-        for row in rows
-    }
+    )
+    return dataset.assign(printed=printed.reindex_like(dataset["computed"])).transpose(
+        "impact_map", "frequency_ratio", "n", "bound"
+    )
 
 
 def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
@@ -178,7 +168,7 @@ if __name__ == "__main__":
     config = snakemake.params.config
     release = snakemake.params.release
     step = snakemake.params.largest_step
-    printed = read_printed(snakemake.input.printed)
+    printed = printed_table(snakemake.input.printed).astype(float)
     computed = {
         "fig08": domains(config["fig08"], release, step),
         "fig09": domains(config["fig09"], release, step),

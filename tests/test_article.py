@@ -13,11 +13,7 @@ from bouncing_ball.datasets import printed_table
 from bouncing_ball.verdicts import LIMIT
 
 ROOT = Path(__file__).resolve().parents[1]
-TEXTS = {
-    "paper": article.paper,
-    "supplement": article.supplement,
-    "figures": article.figure_list,
-}
+TEXTS = ("paper", "supplement", "figures")
 FAMILY_PARAMETERS = {
     "table1": {"n": [0], "frequency_ratio": [1]},
     "fig03": {"n": [1, 2]},
@@ -75,14 +71,14 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
 @pytest.mark.parametrize("name", TEXTS)
 def test_every_computed_number_follows_a_dataset(name, data):
     printed = printed_table(ROOT / "config" / "table1_printed.csv")
-    remaining = decimals(TEXTS[name](data)) - known(data)
+    remaining = decimals(article.filled_in(name, data)) - known(data)
     assert len(remaining) > 10
     # A number may be there again by chance, but not three times.
     for first in (0, 100, 200):
         others = {key: changed(each, first + seed) for seed, (key, each) in enumerate(data.items())}
         # Conditions in words have the numbers with which they were judged.
         others["claims"] = claims.judge(others, printed).assign_attrs(data["claims"].attrs)
-        remaining &= decimals(TEXTS[name](others))
+        remaining &= decimals(article.filled_in(name, others))
     assert remaining == set()
 
 
@@ -90,9 +86,9 @@ def test_counts_follow_a_dataset(data):
     """They are integers, which the test before does not change."""
     table = data["table1_readings"]
     more = data | {"table1_readings": table.assign(unreachable=table.unreachable + 20)}
-    assert "and 23 of the printed saddle-nodes" in article.paper(more)
+    assert "and 23 of the printed saddle-nodes" in article.filled_in("paper", more)
     more = data | {"table1_readings": table.assign(reproduced=table.reproduced + 50)}
-    assert "none of them reproduces more than 53 of these" in article.paper(more)
+    assert "none of them reproduces more than 53 of these" in article.filled_in("paper", more)
 
 
 def template(name: str) -> str:
@@ -147,7 +143,7 @@ def test_texts_are_written_for_other_parameters(name, data):
         )
     printed = printed_table(ROOT / "config" / "table1_printed.csv")
     others["claims"] = claims.judge(others, printed).assign_attrs(data["claims"].attrs)
-    text = TEXTS[name](others)
+    text = article.filled_in(name, others)
     assert "nan" not in text.lower().split()
     if name == "paper":
         assert "other parameters than the paper's" in text
@@ -155,7 +151,7 @@ def test_texts_are_written_for_other_parameters(name, data):
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_texts_of_the_paper_have_no_gaps(name, data):
-    text = TEXTS[name](data)
+    text = article.filled_in(name, data)
     assert "{{" not in text and "{%" not in text
     assert not re.search(r"(= |to |by )–|not asked|not computed", text)
 
@@ -164,7 +160,7 @@ def test_texts_of_the_paper_have_no_gaps(name, data):
 def test_verdicts_are_those_of_the_claims(name, data):
     unjudged = data["claims"].copy()
     unjudged["verdict"] = unjudged.verdict.astype(object).where(False, "open")
-    text = TEXTS[name](data | {"claims": unjudged})
+    text = article.filled_in(name, data | {"claims": unjudged})
     assert not re.search(r"is (reproduced|contradicted|undecidable)\b", text)
     if name == "figures":
         rows = [line for line in text.splitlines() if line.endswith("* |")]
@@ -173,7 +169,9 @@ def test_verdicts_are_those_of_the_claims(name, data):
 
 def test_missing_numbers_are_dashes(data):
     unknown = data["fig14"].assign(error_threshold=np.nan)
-    assert "agree to 1 % is reproduced (–, printed 82)" in article.paper(data | {"fig14": unknown})
+    assert "agree to 1 % is reproduced (–, printed 82)" in article.filled_in(
+        "paper", data | {"fig14": unknown}
+    )
 
 
 # Statements in words, which have no number in their template
@@ -195,7 +193,7 @@ def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
         for measure in ("bounce_velocity", "apparent_restitution")
     )
     phase = article.percent(worst.sel(measure="phase"), 1)
-    text = article.paper(data)
+    text = article.filled_in("paper", data)
     assert f"velocity (off by up to {velocity}) and the apparent restitution coefficient" in text
     assert f"coefficient ({apparent}), both at r = 0.1" in text
     assert f"relative to itself ({phase})" in text
@@ -286,7 +284,7 @@ def test_ends_of_table_1_that_are_not_judged_are_not_counted(data):
     judged = data["claims"]
     open_ends = judged.claim.str.startswith("Table 1: 2,")
     others = judged.assign(verdict=judged.verdict.astype(object).where(~open_ends, "not asked"))
-    text = article.paper(data | {"claims": others})
+    text = article.filled_in("paper", data | {"claims": others})
     assert "Of the 12 ends of stability ranges in Table 1" in text
 
 

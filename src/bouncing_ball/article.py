@@ -6,7 +6,7 @@ the even digit, as everywhere in Python. Bounds are rounded up. A number that a 
 have, because it was computed with other parameters, is a dash.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
 
@@ -15,33 +15,18 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import claims, restitution, spring_damper, tables, verdicts
-from bouncing_ball.datasets import parameters
+from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
 
 STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
 
-Datasets = Mapping[str, xr.Dataset]
-
-
-def paper(datasets: Datasets) -> str:
-    """The article, Markdown, from the datasets of all figures, tables and claims by their names."""
-    return filled_in("paper", datasets)
-
-
-def supplement(datasets: Datasets) -> str:
-    """The supplement of the article, Markdown."""
-    return filled_in("supplement", datasets)
-
-
-def figure_list(datasets: Datasets) -> str:
-    """The page of all figures and tables, with what the paper says and what we find, Markdown."""
-    return filled_in("figures", datasets)
-
 
 def filled_in(name: str, datasets: Datasets) -> str:
-    """The text of a template; it knows the datasets by their names."""
+    """The text of a template, "paper", "supplement" or "figures" (the list of all figures and
+    tables), Markdown. It knows the datasets of all figures, tables and claims by their names.
+    """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
@@ -91,7 +76,7 @@ def fixed(value: float, digits: int) -> str:
     return rounded(Decimal(number), digits, ROUND_HALF_EVEN) if np.isfinite(number) else "–"
 
 
-def percent(value: float, digits: int = 0) -> str:
+def percent(value: float, digits: int = 0, rounding: str = ROUND_HALF_EVEN) -> str:
     """A share in per cent.
 
     >>> percent(0.01), percent(0.02673, 1)
@@ -101,7 +86,7 @@ def percent(value: float, digits: int = 0) -> str:
     if not np.isfinite(number):
         return "–"
     # The shortest decimal number that is this binary one: 0.01 is 1 % and no other share.
-    return rounded(100 * Decimal(repr(number)), digits, ROUND_HALF_EVEN) + " %"
+    return rounded(100 * Decimal(repr(number)), digits, rounding) + " %"
 
 
 def at_most(value: float, digits: int) -> str:
@@ -110,10 +95,7 @@ def at_most(value: float, digits: int) -> str:
     >>> at_most(0.00861, 2), at_most(0.008604, 2)
     ('0.87 %', '0.87 %')
     """
-    number = float(value)
-    if not np.isfinite(number):
-        return "–"
-    return rounded(100 * Decimal(repr(number)), digits, ROUND_CEILING) + " %"
+    return percent(value, digits, ROUND_CEILING)
 
 
 def short(value: float) -> str:

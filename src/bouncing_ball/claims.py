@@ -6,14 +6,14 @@ follows). The formulas of the paper were *restored* from a damaged text by deriv
 are listed and not counted.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball import restitution
-from bouncing_ball.datasets import parameters
+from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
 from bouncing_ball.verdicts import (
     LIMIT,
@@ -1116,7 +1116,7 @@ NOTHING = {
 """The variables of the dataset, for what a claim does not have."""
 
 
-def judge(datasets: Mapping[str, xr.Dataset], printed: xr.DataArray) -> xr.Dataset:
+def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
     """The verdict on each claim, and the restored formulas, over the dimension `claim`.
 
     Parameters

@@ -31,6 +31,8 @@ REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient and "
     "spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
+Datasets = Mapping[str, xr.Dataset]
+"""Datasets by the names of their figures and tables."""
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 
 

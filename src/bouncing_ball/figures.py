@@ -508,6 +508,8 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     along_ratio(axes, data.frequency_ratio)
 
 
+SCHEMATICS = ("fig01", "fig04")
+"""The figures of the models, which have no dataset."""
 FIGURES: Mapping[str, Callable[..., Figure]] = {
     "fig01": fig01,
     "fig02": fig02,

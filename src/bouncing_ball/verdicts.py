@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball.datasets import parameters
+from bouncing_ball.datasets import Datasets, parameters
 
 LIMIT = 0.01
 """The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
@@ -143,7 +143,7 @@ class Claim:
     remark: str = ""
 
 
-def answer(claim: Claim, datasets: Mapping[str, xr.Dataset]) -> dict:
+def answer(claim: Claim, datasets: Datasets) -> dict:
     """The verdict on a claim, with what belongs to it: the number found and its distance from the
     printed one, the conditions in words, and the reason for having no other verdict.
 

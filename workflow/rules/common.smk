@@ -43,7 +43,7 @@ SETTINGS = {
 # one of them runs the script again. A test compares these lists with the imports.
 ORBITS = ["restitution", "spring_damper", "orbits", "continuation"]
 CLAIMS = ["restitution", "spring_damper", "verdicts", "claims", "tables"]
-COMPARISON = [*CLAIMS, "article", "drawing", "figures", "compare", "datasets"]
+COMPARISON = [*CLAIMS, "article", "drawing", "figures", "differences", "compare", "datasets"]
 MODULES = {
     "restitution_model": ["restitution", "datasets"],
     "apparent_restitution": [*ORBITS, "datasets"],

@@ -19,7 +19,7 @@ import os
 import platform
 import re
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -278,6 +278,22 @@ def save(
         os.replace(unfinished, path)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def save_stage(
+    stage: Mapping[str, tuple[Callable[..., xr.Dataset], str]],
+    parameters: Mapping[str, Mapping],
+    settings: Mapping,
+    files: Mapping[str, str],
+    code: Iterable[str | Path],
+) -> None:
+    """Compute and save the datasets of a stage, which has the function and the title of each.
+
+    A function takes the parameters of its dataset and the settings of the whole run.
+    """
+    for name, (compute, title) in stage.items():
+        dataset = compute(parameters[name], **settings)
+        save(dataset, files[name], title, {**parameters[name], **settings}, code)
 
 
 def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:

@@ -12,8 +12,6 @@ from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
-BOUNDS = ("saddle-node", "period doubling")
-
 
 def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
     """The branch of a family; if it cannot be followed, NaN, with the reason at its ends."""
@@ -30,14 +28,13 @@ def padded(values: list, count: int, fill) -> list:
     return [*values, *[fill] * (count - len(values))]
 
 
-def branches(
-    parameters: dict, ratios: list[float], release: str, largest_step: float
-) -> xr.Dataset:
-    """The branches of one family on contacts of several frequency ratios.
+def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+    """The branches of one family on contacts of one or several frequency ratios.
 
     They have the quantities of the orbits, their multipliers, the special points, of which all
     branches get as many as the one with most, and the reasons of the ends.
     """
+    ratios = np.atleast_1d(parameters["frequency_ratio"])
     zeta = float(damping_ratio(parameters["restitution"]))
     families = [Family(parameters["n"], Contact(ratio, zeta, release)) for ratio in ratios]
     found = [followed(family, parameters, largest_step) for family in families]
@@ -82,16 +79,11 @@ def branches(
     )
 
 
-def domains(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
-    """One family on several contacts (Figs. 8 and 9)."""
-    return branches(parameters, parameters["frequency_ratio"], release, largest_step)
-
-
 def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     """One family on one contact, and in the restitution model."""
     n = parameters["n"]
     r = parameters["restitution"]
-    dataset = branches(parameters, [parameters["frequency_ratio"]], release, largest_step)
+    dataset = branches(parameters, release, largest_step)
     x = float(restitution.saddle_node(n, r))
     highest = np.sqrt(parameters["amplitude_max"] ** 2 - x**2)
     lift = np.linspace(-highest, highest, parameters["points"])
@@ -115,8 +107,9 @@ def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
     n = parameters["n"]
     r = parameters["restitution"]
     ratios = parameters["frequency_ratio"]
+    bounds = printed["bound"].values
     contact = Contact(np.array(ratios), damping_ratio(r), release)
-    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in BOUNDS], axis=-1)
+    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in bounds], axis=-1)
     amplitude, phase, _, angle = np.where(ends[0] <= parameters["amplitude_max"], ends, np.nan)
     duration = angle / np.array(ratios)[:, np.newaxis]
     fold = restitution.saddle_node(n, r)
@@ -135,7 +128,7 @@ def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
         {
             "frequency_ratio": ratios,
             "n": n,
-            "bound": list(BOUNDS),
+            "bound": bounds,
             "impact_map": ["exact", "holmes"],
         },
     )
@@ -170,8 +163,8 @@ if __name__ == "__main__":
     step = snakemake.params.largest_step
     printed = printed_table(snakemake.input.printed).astype(float)
     computed = {
-        "fig08": domains(config["fig08"], release, step),
-        "fig09": domains(config["fig09"], release, step),
+        "fig08": branches(config["fig08"], release, step),
+        "fig09": branches(config["fig09"], release, step),
         "fig15": fig15(config["fig15"], release, step),
         "table1": table1(config["table1"], release, printed),
         "lowest_doubling": lowest_doubling(config["lowest_doubling"], release),

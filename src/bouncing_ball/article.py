@@ -50,7 +50,8 @@ def filled_in(name: str, datasets: Datasets) -> str:
         stable_ranges=claims.stable_ranges,
         permanent_contact=spring_damper.permanent_contact,
         holmes_period_doubling=restitution.holmes_period_doubling,
-        period_doubling=restitution.period_doubling,
+        error_of_eq_8=claims.error_of_eq_8,
+        departure=claims.departure,
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
     )

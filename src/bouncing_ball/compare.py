@@ -14,10 +14,8 @@ Three comparisons are made, of which `differences` says what is different:
    way. Otherwise a picture is older than its dataset, or was edited.
 """
 
-import os
 import re
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -196,15 +194,8 @@ def changed_files(folder: Path, paths: list[str], *commits: str) -> list[str] | 
 
 def git(folder: Path, *arguments: str) -> str | None:
     """The answer of git in a folder; none if there is no git or it refuses."""
-    command = ["git", "-C", str(folder), "-c", "core.quotePath=off", *arguments]
-    environment = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}
-    try:
-        answer = subprocess.run(
-            command, capture_output=True, check=False, encoding="utf-8", env=environment
-        )
-    except OSError:
-        return None
-    return answer.stdout.strip() if answer.returncode == 0 else None
+    answer = datasets.git(folder, *arguments)
+    return answer.stdout.strip() if answer and answer.returncode == 0 else None
 
 
 # The comparison
@@ -552,8 +543,6 @@ def replaced(source: Path, folder: Path) -> Iterator[str]:
     for path in sorted(path for path in source.rglob("*") if path.is_file()):
         target = folder / path.relative_to(source)
         if path.suffix == ".nc" or not target.is_file() or file_difference(path, target, False):
-            target.parent.mkdir(parents=True, exist_ok=True)
-            unfinished = target.with_name(f".{target.name}.part.{os.getpid()}")
-            shutil.copyfile(path, unfinished)
-            os.replace(unfinished, target)
+            with datasets.whole(target) as unfinished:
+                shutil.copyfile(path, unfinished)
             yield str(path.relative_to(source))

@@ -163,9 +163,6 @@ def fig05(data: xr.Dataset) -> Figure:
     return figure
 
 
-fig06 = fig05
-
-
 def fig10(data: xr.Dataset) -> Figure:
     """The bouncing-off velocity along ϖ, and by how much it depends on Λ."""
     figure, (axes, below) = panels(4.2, rows=2, sharex=True, height_ratios=(3, 2))
@@ -415,9 +412,6 @@ def fig08(data: xr.Dataset) -> Figure:
     return domains(data, shown, height=4.8)
 
 
-fig09 = fig08
-
-
 def fig15(data: xr.Dataset) -> Figure:
     """Branches of both models along Λ: the phases of the table as contact starts and as it ends."""
     names = ("amplitude", "phase", "stable", "admissible")
@@ -516,10 +510,10 @@ FIGURES: Mapping[str, Callable[..., Figure]] = {
     "fig03": fig03,
     "fig04": fig04,
     "fig05": fig05,
-    "fig06": fig06,
+    "fig06": fig05,
     "fig07": fig07,
     "fig08": fig08,
-    "fig09": fig09,
+    "fig09": fig08,
     "fig10": fig10,
     "fig11": fig11,
     "fig12": fig12,

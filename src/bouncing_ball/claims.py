@@ -149,12 +149,12 @@ def rows_of(ends: xr.DataArray) -> xr.DataArray:
     return ends.sortby("frequency_ratio", ascending=False)
 
 
-def last_special(branch: xr.Dataset, kind: str, quantity: str = "amplitude") -> float:
-    """Λ, or another quantity, at the last special point of a kind along a branch.
+def last_special(branch: xr.Dataset, kind: str) -> float:
+    """Λ at the last special point of a kind along a branch.
 
     A branch ends on the stable side of the saddle-node with which Table 1 begins.
     """
-    found = branch[f"special_{quantity}"].values[branch["special_kind"].values == kind]
+    found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
     if not found.size:
         raise ValueError(f"the branch has no {kind}")
     return float(found[-1])

@@ -1,5 +1,7 @@
 """How a claim is judged: printed numbers, and statements with their readings."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -61,7 +63,11 @@ def test_conditions_take_the_worst_number_and_refuse_a_missing_one():
     assert verdicts.at_most("", [1.0, 3.0], 2.0)[1:3] == (False, 3.0)
     assert verdicts.at_least("", [1.0, 3.0], 2.0)[1:3] == (False, 1.0)
     assert verdicts.above("", [0.0, 3.0])[1:3] == (False, 0.0)
-    for condition in (verdicts.at_most, verdicts.at_least, verdicts.above):
+    for condition in (
+        partial(verdicts.at_most, bound=0.0),
+        partial(verdicts.at_least, bound=0.0),
+        verdicts.above,
+    ):
         for values in ([1.0, np.nan], []):
             with pytest.raises(ValueError, match="missing"):
-                condition("", values, 0.0)
+                condition("", values)

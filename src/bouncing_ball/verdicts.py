@@ -109,10 +109,10 @@ def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
     return Reading(name, smallest >= bound, smallest, f"≥ {bound:.3g}")
 
 
-def above(name: str, values: ArrayLike, bound: float = 0.0) -> Reading:
-    """The reading that every number is larger than a bound."""
+def above(name: str, values: ArrayLike) -> Reading:
+    """The reading that every number is positive."""
     smallest = float(complete(values).min())
-    return Reading(name, smallest > bound, smallest, f"> {bound:.3g}")
+    return Reading(name, smallest > 0, smallest, "> 0")
 
 
 def argued(name: str, holds: bool, reason: str) -> Reading:

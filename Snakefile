@@ -15,8 +15,8 @@ min_version("9.5")
 report: "workflow/report/workflow.rst"
 
 
-include: "workflow/rules/common.smk"
 include: "workflow/rules/configuration.smk"
+include: "workflow/rules/common.smk"
 include: "workflow/rules/stages.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/texts.smk"

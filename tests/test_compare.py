@@ -15,7 +15,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
 
-from bouncing_ball import compare, datasets, drawing
+from bouncing_ball import compare, datasets, differences, drawing
 
 PARAMETERS = {"restitution": 0.65, "frequency_ratio": {"min": 1.0, "max": 10.0}}
 STYLE = {"color": "#0072b2"}
@@ -392,8 +392,8 @@ def test_an_edited_text_is_different(original, tmp_path, old, new):
     made = original / "paper.md"
     path = tmp_path / "paper.md"
     path.write_text(made.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
-    assert compare.file_difference(made, made, loosely=False) is None
-    assert compare.file_difference(made, path, loosely=False).kind == "text"
+    assert differences.file_difference(made, made, loosely=False) is None
+    assert differences.file_difference(made, path, loosely=False).kind == "text"
 
 
 def test_a_text_that_is_written_otherwise_is_different(record, monkeypatch):
@@ -440,8 +440,8 @@ def test_an_edited_svg_is_different(original, tmp_path, lie, loosely):
     assert count == 1
     path = tmp_path / "fig14.svg"
     path.write_text(edited, encoding="utf-8")
-    assert compare.file_difference(made, made, loosely) is None
-    assert compare.file_difference(made, path, loosely).kind == "picture"
+    assert differences.file_difference(made, made, loosely) is None
+    assert differences.file_difference(made, path, loosely).kind == "picture"
 
 
 def one_grey_level(pixels):
@@ -460,8 +460,8 @@ def test_edited_pixels_are_different(original, tmp_path, change):
     path = tmp_path / "fig14.png"
     with Image.open(made) as image:
         Image.fromarray(change(np.asarray(image))).save(path)
-    assert compare.file_difference(made, made, loosely=False) is None
-    finding = compare.file_difference(made, path, loosely=False)
+    assert differences.file_difference(made, made, loosely=False) is None
+    finding = differences.file_difference(made, path, loosely=False)
     assert "pixels differ" in finding.text
     assert len(finding.images) == 3
 
@@ -472,13 +472,13 @@ def test_a_png_with_more_than_its_pixels_is_different(original, tmp_path):
     with Image.open(made) as image:
         black = Image.new("RGBA", image.size, "black")
         image.save(path, save_all=True, append_images=[black], default_image=False)
-    assert "its chunks: IHDR" in compare.file_difference(made, path, loosely=False).text
+    assert "its chunks: IHDR" in differences.file_difference(made, path, loosely=False).text
     data = made.read_bytes()
     gamma = bytes.fromhex("0000000467414d410000b18f0bfc6105")
     path.write_bytes(data[:33] + gamma + data[33:])
-    assert "its chunks: IHDR gAMA" in compare.file_difference(made, path, loosely=False).text
+    assert "its chunks: IHDR gAMA" in differences.file_difference(made, path, loosely=False).text
     path.write_bytes(data[:500])
-    assert compare.file_difference(made, path, loosely=False).kind == "file"
+    assert differences.file_difference(made, path, loosely=False).kind == "file"
 
 
 def test_a_picture_that_is_older_than_its_dataset_is_different(drawn):

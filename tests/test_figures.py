@@ -48,7 +48,7 @@ def of_reference(name):
 
 
 def with_parameters(data, **changed):
-    given = drawing.parameters(data) | changed
+    given = datasets.parameters(data) | changed
     return data.assign_attrs(parameters=datasets.json.dumps(given))
 
 

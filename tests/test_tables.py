@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from bouncing_ball import tables
+from bouncing_ball.verdicts import against_print
 
 BOUNDS = ["saddle-node", "period doubling"]
 PARAMETERS = {
@@ -106,6 +107,12 @@ def test_the_readings_have_their_distances_and_counts():
     assert first[:4] == ["1", "equations as they stand", "6.30", "3.30"]
     assert first[-3:] == ["4 of 18", "1 of 12", "3"]
     assert second[4:6] == ["–", "–"]
+
+
+def test_a_distance_is_in_units_of_the_last_printed_digit_and_in_per_cent():
+    comparison = against_print(1.0383, "1.032")
+    assert tables.distance_text(comparison.units, comparison.share) == "+6.3 units, +0.61 %"
+    assert tables.distance_text(np.nan, np.nan) == ""
 
 
 def test_markdown_and_csv_have_the_same_cells():

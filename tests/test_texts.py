@@ -10,8 +10,8 @@ import xarray as xr
 import yaml
 
 import bouncing_ball
-from bouncing_ball import article, claims, figures
-from bouncing_ball.datasets import read
+from bouncing_ball import article, claims, figures, tables
+from bouncing_ball.datasets import printed_table, read
 from bouncing_ball.drawing import style
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -34,19 +34,20 @@ def words(page: str) -> str:
 
 
 def test_numbers_of_readme_are_those_of_the_datasets():
-    table = article.table1_ends(dataset("table1")).values()
-    missed = [end for end in table if end.verdict == "not to the digit"]
-    judged = claims.counts(dataset("claims"))["statement"]
+    numbers = tables.claims_of(dataset("claims"), "printed number")
+    ends = [claim for claim in numbers if claim["item"] == "Table 1"]
+    missed = [end for end in ends if end["verdict"] == "not to the digit"]
+    judged = tables.counts(dataset("claims"))["statement"]
     errors = claims.stiff_errors(**{name: dataset(name) for name in article.STIFF_CURVES})
     worst = errors.max("orbit")
     branch = dataset("fig08").isel(frequency_ratio=-1)
-    (low, high), *_ = article.stable_ranges(branch)
+    (low, high), *_ = claims.stable_ranges(branch)
     sentences = [
         f"is *reproduced*: {article.fixed(dataset('fig14').error_threshold, 2)}, printed 82.",
         f"is *contradicted*: {article.fixed(dataset('fig16').error_threshold, 2)}, printed 6.",
-        f"Of the {len(table)} ends of stability ranges in Table 1, {len(table) - len(missed)} are "
+        f"Of the {len(ends)} ends of stability ranges in Table 1, {len(ends) - len(missed)} are "
         f"*reproduced*; {len(missed)} are *not to the digit*, all within "
-        f"{article.at_most(max(abs(end.share) for end in missed), 2)}.",
+        f"{article.at_most(max(abs(end['deviation']) for end in missed), 2)}.",
         f"greatest height ({article.at_most(worst.sel(measure='max_height'), 2)} at most",
         f"velocity ({article.percent(worst.sel(measure='bounce_velocity'), 2)}), the apparent "
         f"restitution ({article.percent(worst.sel(measure='apparent_restitution'), 2)}) and the "
@@ -132,6 +133,6 @@ def test_recipe_of_a_figure_draws():
 def test_recipe_of_a_claim_is_judged(monkeypatch):
     monkeypatch.setattr(claims, "CLAIMS", [])
     exec(example("@claim"), dict(vars(claims)) | {"CLAIMS": claims.CLAIMS})
-    printed = claims.printed_table(ROOT / "config" / "table1_printed.csv")
+    printed = printed_table(ROOT / "config" / "table1_printed.csv")
     judged = claims.judge({"fig14": dataset("fig14")}, printed)
     assert judged.verdict.sel(claim="heights differ") == "reproduced"

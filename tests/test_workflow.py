@@ -79,6 +79,19 @@ def test_a_figure_a_table_and_a_dataset_need_their_stage_only(stubs, name, rules
     assert stubs.planned(name) == rules | {name}
 
 
+def test_a_further_figure_needs_no_other_rules(fresh):
+    path = fresh.path / "config/config.yaml"
+    path.write_text(
+        path.read_text("utf-8").replace("  fig13:", "  fig17: { n: 2 }\n\n  fig13:"), "utf-8"
+    )
+    assert fresh.planned("fig17") == {
+        "compute_apparent_restitution",
+        "apparent_restitution",
+        "fig17",
+    }
+    assert "results/figures/fig17.svg" in fresh.plan("fig17", "diff")
+
+
 def test_every_name_is_a_target_and_the_list_of_targets_fits_on_a_screen(stubs):
     lines = stubs.run("--list")[1].splitlines()
     lines = [line for line in lines if not line.startswith("Using ")]

@@ -16,12 +16,14 @@ restitution coefficient and spring-damper models for the bouncing ball problem*,
     relative errors of the restitution model, and from which stiffness on they are tolerable
 `datasets`
     what the variables mean, how they are saved, and from which code they come
-`drawing`, `figures`, `tables`
-    what is made of the datasets
-`claims`, `article`
-    what the paper claims, what we find, and the texts that say so
-`compare`
-    the comparison of results with the reference
+`drawing`, `figures`
+    the pictures
+`verdicts`, `claims`
+    how a claim is judged, and what the paper claims
+`tables`, `article`
+    the texts that say what we find
+`differences`, `compare`
+    how files differ, and the comparison of results with the reference
 
 From the equations of the paper to the code:
 

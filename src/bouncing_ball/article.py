@@ -6,45 +6,27 @@ the even digit, as everywhere in Python. Bounds are rounded up. A number that a 
 have, because it was computed with other parameters, is a dash.
 """
 
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
-from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 
 import jinja2
 import numpy as np
 import xarray as xr
 
-from bouncing_ball import claims, restitution, spring_damper
-from bouncing_ball.tables import TABLES
+from bouncing_ball import claims, restitution, spring_damper, tables, verdicts
+from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
 
 STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
 
-Datasets = Mapping[str, xr.Dataset]
-
-
-def paper(datasets: Datasets) -> str:
-    """The article, Markdown, from the datasets of all figures, tables and claims by their names."""
-    return filled_in("paper", datasets)
-
-
-def supplement(datasets: Datasets) -> str:
-    """The supplement of the article, Markdown."""
-    return filled_in("supplement", datasets)
-
-
-def figure_list(datasets: Datasets) -> str:
-    """The page of all figures and tables, with what the paper says and what we find, Markdown."""
-    return filled_in("figures", datasets)
-
 
 def filled_in(name: str, datasets: Datasets) -> str:
-    """The text of a template; it knows the datasets by their names."""
+    """The text of a template, "paper", "supplement" or "figures" (the list of all figures and
+    tables), Markdown. It knows the datasets of all figures, tables and claims by their names.
+    """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
@@ -55,24 +37,23 @@ def filled_in(name: str, datasets: Datasets) -> str:
     environment.filters.update(
         fixed=fixed, percent=percent, at_most=at_most, short=short, listed=listed, at=at, zip=zip
     )
-    given = {key: json.loads(data.attrs["parameters"]) for key, data in datasets.items()}
-    judged = [row for group in claims.GROUPS for row in claims.each(datasets["claims"], group)]
+    judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
     return environment.get_template(f"{name}.md.j2").render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
-        given=given,
+        given={key: parameters(data) for key, data in datasets.items()},
         judged=judged,
         claim={row["claim"]: row for row in judged},
-        error_limit=claims.LIMIT,
+        error_limit=verdicts.LIMIT,
         stiff=claims.STIFF,
         stiff_errors=stiff_errors(datasets),
-        stable_ranges=stable_ranges,
-        table1_ends=table1_ends(datasets["table1"]),
+        stable_ranges=claims.stable_ranges,
         permanent_contact=spring_damper.permanent_contact,
         holmes_period_doubling=restitution.holmes_period_doubling,
-        period_doubling=restitution.period_doubling,
-        summary=claims.markdown(claims.summary(datasets["claims"])),
-        tables={name: claims.markdown(table(datasets[name])) for name, table in TABLES.items()},
+        error_of_eq_8=claims.error_of_eq_8,
+        departure=claims.departure,
+        summary=tables.markdown(tables.summary(datasets["claims"])),
+        tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
     )
 
 
@@ -96,7 +77,7 @@ def fixed(value: float, digits: int) -> str:
     return rounded(Decimal(number), digits, ROUND_HALF_EVEN) if np.isfinite(number) else "–"
 
 
-def percent(value: float, digits: int = 0) -> str:
+def percent(value: float, digits: int = 0, rounding: str = ROUND_HALF_EVEN) -> str:
     """A share in per cent.
 
     >>> percent(0.01), percent(0.02673, 1)
@@ -106,7 +87,7 @@ def percent(value: float, digits: int = 0) -> str:
     if not np.isfinite(number):
         return "–"
     # The shortest decimal number that is this binary one: 0.01 is 1 % and no other share.
-    return rounded(100 * Decimal(repr(number)), digits, ROUND_HALF_EVEN) + " %"
+    return rounded(100 * Decimal(repr(number)), digits, rounding) + " %"
 
 
 def at_most(value: float, digits: int) -> str:
@@ -115,10 +96,7 @@ def at_most(value: float, digits: int) -> str:
     >>> at_most(0.00861, 2), at_most(0.008604, 2)
     ('0.87 %', '0.87 %')
     """
-    number = float(value)
-    if not np.isfinite(number):
-        return "–"
-    return rounded(100 * Decimal(repr(number)), digits, ROUND_CEILING) + " %"
+    return percent(value, digits, ROUND_CEILING)
 
 
 def short(value: float) -> str:
@@ -161,39 +139,14 @@ def at(values: xr.DataArray, **labels) -> xr.DataArray | float:
 # Numbers that several datasets give together
 
 
-def table1_ends(table: xr.Dataset) -> dict[tuple, SimpleNamespace]:
-    """The ends of Table 1 that the paper prints, by ϖ, n and bound, each with its verdict."""
-    ends = {}
-    for place in product(*(table[name].values.tolist() for name in table.computed.dims)):
-        one = table.sel(dict(zip(table.computed.dims, place, strict=True)))
-        if np.isfinite(one.printed):
-            printed = f"{one.printed:.3f}"  # as all numbers of the table
-            found = claims.against_print(float(one.computed), printed)
-            ends[place] = SimpleNamespace(printed=printed, place=place, **found._asdict())
-    return ends
-
-
 def stiff_errors(datasets: Datasets) -> xr.DataArray:
     """`claims.stiff_errors` on the figures that reach stiff contacts; NaN if none does."""
-    lowest = claims.STIFF * (1 - claims.ROUNDING)
     sweeps = {name: datasets[name] for name in STIFF_CURVES}
-    stiff = {name: each for name, each in sweeps.items() if each.frequency_ratio.max() >= lowest}
+    stiff = {
+        name: each
+        for name, each in sweeps.items()
+        if each.frequency_ratio.sel(frequency_ratio=claims.STIFF_CONTACTS).size
+    }
     if stiff:
         return claims.stiff_errors(**stiff)
     return xr.DataArray([[np.nan]], {"orbit": ["–"], "measure": ["–"]}, ("orbit", "measure"))
-
-
-def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
-    """The ranges of Λ in which the orbits of one branch are stable, in the order of the branch.
-
-    Special points bound them, and the ends of the branch.
-    """
-    special = branch.isel(special=branch.special_kind.values != "")
-    places = np.concatenate([[0.0], special.special_arclength, [1.0]])
-    ends = np.concatenate([branch.amplitude[:1], special.special_amplitude, branch.amplitude[-1:]])
-    ranges = []
-    for k in range(places.size - 1):
-        middle = (places[k] + places[k + 1]) / 2
-        if branch.stable[round(middle * (branch.sizes["point"] - 1))]:
-            ranges.append((min(ends[k : k + 2]), max(ends[k : k + 2])))
-    return ranges

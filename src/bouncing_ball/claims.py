@@ -1,37 +1,35 @@
 """The claims of the paper, and the verdict on each, from the datasets of figures and tables.
 
-A claim is a printed number or a statement. A printed number is compared with the computed one:
-*reproduced* if this rounds to it, *not to the digit* if it does not but differs by at most 1 %, and
-*contradicted* beyond. A statement is turned into one condition for each way in which its words can
-be read. It is *reproduced* or *contradicted* if all of these readings agree, and *by reading* if
-they do not: then the verdict names those for which it is right and those for which it is not. It is
-*undecidable* if the text lacks what would choose among the readings, and a *definition* if it could
-not have failed. The formulas of the paper were *restored* from a damaged text by deriving them
-again, and are listed and not counted. A claim is *not asked* if a dataset was computed with other
-parameters than the claim needs, and *not computed* if a dataset or a number is missing.
+Each claim is a function of the datasets that decide it: it returns the computed number where a
+number is printed, and otherwise a condition for each way to read the words (`verdicts` says what
+follows). The formulas of the paper were *restored* from a damaged text by deriving them again, and
+are listed and not counted.
 """
 
-import csv
-import json
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from bouncing_ball import restitution
+from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
+from bouncing_ball.verdicts import (
+    LIMIT,
+    ROUNDING,
+    Claim,
+    above,
+    answer,
+    argued,
+    at_least,
+    at_most,
+    complete,
+    parameters_text,
+)
 
-LIMIT = 0.01
-"""The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
 STIFF = 100.0
 """The frequency ratio above which the paper calls both models equal."""
-ROUNDING = 1e-9
-"""Numbers that differ by less are equal: rounding errors of the datasets are some 1e-12."""
 STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 """Frequency ratios from there on."""
 
@@ -137,135 +135,8 @@ QUANTITIES = {
 }
 """Names of the quantities whose error is scanned."""
 
-VERDICTS = (
-    "reproduced",
-    "definition",
-    "by reading",
-    "not to the digit",
-    "contradicted",
-    "undecidable",
-    "not asked",
-    "not computed",
-)
-GROUPS = ("printed number", "statement")
 
-
-# Numbers and conditions
-
-
-class Comparison(NamedTuple):
-    """A computed number beside a printed one: the verdict, and the distance in units of the last
-    printed digit and as a share of the printed number.
-    """
-
-    verdict: str
-    units: float
-    share: float
-
-
-def against_print(found: float, printed: str) -> Comparison:
-    """The verdict on a printed number, of which the text has the digits.
-
-    A number halfway between two roundings counts as rounding to either.
-
-    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2570, 0.2580)]
-    ['reproduced', 'not to the digit', 'contradicted']
-    """
-    decimals = len(printed.partition(".")[2])
-    distance = found - float(printed)
-    units = distance * 10.0**decimals
-    share = distance / abs(float(printed))
-    if np.isnan(found):
-        verdict = "not computed"
-    elif abs(units) <= 0.5 + ROUNDING:
-        verdict = "reproduced"
-    elif abs(share) <= LIMIT + ROUNDING:
-        verdict = "not to the digit"
-    else:
-        verdict = "contradicted"
-    return Comparison(verdict, units, share)
-
-
-def distance_text(units: float, share: float) -> str:
-    """A distance from a printed number in words; empty if there is none.
-
-    >>> distance_text(6.3, 0.0061)
-    '+6.3 units, +0.61 %'
-    """
-    return "" if np.isnan(units) else f"{units:+.1f} units, {100 * share:+.2f} %"
-
-
-def markdown(rows: list[list[str]]) -> str:
-    """Rows as a Markdown table; the first is the header."""
-    header, *body = rows
-    lines = [header, ["---"] * len(header), *body]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def parameters(data: xr.Dataset) -> dict:
-    """The parameters with which a dataset was computed."""
-    return json.loads(data.attrs.get("parameters", "{}"))
-
-
-def other_parameters(name: str, data: xr.Dataset) -> str:
-    """What differs from the parameters that the claims need of a dataset; empty if nothing does."""
-    given = parameters(data)
-    return "; ".join(
-        f"{name}: {key} is {given.get(key)}, and the claim needs {needed}"
-        for key, needed in PAPER.get(name, {}).items()
-        if not agrees(given.get(key), needed)
-    )
-
-
-def agrees(given, needed) -> bool:
-    """Whether a parameter is the needed one; of a range only the needed keys count."""
-    if isinstance(needed, Mapping) and isinstance(given, Mapping):
-        return all(agrees(given.get(key), value) for key, value in needed.items())
-    return given == needed
-
-
-class Reading(NamedTuple):
-    """One way to read a statement: what is meant, whether it holds, the number that decides, NaN
-    if none does, and what is required of it, or the reason without a number.
-    """
-
-    name: str
-    holds: bool
-    found: float
-    required: str
-
-
-def complete(values: ArrayLike) -> NDArray:
-    """Numbers as an array; ValueError if there are none, or one of them is NaN."""
-    numbers = np.asarray(values, dtype=float)
-    missing = int(np.isnan(numbers).sum())
-    if missing or not numbers.size:
-        raise ValueError(f"{missing} of {numbers.size} numbers are missing")
-    return numbers
-
-
-def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
-    """The reading that no number is larger than a bound."""
-    largest = float(complete(values).max())
-    required = "≤ 0 but for rounding" if bound == ROUNDING else f"≤ {bound:.3g}"
-    return Reading(name, largest <= bound, largest, required)
-
-
-def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
-    """The reading that no number is smaller than a bound."""
-    smallest = float(complete(values).min())
-    return Reading(name, smallest >= bound, smallest, f"≥ {bound:.3g}")
-
-
-def above(name: str, values: ArrayLike, bound: float = 0.0) -> Reading:
-    """The reading that every number is larger than a bound."""
-    smallest = float(complete(values).min())
-    return Reading(name, smallest > bound, smallest, f"> {bound:.3g}")
-
-
-def argued(name: str, holds: bool, reason: str) -> Reading:
-    """A reading that no number decides, with the reason."""
-    return Reading(name, holds, np.nan, reason)
+# What claims read in datasets
 
 
 def steps(data: xr.DataArray) -> NDArray:
@@ -278,20 +149,24 @@ def rows_of(ends: xr.DataArray) -> xr.DataArray:
     return ends.sortby("frequency_ratio", ascending=False)
 
 
-def last_special(branch: xr.Dataset, kind: str, quantity: str = "amplitude") -> float:
-    """Λ, or another quantity, at the last special point of a kind along a branch.
+def last_special(branch: xr.Dataset, kind: str) -> float:
+    """Λ at the last special point of a kind along a branch.
 
     A branch ends on the stable side of the saddle-node with which Table 1 begins.
     """
-    found = branch[f"special_{quantity}"].values[branch["special_kind"].values == kind]
+    found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
     if not found.size:
         raise ValueError(f"the branch has no {kind}")
     return float(found[-1])
 
 
 def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
-    """The branches of figures, one for each frequency ratio."""
-    return [part for figure in figures for _, part in figure.groupby("frequency_ratio")]
+    """The branches of figures, one for each frequency ratio, from the most compliant contact on."""
+    return [
+        figure.sel(frequency_ratio=ratio)
+        for figure in figures
+        for ratio in np.sort(figure["frequency_ratio"])
+    ]
 
 
 def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
@@ -299,11 +174,10 @@ def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
 
     They lie between special points, or between one and an end of the branch.
     """
-    branch = branch.squeeze("frequency_ratio")
     special = branch.isel(special=branch["special_kind"].values != "")
-    places = np.concatenate([[0.0], complete(special["special_arclength"]), [1.0]])
+    places = complete([0.0, *special["special_arclength"].values, 1.0])
     amplitude = branch["amplitude"].values
-    ends = np.concatenate([amplitude[:1], special["special_amplitude"], amplitude[-1:]])
+    ends = np.array([amplitude[0], *special["special_amplitude"].values, amplitude[-1]])
     middles = (places[:-1] + places[1:]) / 2
     stable = branch["stable"].values[np.rint(middles * (amplitude.size - 1)).astype(int)]
     ranges = np.sort(np.stack([ends[:-1], ends[1:]], axis=1), axis=1)
@@ -351,26 +225,6 @@ def restitution_at_rest(r: float, ratio: float, weight: float = 1.0) -> float:
 
 # Claims
 
-
-@dataclass(frozen=True)
-class Claim:
-    """A claim: its name, its place in the paper, what it says in our words, and how it is decided.
-
-    `decide` takes the datasets that are named, and returns the computed number if a number is
-    `printed`, and otherwise the readings. `missing` is what the text lacks to choose among them.
-    """
-
-    name: str
-    place: str
-    text: str
-    datasets: tuple[str, ...]
-    decide: Callable[..., Any]
-    printed: str = ""
-    missing: str = ""
-    definition: bool = False
-    remark: str = ""
-
-
 CLAIMS: list[Claim] = []
 """The claims in the order of the paper, without the ends of Table 1."""
 
@@ -382,7 +236,8 @@ def claim(name: str, place: str, text: str, datasets: str = "", **more) -> Calla
     """
 
     def add(decide: Callable) -> Callable:
-        CLAIMS.append(Claim(name, place, text, tuple(datasets.split()), decide, **more))
+        needed = {each: PAPER.get(each, {}) for each in datasets.split()}
+        CLAIMS.append(Claim(name, place, text, needed, decide, **more))
         return decide
 
     return add
@@ -1172,27 +1027,6 @@ def safe_above_100(fig05, fig06, fig10, fig16, thresholds):
 # Table 1
 
 
-def printed_table(path: str | Path) -> xr.DataArray:
-    """The printed ends of Table 1 as texts with their digits, from a CSV file.
-
-    The columns are frequency_ratio, n, saddle-node and period doubling; the result has the
-    dimensions frequency_ratio, n and bound.
-    """
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    bounds = [name for name in rows[0] if name not in ("frequency_ratio", "n")]
-    entries = {
-        (float(row["frequency_ratio"]), int(row["n"]), bound): row[bound]
-        for row in rows
-        for bound in bounds
-    }
-    ratios = list(dict.fromkeys(ratio for ratio, _, _ in entries))
-    families = list(dict.fromkeys(n for _, n, _ in entries))
-    texts = [[[entries[ratio, n, bound] for bound in bounds] for n in families] for ratio in ratios]
-    axes = {"frequency_ratio": ratios, "n": families, "bound": bounds}
-    return xr.DataArray(texts, axes, list(axes))
-
-
 def table1_ends(printed: xr.DataArray) -> list[Claim]:
     """A claim for each printed end of Table 1."""
     ends = []
@@ -1206,7 +1040,7 @@ def table1_ends(printed: xr.DataArray) -> list[Claim]:
                 f"Table 1: {ratio:g}, {n}, {bound}",
                 "Table 1",
                 f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
-                ("table1",),
+                {"table1": PAPER["table1"]},
                 lambda table1, where=where: table1["computed"].sel(where),
                 printed=entry.item(),
                 remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
@@ -1261,105 +1095,28 @@ compared with its printed form in tests/test_formulas.py.
 """
 
 
-# Verdicts
+# All verdicts
+
+NOTHING = {
+    "claim": "",
+    "group": "",
+    "item": "",
+    "statement": "",
+    "parameters": "",
+    "decided_by": "",
+    "printed_text": "",
+    "found": np.nan,
+    "deviation_units": np.nan,
+    "deviation": np.nan,
+    "verdict": "",
+    "condition": "",
+    "reason": "",
+    "remark": "",
+}
+"""The variables of the dataset, for what a claim does not have."""
 
 
-def answer(claim: Claim, datasets: Mapping[str, xr.Dataset]) -> dict:
-    """The verdict on a claim, with what belongs to it: the number found and its distance from the
-    printed one, the conditions in words, and the reason for having no other verdict.
-
-    What is missing for one claim changes no other.
-    """
-    absent = [name for name in claim.datasets if name not in datasets]
-    if absent:
-        return {"verdict": "not computed", "reason": f"there is no dataset {', '.join(absent)}"}
-    others = [other_parameters(name, datasets[name]) for name in claim.datasets]
-    if any(others):
-        return {"verdict": "not asked", "reason": "; ".join(filter(None, others))}
-    try:
-        decided = claim.decide(*(datasets[name] for name in claim.datasets))
-        if claim.printed:
-            return of_number(claim, decided)
-        return of_readings(claim, decided)
-    except (KeyError, ValueError, IndexError) as error:
-        return {"verdict": "not computed", "reason": f"{type(error).__name__}: {error}"}
-
-
-def of_number(claim: Claim, computed: ArrayLike) -> dict:
-    """The verdict on a printed number."""
-    found = float(complete(computed))
-    verdict, units, share = against_print(found, claim.printed)
-    return {"verdict": verdict, "found": found, "deviation_units": units, "deviation": share}
-
-
-def of_readings(claim: Claim, readings: list[Reading]) -> dict:
-    """The verdict on a statement from its readings; the number found is that of the first."""
-    right = [reading for reading in readings if reading.holds]
-    wrong = [reading for reading in readings if not reading.holds]
-    found = {"found": readings[0].found, "condition": listed(readings)}
-    if not wrong:
-        return found | {"verdict": "definition" if claim.definition else "reproduced"}
-    if not right:
-        return found | {"verdict": "contradicted"}
-    found["condition"] = f"right for {listed(right)}; not for {listed(wrong)}"
-    if not claim.missing:
-        return found | {"verdict": "by reading"}
-    return found | {"verdict": "undecidable", "reason": f"the text lacks {claim.missing}"}
-
-
-def listed(readings: list[Reading]) -> str:
-    """Readings in words, each with its number and what is required of it."""
-    texts = []
-    for reading in readings:
-        number = "" if np.isnan(reading.found) else f"{rounded(reading.found)}, required "
-        texts.append(f"{reading.name} ({number}{reading.required})")
-    return ", ".join(texts)
-
-
-def rounded(number: float) -> str:
-    """Three digits of a number; zero if it is zero but for rounding."""
-    return f"{number:.3g}" if abs(number) > ROUNDING else "0"
-
-
-SYMBOLS = {"n": "n", "restitution": "r", "amplitude": "Λ", "frequency_ratio": "ϖ"}
-
-
-def parameters_text(names: Iterable[str]) -> str:
-    """The parameters of datasets in words."""
-    return "; ".join(
-        f"{spoken(name)}: {in_symbols(PAPER[name])}" for name in names if name in PAPER
-    )
-
-
-def spoken(name: str) -> str:
-    """The name of a figure or table in words.
-
-    >>> spoken("fig05"), spoken("table1"), spoken("lowest_doubling")
-    ('Fig. 5', 'Table 1', 'lowest doubling')
-    """
-    kind = {"fig": "Fig.", "table": "Table"}.get(name.rstrip("0123456789"))
-    return f"{kind} {int(name.lstrip('figtable'))}" if kind else name.replace("_", " ")
-
-
-def in_symbols(values: Mapping) -> str:
-    """Parameters in symbols.
-
-    >>> in_symbols({"n": [1, 2], "restitution": 0.85, "frequency_ratio": {"min": 0.5, "max": 1e4}})
-    'n = 1, 2, r = 0.85, ϖ = 0.5 to 10000'
-    """
-    texts = []
-    for key, value in values.items():
-        if key == "cases":
-            pairs = (f"({case['restitution']:g}, {case['amplitude']:g})" for case in value)
-            texts.append(f"(r, Λ) = {', '.join(pairs)}")
-        elif isinstance(value, Mapping):
-            texts.append(f"{SYMBOLS[key]} = {value['min']:g} to {value['max']:g}")
-        elif key in SYMBOLS:
-            texts.append(f"{SYMBOLS[key]} = {', '.join(f'{each:g}' for each in np.ravel(value))}")
-    return ", ".join(texts)
-
-
-def judge(datasets: Mapping[str, xr.Dataset], printed: xr.DataArray) -> xr.Dataset:
+def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
     """The verdict on each claim, and the restored formulas, over the dimension `claim`.
 
     Parameters
@@ -1368,7 +1125,7 @@ def judge(datasets: Mapping[str, xr.Dataset], printed: xr.DataArray) -> xr.Datas
         The datasets of the figures and tables by name. A claim whose datasets are missing is not
         computed.
     printed : xarray.DataArray
-        The printed Table 1 as texts, from `printed_table`.
+        The printed Table 1 as texts, from `datasets.printed_table`.
     """
     rows = [
         NOTHING
@@ -1400,158 +1157,3 @@ def judge(datasets: Mapping[str, xr.Dataset], printed: xr.DataArray) -> xr.Datas
     ]
     columns = {name: ("claim", [row[name] for row in rows]) for name in rows[0]}
     return xr.Dataset(columns).set_coords("claim")
-
-
-NOTHING = {
-    "claim": "",
-    "group": "",
-    "item": "",
-    "statement": "",
-    "parameters": "",
-    "decided_by": "",
-    "printed_text": "",
-    "found": np.nan,
-    "deviation_units": np.nan,
-    "deviation": np.nan,
-    "verdict": "",
-    "condition": "",
-    "reason": "",
-    "remark": "",
-}
-"""The variables of the dataset, for what a claim does not have."""
-
-
-def counts(data: xr.Dataset) -> dict[str, dict[str, int]]:
-    """How many claims of each group have each verdict; restored formulas are not counted."""
-    found = Counter(
-        zip(data["group"].values.tolist(), data["verdict"].values.tolist(), strict=True)
-    )
-    return {group: {verdict: found[group, verdict] for verdict in VERDICTS} for group in GROUPS}
-
-
-# The claims as texts
-
-
-def computed_text(found: float, printed: str) -> str:
-    """A computed number with two digits more than the printed one.
-
-    >>> computed_text(1.0383008, "1.032"), computed_text(82.177, "82"), computed_text(np.nan, "6")
-    ('1.03830', '82.18', '–')
-    """
-    decimals = len(printed.partition(".")[2]) + 2
-    return "–" if np.isnan(found) else f"{found:.{decimals}f}"
-
-
-def each(data: xr.Dataset, group: str) -> list[dict]:
-    """The claims of a group, each as a mapping from the variables to its values.
-
-    Besides, `computed` and `distance` have the number found beside a printed one as texts, and
-    `notes` the reason for the verdict and the remark.
-    """
-    chosen = data.isel(claim=data["group"].values == group)
-    rows = []
-    for place in range(chosen.sizes["claim"]):
-        row = {name: chosen[name][place].item() for name in chosen.variables}
-        printed = row["printed_text"]
-        row["computed"] = computed_text(row["found"], printed) if printed else ""
-        row["distance"] = distance_text(row["deviation_units"], row["deviation"])
-        row["notes"] = "; ".join(filter(None, (row["reason"], row["remark"])))
-        rows.append(row)
-    return rows
-
-
-SECTIONS = {
-    "printed number": {
-        "claim": "claim",
-        "where": "item",
-        "number": "statement",
-        "printed": "printed_text",
-        "computed": "computed",
-        "distance": "distance",
-        "verdict": "verdict",
-        "remark": "notes",
-    },
-    "statement": {
-        "claim": "claim",
-        "where": "item",
-        "what the paper says": "statement",
-        "verdict": "verdict",
-        "found": "condition",
-        "at": "parameters",
-        "remark": "notes",
-    },
-    "restored formula": {
-        "equations": "item",
-        "what they give": "statement",
-        "computed by": "decided_by",
-        "checked by": "condition",
-        "verdict": "verdict",
-    },
-}
-"""The tables of claims, one for each group, with their columns."""
-EVERYTHING = {
-    "claim": "claim",
-    "group": "group",
-    "where": "item",
-    "what the paper says": "statement",
-    "at": "parameters",
-    "printed": "printed_text",
-    "computed": "computed",
-    "distance": "distance",
-    "verdict": "verdict",
-    "found, or checked by": "condition",
-    "remark": "notes",
-    "decided by, or computed by": "decided_by",
-}
-"""The columns of the CSV file."""
-
-
-def table(data: xr.Dataset, group: str, columns: Mapping[str, str] | None = None) -> list:
-    """Rows of texts for the claims of a group, the header first."""
-    columns = columns or SECTIONS[group]
-    return [[*columns], *([row[name] for name in columns.values()] for row in each(data, group))]
-
-
-def all_rows(data: xr.Dataset) -> list[list[str]]:
-    """Rows of texts for all claims and restored formulas, with all that is known of them."""
-    groups = [table(data, group, EVERYTHING)[1:] for group in SECTIONS]
-    return [[*EVERYTHING], *(row for group in groups for row in group)]
-
-
-def summary(data: xr.Dataset) -> list[list[str]]:
-    """Rows of texts with the number of claims of each group and verdict, the header first."""
-    found = counts(data)
-    used = [verdict for verdict in VERDICTS if any(by[verdict] for by in found.values())]
-    rows = [["group", "claims", *used]]
-    for group, by in found.items():
-        numbers = [sum(by.values()), *(by[verdict] for verdict in used)]
-        rows.append([f"{group}s", *map(str, numbers)])
-    return rows
-
-
-INTRODUCTION = """\
-# The claims of the paper and the verdict on each
-
-A row is one claim of the paper, in our words, with its place in the paper.
-
-- A printed number is *reproduced* if the computed one rounds to it, *not to the digit* if it does
-  not, but differs by at most 1 %, and *contradicted* beyond. The distance is in units of the last
-  printed digit and in per cent of the printed number.
-- A statement is turned into a condition for each way in which its words can be read. It is
-  *reproduced* or *contradicted* if all these readings agree. It is right *by reading* if they do
-  not, and the readings are named for which it is right and for which it is not. It is *undecidable*
-  if the text lacks what would choose among them, and a *definition* if it could not have failed.
-- A claim is *not asked* if this run has other parameters than the claim needs, and *not computed*
-  if a dataset or a number is missing.
-- A formula was *restored* from the damaged text by deriving it again. That the tests confirm it
-  shows that the restored form is right, and not that it was printed. Restored formulas are not
-  counted.
-"""
-
-
-def claims_markdown(data: xr.Dataset) -> str:
-    """The claims with their verdicts as a page."""
-    text = f"{INTRODUCTION}\n## How many\n\n{markdown(summary(data))}"
-    for group in SECTIONS:
-        text += f"\n## {group.capitalize()}s\n\n{markdown(table(data, group))}"
-    return text

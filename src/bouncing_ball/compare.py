@@ -2,47 +2,30 @@
 
 The reference is kept in git: the folder `figures` with datasets, pictures and tables, and the texts
 `paper.md` and `supplement.md`. A run writes the same files into a folder of its own, `results`.
-Three comparisons are made:
+Three comparisons are made, of which `differences` says what is different:
 
-1. Each dataset of the results with that of the reference: names, dimensions, types, attributes,
-   texts and places of NaN exactly, numbers within the tolerance that the reference declares beside
-   the variable (`datasets` says what it means). A result that records other parameters than those
-   of the configuration, or other code than today's, is stale, whatever else it says. Commit, code
-   and versions of the reference are shown and not judged.
+1. Each dataset of the results with that of the reference. A result that records other parameters
+   than those of the configuration, or other code than today's, is stale, whatever else it says.
+   Commit, code and versions of the reference are shown and not judged.
 2. Pictures, tables and texts are functions of datasets. Today's code makes them again from the
-   datasets of the *reference*, and they must equal the files of the reference: texts exactly, SVG
-   byte for byte but for its description, PNG pixel for pixel. The datasets being the same, there
-   is no rounding to forgive.
+   datasets of the *reference*, and they must equal the files of the reference. The datasets being
+   the same, there is no rounding to forgive.
 3. Made from the datasets of the *results*, they must equal the files of the results in the same
    way. Otherwise a picture is older than its dataset, or was edited.
-
-Another version of matplotlib places texts, and with them everything else, a little differently.
-Then SVG files are compared by what they draw: strokes, fills, words and curves. PNG files are not
-compared, and the report says so.
 """
 
-import base64
-import difflib
-import io
-import json
-import os
 import re
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import takewhile, zip_longest
+from functools import partial
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
 
 import jinja2
 import matplotlib
 import netCDF4
-import numpy as np
 import xarray as xr
-from PIL import Image
 
 from bouncing_ball import (
     article,
@@ -53,10 +36,18 @@ from bouncing_ball import (
     restitution,
     spring_damper,
     tables,
+    verdicts,
 )
-
-Datasets = Mapping[str, xr.Dataset]
-"""Datasets by the names of their artifacts."""
+from bouncing_ball.datasets import Datasets
+from bouncing_ball.differences import (
+    KINDS,
+    Finding,
+    changes,
+    dataset_differences,
+    file_difference,
+    record,
+    same_bits,
+)
 
 Code = tuple[str | Path, ...]
 """Files of code, templates and numbers that a product is made by."""
@@ -82,12 +73,25 @@ class Product:
 
 PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
 DRAWING: Code = (figures.__file__, drawing.__file__)
-JUDGING: Code = (claims.__file__, restitution.__file__, spring_damper.__file__, PRINTED)
-WRITING: Code = (article.__file__, *JUDGING, *sorted(article.TEMPLATES.glob("*.md.j2")))
+TABULATING: Code = (tables.__file__, claims.__file__, verdicts.__file__)
+JUDGING: Code = (
+    claims.__file__,
+    verdicts.__file__,
+    restitution.__file__,
+    spring_damper.__file__,
+    PRINTED,
+)
+WRITING: Code = (
+    article.__file__,
+    tables.__file__,
+    *JUDGING,
+    *sorted(article.TEMPLATES.glob("*.md.j2")),
+)
 
 
-def picture(name: str, *needs: str) -> Product:
-    """A figure, drawn from its dataset as PNG and as SVG."""
+def picture(name: str) -> Product:
+    """A figure, drawn from its dataset, if it has one, as PNG and as SVG."""
+    needs = () if name in figures.SCHEMATICS else (name,)
     files = (f"figures/{name}.png", f"figures/{name}.svg")
 
     def make(data: Datasets, folder: Path) -> None:
@@ -99,10 +103,7 @@ def picture(name: str, *needs: str) -> Product:
 
 
 def text(
-    file: str,
-    needs: tuple[str, ...],
-    write: Callable[[Datasets], str],
-    code: Code = WRITING,
+    file: str, needs: tuple[str, ...], write: Callable[[Datasets], str], code: Code = WRITING
 ) -> Product:
     """A file of text."""
 
@@ -112,462 +113,43 @@ def text(
     return Product((file,), needs, make, code)
 
 
-def table(name: str, rows: Callable[[xr.Dataset], list[list[str]]]) -> list[Product]:
-    """A table of a dataset as Markdown and as CSV."""
-    code = (tables.__file__, claims.__file__)
-    return [
-        text(f"figures/{name}.md", (name,), lambda data: tables.markdown(rows(data[name])), code),
-        text(
-            f"figures/{name}.csv",
-            (name,),
-            lambda data: tables.comma_separated(rows(data[name])),
-            code,
-        ),
-    ]
+def table(
+    file: str,
+    rows: Callable[[xr.Dataset], list[list[str]]],
+    write: Callable[[list[list[str]]], str],
+) -> Product:
+    """A table of the dataset with the name of its file."""
+    name = Path(file).stem
+    return text(f"figures/{file}", (name,), lambda data: write(rows(data[name])), TABULATING)
 
 
 def judge(data: Datasets, folder: Path) -> None:
     """Write the verdicts on the claims, with what the dataset of claims records of itself."""
-    verdicts = claims.judge({name: data[name] for name in STUDIES}, claims.printed_table(PRINTED))
+    judged = claims.judge({name: data[name] for name in STUDIES}, datasets.printed_table(PRINTED))
     title = data["claims"].attrs["title"]
     path = folder / "figures" / "claims.nc"
-    datasets.save(verdicts, path, title, record(data["claims"], "parameters"), code=[])
+    datasets.save(judged, path, title, record(data["claims"], "parameters"), code=[])
 
 
-FIGURES = [f"fig{number:02}" for number in range(1, 17)]
-SCHEMATICS = ["fig01", "fig04"]
-STUDIES = [name for name in FIGURES if name not in SCHEMATICS]
-STUDIES += ["table1", "thresholds", "three_balls", "lowest_doubling", "table1_readings"]
+DRAWN = [name for name in figures.FIGURES if name not in figures.SCHEMATICS]
+DECIDING = [name for claim in claims.CLAIMS for name in claim.datasets]
+STUDIES = list(dict.fromkeys([*DRAWN, *tables.TABLES, *DECIDING]))
+"""The datasets that are computed from the models."""
 ALL = (*STUDIES, "claims")
-"""All datasets. The claims follow from the others, which are computed from the model."""
+"""All datasets. The claims follow from the others."""
 
 PRODUCTS = [
-    *(picture(name) for name in SCHEMATICS),
-    *(picture(name, name) for name in FIGURES if name not in SCHEMATICS),
-    *(product for name, rows in tables.TABLES.items() for product in table(name, rows)),
+    *(picture(name) for name in figures.FIGURES),
+    *(table(f"{name}.md", rows, tables.markdown) for name, rows in tables.TABLES.items()),
+    *(table(f"{name}.csv", rows, tables.comma_separated) for name, rows in tables.TABLES.items()),
     Product(("figures/claims.nc",), ALL, judge, JUDGING),
-    text("figures/claims.md", ("claims",), lambda data: claims.claims_markdown(data["claims"])),
-    table("claims", claims.all_rows)[1],
-    text("paper.md", ALL, article.paper),
-    text("supplement.md", ALL, article.supplement),
-    text("figures/README.md", ALL, article.figure_list),
+    text("figures/claims.md", ("claims",), lambda data: tables.claims_markdown(data["claims"])),
+    table("claims.csv", tables.all_claims, tables.comma_separated),
+    text("paper.md", ALL, partial(article.filled_in, "paper")),
+    text("supplement.md", ALL, partial(article.filled_in, "supplement")),
+    text("figures/README.md", ALL, partial(article.filled_in, "figures")),
 ]
 """All files that follow from datasets, and how."""
-
-
-# Differences
-
-KINDS = {
-    "stale": "Results of other parameters or of other code",
-    "file": "Files that are missing, unexpected or unreadable",
-    "verdict": "Verdicts that changed",
-    "number": "Numbers beyond their tolerance",
-    "content": "Names, types, texts and attributes of variables",
-    "text": "Texts",
-    "picture": "Pictures",
-}
-"""Kinds of differences with their headings on the page, the most telling first."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """A difference, as the report shows it.
-
-    `text` says what is different in one line, `cause` why, as far as the parameters or git know.
-    Within a kind, a smaller `order` tells more. `lines` are a unified diff, `images` the file, what
-    it should be, and where they differ. `of_results` says that the result is wrong in itself,
-    whatever the reference is.
-    """
-
-    kind: str
-    text: str
-    order: tuple[float, ...] = (0.0,)
-    lines: str = ""
-    images: tuple[str, ...] = ()
-    artifact: str = ""
-    cause: str = ""
-    of_results: bool = False
-
-    @property
-    def line(self) -> str:
-        """The finding in a sentence."""
-        return f"{self.artifact}: {self.text}{'; ' if self.cause else ''}{self.cause}"
-
-
-# Datasets
-
-PROVENANCE = ("commit", "code", "versions")
-"""Attributes of the reference that are shown and not judged."""
-
-STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value", "_Unsigned")
-"""How a file packs a variable; other encodings, such as compression, do not change values."""
-
-
-def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
-    """Differences of a dataset from the reference `old`, whose tolerances apply."""
-    added = [str(name) for name in new.variables if name not in old.variables]
-    for name in old.variables:
-        if name in new.variables:
-            yield from variable_differences(str(name), new, old)
-        else:
-            twins = [other for other in added if new[other].variable.equals(old[name].variable)]
-            renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
-            yield Finding("content", f"{name} is missing{renamed}")
-    for name in added:
-        yield Finding("content", f"{name} is not in the reference")
-    for change in changes(record(old, "parameters"), record(new, "parameters")):
-        yield Finding("content", f"parameter {change}", (1.0,))
-    judged = [
-        {key: value for key, value in data.attrs.items() if key not in (*PROVENANCE, "parameters")}
-        for data in (new, old)
-    ]
-    yield from attribute_differences("the dataset", *judged)
-
-
-def variable_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
-    """Differences of one variable in attributes, form and values."""
-    yield from attribute_differences(name, new[name].attrs, old[name].attrs)
-    forms = form(name, new), form(name, old)
-    for what, found in forms[0].items():
-        if found != forms[1][what]:
-            text = f"{name} has {what} {found}, in the reference {forms[1][what]}"
-            yield Finding("content", text)
-    if all(forms[0][what] == forms[1][what] for what in ("dimensions", "type")):
-        yield from value_differences(name, new, old)
-
-
-def form(name: str, data: xr.Dataset) -> dict[str, str]:
-    """What a variable is apart from its values: dimensions, type, role and storage."""
-    variable = data[name]
-    text = variable.dtype.kind in "UO"
-    packed = {key: str(variable.encoding[key]) for key in STORAGE if key in variable.encoding}
-    return {
-        "dimensions": str(dict(variable.sizes)),
-        "type": "text" if text else str(variable.dtype),
-        "role": "coordinate" if name in data.coords else "variable",
-        # The storage of a text names its length.
-        "storage": "" if text else str(packed),
-    }
-
-
-def attribute_differences(where: str, new: Mapping, old: Mapping) -> Iterator[Finding]:
-    """Attributes that are absent on one side, or have another value or type."""
-    for key in sorted({*new, *old}):
-        found, expected = (repr(attributes.get(key, "absent")) for attributes in (new, old))
-        if found != expected:
-            text = f"attribute {key} of {where} is {found}, in the reference {expected}"
-            yield Finding("content", text, (2.0,))
-
-
-def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
-    """The place where a variable is furthest from the reference, if beyond the tolerance."""
-    x = new[name].values
-    y = old[name].values
-    numbers = y.dtype.kind == "f"
-    allowed = tolerance(name, old)
-    multiple = multiples(x, y, allowed) if numbers else np.where(x != y, np.inf, 0.0)
-    count = np.count_nonzero(multiple > 1)
-    if count == 0:
-        return
-    worst = np.unravel_index(np.argmax(multiple), y.shape)
-    places = [
-        f"{dim} = {old[dim].values[index] if dim in old.coords else index}"
-        for dim, index in zip(old[name].dims, worst, strict=True)
-    ]
-    found, expected = legible(x[worst], y[worst])
-    text = f"{name} is {found}, the reference has {expected}"
-    if places:
-        text += f" at {', '.join(places)}"
-    if np.isfinite(multiple[worst]):
-        text += f" (tolerance {allowed[worst]:.1e}, exceeded {multiple[worst]:.2g} times)"
-    if count > 1:
-        text += f", and {count - 1} more of {y.size} values"
-    kind = "verdict" if name == "verdict" else "number" if numbers else "content"
-    yield Finding(kind, text, (y.size, -multiple[worst]))
-
-
-def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
-    """The differences allowed from the numbers of a variable; zero if none is declared."""
-    attributes = old[name].attrs
-    if "tolerance_scale" in attributes:
-        scale = abs(old[attributes["tolerance_scale"]].values)
-    elif "tolerance" in attributes:
-        scale = np.maximum(abs(old[name].values), attributes["floor"])
-    else:
-        scale = np.zeros(old[name].shape)
-    return attributes.get("tolerance", 0.0) * scale
-
-
-def multiples(x: np.ndarray, y: np.ndarray, allowed: np.ndarray) -> np.ndarray:
-    """|x - y| over what is allowed; infinite where one is NaN or infinite and the other is not."""
-    equal = (x == y) | (np.isnan(x) & np.isnan(y))
-    with np.errstate(all="ignore"):
-        ratio = abs(x - y) / allowed
-    return np.where(equal, 0.0, np.where(np.isnan(ratio), np.inf, ratio))
-
-
-def legible(found: Any, expected: Any) -> tuple[str, str]:
-    """Two values in as few digits as tell them apart, but at least four."""
-    if not isinstance(found, float):
-        return excerpts(str(found), str(expected))
-    digits = next(
-        (digits for digits in range(4, 18) if f"{found:.{digits}g}" != f"{expected:.{digits}g}"), 18
-    )
-    return f"{found:.{digits}g}", f"{expected:.{digits}g}"
-
-
-def excerpts(first: str, second: str) -> tuple[str, str]:
-    """Two texts; of long ones 80 characters, from shortly before they part."""
-    same = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False))))
-    start = max(0, same - 30) if max(len(first), len(second)) > 80 else 0
-    return first[start : start + 80], second[start : start + 80]
-
-
-def record(data: xr.Dataset, key: str) -> dict:
-    """The parameters or versions that a dataset records; none if the record cannot be read."""
-    try:
-        return dict(json.loads(data.attrs[key]))
-    except (KeyError, ValueError, TypeError):
-        return {}
-
-
-def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
-    """Changed parameters, as "frequency_ratio.max 1000.0 -> 500.0"."""
-    found = []
-    for key in sorted({*old, *new}):
-        values = old.get(key, "absent"), new.get(key, "absent")
-        if all(isinstance(value, Mapping) for value in values):
-            found += changes(*values, f"{above}{key}.")
-        elif values[0] != values[1]:
-            found.append(f"{above}{key} {values[0]} -> {values[1]}")
-    return found
-
-
-def same_bits(first: xr.Dataset, second: xr.Dataset) -> bool:
-    """Whether two datasets differ in nothing but their provenance; -0.0 differs from 0.0."""
-    provenance = {key: first.attrs[key] for key in PROVENANCE if key in first.attrs}
-    return first.identical(second.assign_attrs(provenance)) and all(
-        variable.values.tobytes() == second[name].values.tobytes()
-        for name, variable in first.variables.items()
-        if variable.dtype.kind == "f"
-    )
-
-
-# Texts and pictures
-
-DESCRIPTION = re.compile(r"<dc:description>[^<]*</dc:description>")
-"""The provenance in an SVG; without "<" it can contain nothing that is drawn."""
-
-
-def file_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
-    """How a file differs from what is `made` of its datasets; pictures `loosely` by what they draw.
-
-    An arrow in the text of a finding leads from the file to what is made.
-    """
-    try:
-        return known_difference(made, path, loosely)
-    except Exception as error:  # Whatever readers of damaged files raise.
-        return Finding("file", f"it cannot be read: {error!r}")
-
-
-def known_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
-    """As `file_difference`, of files that can be read."""
-    if path.suffix == ".nc":
-        difference = next(dataset_differences(datasets.read(made), datasets.read(path)), None)
-        words = difference.text.replace("the reference", "the file") if difference else ""
-        return difference and replace(difference, text=words)
-    if path.suffix == ".png":
-        return None if loosely else png_difference(made, path)
-    texts = [file.read_text(encoding="utf-8", errors="replace") for file in (path, made)]
-    if path.suffix == ".svg":
-        texts = [DESCRIPTION.sub("", text, count=1) for text in texts]
-    if texts[0] == texts[1]:
-        return None
-    if path.suffix == ".svg" and loosely:
-        return outline_difference(*texts)
-    lines = [text.splitlines(keepends=True) for text in texts]
-    number, pair = next(
-        (number, pair)
-        for number, pair in enumerate(zip_longest(*lines, fillvalue=""), 1)
-        if pair[0] != pair[1]
-    )
-    words = " -> ".join(repr(excerpt) for excerpt in excerpts(*pair))
-    if path.suffix == ".svg":
-        return Finding("picture", f"line {number}: {words}", (1.0,))
-    titles = "the file", "as its datasets give it"
-    unified = difflib.unified_diff(lines[0], lines[1], *titles, n=1)
-    return Finding("text", f"line {number}: {words}", lines="".join(unified))
-
-
-def png_difference(made: Path, path: Path) -> Finding | None:
-    """How two PNG files differ in pixels, with an image of the difference, or in other chunks."""
-    files = path, made
-    images = [Image.open(io.BytesIO(file.read_bytes())) for file in files]
-    chunks = [png_chunks(file.read_bytes()) for file in files]
-    if images[0].size != images[1].size:
-        return Finding("picture", f"its size: {images[0].size} -> {images[1].size}")
-    pixels = [np.asarray(image.convert("RGBA")) for image in images]
-    unequal = np.any(pixels[0] != pixels[1], axis=-1)
-    if np.any(unequal):
-        marked = Image.fromarray(np.where(unequal, 0, 255).astype("uint8"))
-        uris = tuple(data_uri(image) for image in (*images, marked))
-        return Finding("picture", f"{np.count_nonzero(unequal)} pixels differ", images=uris)
-    if chunks[0] != chunks[1]:
-        kinds = [" ".join(kind for kind, _ in each) for each in chunks]
-        return Finding("picture", f"its chunks: {kinds[0]} -> {kinds[1]}")
-    return None
-
-
-def png_chunks(data: bytes) -> list[tuple[str, bytes]]:
-    """Chunks of a PNG file, without its provenance and without its compressed pixels."""
-    chunks = []
-    start = 8
-    while start < len(data):
-        length = int.from_bytes(data[start : start + 4], "big")
-        kind = data[start + 4 : start + 8].decode("latin-1")
-        content = data[start + 8 : start + 8 + length]
-        start += 12 + length
-        if not content.startswith(b"Description\0"):
-            chunks.append((kind, b"" if kind == "IDAT" else content))
-    # Pixels may be cut into several chunks.
-    return [
-        chunk for chunk, before in zip(chunks, [None, *chunks], strict=False) if chunk != before
-    ]
-
-
-def data_uri(image: Image.Image) -> str:
-    """An image for a page that needs no other file."""
-    file = io.BytesIO()
-    image.save(file, "PNG")
-    return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
-
-
-# Pictures of another matplotlib
-
-SVG = "{http://www.w3.org/2000/svg}"
-NUMBER = re.compile(r"-?\d[\d.]*(?:e[-+]?\d+)?")
-
-HREF = "{http://www.w3.org/1999/xlink}href"
-PLACES = {"id", "d", "x", "y", "width", "height", "clip-path", "transform", "viewBox", HREF}
-"""Attributes that say where an element is, and what its outline is."""
-
-CURVE_TOLERANCE = 1.0
-"""How far something may be off within its axes, in points: about the width of a line."""
-
-LAYOUT_TOLERANCE = 8.0
-"""How far axes, labels and legends may be off, in points: the size of a letter."""
-
-
-@dataclass(frozen=True)
-class Shape:
-    """An element of an SVG: its look, and its segments, of shape (number, 2, 2), in a box.
-
-    The box, that of the axes to which the element is clipped or that of the picture, is left, top,
-    width and height in points; segments are in units of it.
-    """
-
-    look: str
-    clipped: bool
-    box: np.ndarray
-    segments: np.ndarray
-
-
-def outline_difference(old: str, new: str) -> Finding | None:
-    """How two SVG files of different versions of matplotlib differ in what they draw.
-
-    Elements must have the same look in the same order, and lie at the same place but for the
-    tolerances above. Letters are compared as words, which matplotlib writes in comments.
-    """
-    for found, expected in zip_longest(drawn(old), drawn(new)):
-        if found is None or expected is None or found.look != expected.look:
-            looks = [shape.look if shape else "nothing" for shape in (found, expected)]
-            return Finding("picture", f"it draws {' -> '.join(excerpts(*looks))}", (1.0,))
-        size = expected.box[2:]
-        allowed = CURVE_TOLERANCE if expected.clipped else LAYOUT_TOLERANCE
-        if distance(found.segments * size, expected.segments * size) > allowed:
-            return Finding("picture", f"{found.look} is drawn elsewhere", (1.0,))
-    return None
-
-
-def drawn(svg: str) -> Iterator[Shape]:
-    """All elements of an SVG that matplotlib wrote."""
-    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
-    root = ElementTree.fromstring(svg, parser)
-    named = {element.get("id"): element for element in root.iter()}
-    return shapes(root, named, np.array(root.attrib["viewBox"].split(), float))
-
-
-def shapes(
-    element: ElementTree.Element,
-    named: Mapping[str | None, ElementTree.Element],
-    box: np.ndarray,
-    clipped: bool = False,
-) -> Iterator[Shape]:
-    """An element and all in it, in order, without metadata and without the letters of words."""
-    if "clip-path" in element.attrib:
-        rectangle = named[element.attrib["clip-path"][len("url(#") : -1]][0]
-        box = np.array([rectangle.attrib[key] for key in ("x", "y", "width", "height")], float)
-        clipped = True
-    outline = (segments(element, named) - box[:2]) / box[2:]
-    yield Shape(look_of(element), clipped, box, outline)
-    if element.tag != SVG + "metadata" and "transform" not in element.attrib:
-        for child in element:
-            yield from shapes(child, named, box, clipped)
-
-
-def look_of(element: ElementTree.Element) -> str:
-    """How an element is drawn: its attributes without places, its words, and if it has letters."""
-    attributes = [
-        key if key in PLACES else f"{key}={value}" for key, value in sorted(element.attrib.items())
-    ]
-    turned = re.sub(r"translate\([^)]*\)", "", element.get("transform", ""))
-    kind = "words" if callable(element.tag) else element.tag.removeprefix(SVG)
-    letters = "" if element.find(SVG + "use") is None else "letters"
-    words = [kind, *attributes, turned, letters, (element.text or "").strip()]
-    return f"[{' '.join(word for word in words if word)}]"
-
-
-def segments(element: ElementTree.Element, named: Mapping) -> np.ndarray:
-    """The segments of a path or of a copy of it, of curves those between control points.
-
-    Words have a point where they start, and a rectangle has its diagonal.
-    """
-    parts = [np.empty((0, 2, 2))]
-    for piece in element.get("d", "").split("M")[1:]:
-        points = np.array(NUMBER.findall(piece), float).reshape(-1, 2)
-        parts.append(np.stack([points[:-1], points[1:]], axis=1))
-    place = [element.attrib[key] for key in ("x", "y") if key in element.attrib]
-    place += NUMBER.findall(element.get("transform", ""))[:2]
-    if HREF in element.attrib:
-        path = named[element.attrib[HREF].removeprefix("#")]
-        return segments(path, named) + np.array(place or ["0", "0"], float)
-    if place:
-        size = [element.get("width", "0"), element.get("height", "0")]
-        corners = np.cumsum(np.array([place, size], float), axis=0)
-        parts.append(corners[np.newaxis])
-    return np.concatenate(parts)
-
-
-def distance(first: np.ndarray, second: np.ndarray) -> float:
-    """The largest distance of a point of one set of segments from the other set (Hausdorff).
-
-    Points are the ends of segments and three between them.
-    """
-    if len(first) == 0 or len(second) == 0:
-        return 0.0 if len(first) == len(second) else np.inf
-    return max(farthest(first, second), farthest(second, first))
-
-
-def farthest(first: np.ndarray, second: np.ndarray) -> float:
-    """The largest distance of a point of the first segments from the second."""
-    along = np.linspace(0, 1, 5)[:, np.newaxis, np.newaxis]
-    points = (first[:, 0] + along * (first[:, 1] - first[:, 0])).reshape(-1, 1, 2)
-    start = second[:, 0]
-    step = second[:, 1] - start
-    length = np.maximum(np.sum(step**2, axis=-1), np.finfo(float).tiny)
-    nearest = np.clip(np.sum((points - start) * step, axis=-1) / length, 0, 1)
-    gaps = points - start - nearest[..., np.newaxis] * step
-    return float(np.max(np.min(np.linalg.norm(gaps, axis=-1), axis=1)))
 
 
 # Causes
@@ -612,15 +194,8 @@ def changed_files(folder: Path, paths: list[str], *commits: str) -> list[str] | 
 
 def git(folder: Path, *arguments: str) -> str | None:
     """The answer of git in a folder; none if there is no git or it refuses."""
-    command = ["git", "-C", str(folder), "-c", "core.quotePath=off", *arguments]
-    environment = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}
-    try:
-        answer = subprocess.run(
-            command, capture_output=True, check=False, encoding="utf-8", env=environment
-        )
-    except OSError:
-        return None
-    return answer.stdout.strip() if answer.returncode == 0 else None
+    answer = datasets.git(folder, *arguments)
+    return answer.stdout.strip() if answer and answer.returncode == 0 else None
 
 
 # The comparison
@@ -968,8 +543,6 @@ def replaced(source: Path, folder: Path) -> Iterator[str]:
     for path in sorted(path for path in source.rglob("*") if path.is_file()):
         target = folder / path.relative_to(source)
         if path.suffix == ".nc" or not target.is_file() or file_difference(path, target, False):
-            target.parent.mkdir(parents=True, exist_ok=True)
-            unfinished = target.with_name(f".{target.name}.part.{os.getpid()}")
-            shutil.copyfile(path, unfinished)
-            os.replace(unfinished, target)
+            with datasets.whole(target) as unfinished:
+                shutil.copyfile(path, unfinished)
             yield str(path.relative_to(source))

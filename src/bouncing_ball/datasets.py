@@ -12,13 +12,15 @@ floor the tolerance is absolute, so that a zero need not be met to the last bit.
 booleans agree only if they are equal.
 """
 
+import csv
 import hashlib
 import json
 import os
 import platform
 import re
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -30,6 +32,8 @@ REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient and "
     "spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
+Datasets = Mapping[str, xr.Dataset]
+"""Datasets by the names of their figures and tables."""
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 
 
@@ -57,13 +61,10 @@ VARIABLES = {
     "case": Variable("parameter set"),
     "claim": Variable("claim of the paper"),
     "end": Variable("end of the branch"),
-    "explanation": Variable("explanation of claims that differ or are contradicted"),
     "frequency_ratio": Variable("frequency ratio of contact and table", "ϖ", "Eq. 11"),
     "impact_map": Variable("map of the restitution model", equation="Eqs. 5, 8"),
-    "measure": Variable("quantity compared along these orbits"),
     "multiplier": Variable("Floquet multiplier, the larger modulus first", "μ"),
     "n": Variable("index of the family of periodic orbits", "n", "Eq. 6"),
-    "orbit": Variable("orbit along the frequency ratio, curve of a figure"),
     "point": Variable("point along the branch, at equal steps of arclength"),
     "quantity": Variable("quantity compared between the two models"),
     "reading": Variable("what is assumed, one reading of the paper each"),
@@ -209,22 +210,15 @@ VARIABLES = {
     "statement": Variable("what the claim says"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
-    "compared": Variable("what the number found is"),
     "parameters": Variable("r, n, Λ, ϖ and ζ at which the number is found"),
     "group": Variable("what the claim is counted as"),
     "printed_text": Variable("the number as printed"),
     "decided_by": Variable("datasets that decide"),
     "found": Variable("the number found"),
-    "required": Variable("the number as printed, or the bound to be met"),
-    "limit": Variable("the bound to be met, as a number"),
     # Two numbers that agree to three or four digits are subtracted.
     "deviation": Variable("relative deviation", tolerance=1e-6),
     "deviation_units": Variable("deviation in units of the last printed digit", tolerance=1e-6),
-    "low": Variable("lower limit of the confidence interval of the number found"),
-    "high": Variable("upper limit of the confidence interval of the number found"),
     "reason": Variable("why a claim or a motion is undecided"),
-    "explained_by": Variable("name of the explanation"),
-    "explanation_text": Variable("the explanation in words"),
 }
 
 
@@ -268,13 +262,36 @@ def save(
     )
     for name, variable in described.variables.items():
         variable.attrs = description(VARIABLES[str(name)], variable.dtype)
+    with whole(path) as unfinished:
+        described.to_netcdf(unfinished, engine="netcdf4")
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """The path to write a file to that shall appear at `path` whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.part.{os.getpid()}")
     try:
-        described.to_netcdf(unfinished, engine="netcdf4")
+        yield unfinished
         os.replace(unfinished, path)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def save_stage(
+    stage: Mapping[str, tuple[Callable[..., xr.Dataset], str]],
+    parameters: Mapping[str, Mapping],
+    settings: Mapping,
+    files: Mapping[str, str],
+    code: Iterable[str | Path],
+) -> None:
+    """Compute and save the datasets of a stage, which has the function and the title of each.
+
+    A function takes the parameters of its dataset and the settings of the whole run.
+    """
+    for name, (compute, title) in stage.items():
+        dataset = compute(parameters[name], **settings)
+        save(dataset, files[name], title, {**parameters[name], **settings}, code)
 
 
 def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:
@@ -295,6 +312,30 @@ def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:
 def read(path: str | Path) -> xr.Dataset:
     """The dataset of a netCDF file, in memory and with the file closed."""
     return xr.load_dataset(path, engine="netcdf4")
+
+
+def parameters(dataset: xr.Dataset) -> dict:
+    """The parameters with which a dataset was computed; none if it does not say."""
+    return json.loads(dataset.attrs.get("parameters", "{}"))
+
+
+def printed_table(path: str | Path) -> xr.DataArray:
+    """The printed ends of Table 1 as texts with their digits, from a CSV file.
+
+    The columns are frequency_ratio, n, saddle-node and period doubling. The result has the
+    dimensions frequency_ratio, n and bound; `astype(float)` makes numbers of it.
+    """
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    bounds = list(rows[0])[2:]
+    ratios = list(dict.fromkeys(float(row["frequency_ratio"]) for row in rows))
+    families = list(dict.fromkeys(int(row["n"]) for row in rows))
+    texts = np.array([[row[bound] for bound in bounds] for row in rows])
+    return xr.DataArray(
+        texts.reshape(len(ratios), len(families), len(bounds)),
+        {"frequency_ratio": ratios, "n": families, "bound": bounds},
+        ("frequency_ratio", "n", "bound"),
+    )
 
 
 def plain(value):
@@ -324,6 +365,18 @@ def versions() -> dict[str, str]:
     }
 
 
+def git(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str] | None:
+    """The answer of git in a folder; none if there is no git."""
+    command = ["git", "-C", str(folder), "-c", "core.quotePath=off", *arguments]
+    environment = os.environ | {"LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
+    try:
+        return subprocess.run(
+            command, capture_output=True, check=False, encoding="utf-8", env=environment
+        )
+    except OSError:
+        return None
+
+
 def commit(folder: str | Path = Path(__file__).parent) -> str:
     """The commit of the checkout that holds `folder`, with "+dirty" if a tracked file has changed.
 
@@ -336,18 +389,7 @@ def commit(folder: str | Path = Path(__file__).parent) -> str:
             named = re.search(r"node: ([0-9a-f]{40})", archival.read_text(encoding="utf-8"))
             if named:
                 return f"{named[1]} (archive)"
-    command = ["git", "-C", str(folder), "describe", "--always", "--abbrev=40", "--exclude=*"]
-    try:
-        answer = subprocess.run(
-            [*command, "--dirty=+dirty"],
-            capture_output=True,
-            check=False,
-            text=True,
-            encoding="utf-8",
-            env=os.environ | {"LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"},
-        )
-    except OSError:
-        return "unknown"
-    if "dubious ownership" in answer.stderr:
+    answer = git(folder, "describe", "--always", "--abbrev=40", "--exclude=*", "--dirty=+dirty")
+    if answer and "dubious ownership" in answer.stderr:
         return "unknown (git: dubious ownership)"
-    return answer.stdout.strip() if answer.returncode == 0 else "unknown"
+    return answer.stdout.strip() if answer and answer.returncode == 0 else "unknown"

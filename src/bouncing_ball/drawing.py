@@ -11,8 +11,6 @@ Nothing here is drawn by pyplot, and nothing depends on the settings of the user
 from matplotlib's defaults.
 """
 
-import json
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from itertools import pairwise
@@ -28,6 +26,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter
+
+from bouncing_ball.datasets import parameters, whole
 
 Look = dict[str, Any]
 """Keywords of a line, a mark or a text."""
@@ -89,7 +89,7 @@ def style() -> AbstractContextManager:
     return matplotlib.rc_context(settings)
 
 
-# Labels and parameters
+# Labels
 
 SYMBOLS = {
     "n": "n",
@@ -98,11 +98,6 @@ SYMBOLS = {
     "frequency_ratio": r"\varpi",
     "damping_ratio": r"\zeta",
 }
-
-
-def parameters(data: xr.Dataset) -> dict[str, Any]:
-    """The parameters with which a dataset was computed, from its attribute of that name."""
-    return json.loads(data.attrs["parameters"])
 
 
 def number(value: float) -> str:
@@ -481,12 +476,7 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) 
     }
     with style():
         for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            unfinished = path.with_name(f".{path.name}.part.{os.getpid()}")
-            try:
+            with whole(path) as unfinished:
                 figure.savefig(unfinished, format=kind, metadata=metadata[kind])
-                os.replace(unfinished, path)
-            finally:
-                unfinished.unlink(missing_ok=True)
             # The SVG has the layout of the PNG: sizes of texts differ a little between the two.
             figure.set_layout_engine("none")

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
+from bouncing_ball.datasets import parameters
 from bouncing_ball.drawing import (
     COLOURS,
     DASHES,
@@ -35,7 +36,6 @@ from bouncing_ball.drawing import (
     number,
     pale,
     panels,
-    parameters,
     parted,
     restitution_branch,
     right_end,
@@ -156,9 +156,6 @@ def fig05(data: xr.Dataset) -> Figure:
     axes.set_ylabel("apparent restitution $r_a$")
     legend_below(figure)
     return figure
-
-
-fig06 = fig05
 
 
 def fig10(data: xr.Dataset) -> Figure:
@@ -420,9 +417,6 @@ def fig08(data: xr.Dataset) -> Figure:
     return domains(data, shown, height=4.8)
 
 
-fig09 = fig08
-
-
 def fig15(data: xr.Dataset) -> Figure:
     """Branches of both models along Λ: the phases of the table as contact starts and as it ends."""
     names = ("amplitude", "phase", "stable", "admissible")
@@ -513,16 +507,18 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     along_ratio(axes, data.frequency_ratio)
 
 
+SCHEMATICS = ("fig01", "fig04")
+"""The figures of the models, which have no dataset."""
 FIGURES: Mapping[str, Callable[..., Figure]] = {
     "fig01": fig01,
     "fig02": fig02,
     "fig03": fig03,
     "fig04": fig04,
     "fig05": fig05,
-    "fig06": fig06,
+    "fig06": fig05,
     "fig07": fig07,
     "fig08": fig08,
-    "fig09": fig09,
+    "fig09": fig08,
     "fig10": fig10,
     "fig11": fig11,
     "fig12": fig12,

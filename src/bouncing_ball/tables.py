@@ -1,25 +1,27 @@
-"""Table 1, the thresholds, and Table 1 under other readings, as Markdown and as CSV.
+"""Table 1, the thresholds, Table 1 under other readings and the claims, as Markdown and as CSV.
 
 Each table is a function of its dataset that returns rows of texts, the header first.
 """
 
 import csv
 import io
+from collections import Counter
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.claims import (
-    QUANTITIES,
-    against_print,
-    distance_text,
-    markdown,
-    other_parameters,
-)
-
-__all__ = ["TABLES", "comma_separated", "markdown", "table1", "table1_readings", "thresholds"]
+from bouncing_ball.claims import PAPER, QUANTITIES
+from bouncing_ball.verdicts import VERDICTS, against_print, other_parameters
 
 MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}
+
+
+def markdown(rows: list[list[str]]) -> str:
+    """Rows as a Markdown table; the first is the header."""
+    header, *body = rows
+    lines = [header, ["---"] * len(header), *body]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def comma_separated(rows: list[list[str]]) -> str:
@@ -34,6 +36,18 @@ def number(value: xr.DataArray | float, form: str, none: str = "–") -> str:
     return f"{float(value):{form}}" if np.isfinite(value) else none
 
 
+def distance_text(units: float, share: float) -> str:
+    """A distance from a printed number in words; empty if there is none.
+
+    >>> distance_text(6.3, 0.0061)
+    '+6.3 units, +0.61 %'
+    """
+    return "" if np.isnan(units) else f"{units:+.1f} units, {100 * share:+.2f} %"
+
+
+# Numbers
+
+
 def table1(data: xr.Dataset) -> list[list[str]]:
     """Table 1: each end of a range of stable orbits, computed and printed, with the verdict.
 
@@ -42,7 +56,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
     of the restitution model, for which it prints none.
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
-    not_asked = other_parameters("table1", data)
+    not_asked = other_parameters("table1", data, PAPER["table1"])
     for end in each(data, "frequency_ratio", "n", "bound"):
         place = [number(end["frequency_ratio"], "g"), str(end["n"].item()), end["bound"].item()]
         printed = number(end["printed"], ".3f", "")
@@ -113,3 +127,139 @@ def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
 
 TABLES = {"table1": table1, "thresholds": thresholds, "table1_readings": table1_readings}
 """The tables by name."""
+
+
+# Claims
+
+
+def computed_text(found: float, printed: str) -> str:
+    """A computed number with two digits more than the printed one.
+
+    >>> computed_text(1.0383008, "1.032"), computed_text(82.177, "82"), computed_text(np.nan, "6")
+    ('1.03830', '82.18', '–')
+    """
+    decimals = len(printed.partition(".")[2]) + 2
+    return "–" if np.isnan(found) else f"{found:.{decimals}f}"
+
+
+def claims_of(data: xr.Dataset, group: str) -> list[dict]:
+    """The claims of a group, each as a mapping from the variables to its values.
+
+    Besides, `computed` and `distance` have the number found beside a printed one as texts, and
+    `notes` the reason for the verdict and the remark.
+    """
+    rows = []
+    for claim in each(data.isel(claim=data["group"].values == group), "claim"):
+        row = {name: claim[name].item() for name in claim.variables}
+        printed = row["printed_text"]
+        row["computed"] = computed_text(row["found"], printed) if printed else ""
+        row["distance"] = distance_text(row["deviation_units"], row["deviation"])
+        row["notes"] = "; ".join(filter(None, (row["reason"], row["remark"])))
+        rows.append(row)
+    return rows
+
+
+GROUPS = ("printed number", "statement")
+"""The groups of claims that are counted."""
+SECTIONS = {
+    "printed number": {
+        "claim": "claim",
+        "where": "item",
+        "number": "statement",
+        "printed": "printed_text",
+        "computed": "computed",
+        "distance": "distance",
+        "verdict": "verdict",
+        "remark": "notes",
+    },
+    "statement": {
+        "claim": "claim",
+        "where": "item",
+        "what the paper says": "statement",
+        "verdict": "verdict",
+        "found": "condition",
+        "at": "parameters",
+        "remark": "notes",
+    },
+    "restored formula": {
+        "equations": "item",
+        "what they give": "statement",
+        "computed by": "decided_by",
+        "checked by": "condition",
+        "verdict": "verdict",
+    },
+}
+"""The tables of claims, one for each group, with their columns."""
+EVERYTHING = {
+    "claim": "claim",
+    "group": "group",
+    "where": "item",
+    "what the paper says": "statement",
+    "at": "parameters",
+    "printed": "printed_text",
+    "computed": "computed",
+    "distance": "distance",
+    "verdict": "verdict",
+    "found, or checked by": "condition",
+    "remark": "notes",
+    "decided by, or computed by": "decided_by",
+}
+"""The columns of the CSV file."""
+
+
+def chosen(columns: Mapping[str, str], claims: list[dict]) -> list[list[str]]:
+    """Rows of texts with some columns for claims, the header first."""
+    return [[*columns], *([claim[name] for name in columns.values()] for claim in claims)]
+
+
+def all_claims(data: xr.Dataset) -> list[list[str]]:
+    """Rows of texts for all claims and restored formulas, with all that is known of them."""
+    return chosen(EVERYTHING, [claim for group in SECTIONS for claim in claims_of(data, group)])
+
+
+def counts(data: xr.Dataset) -> dict[str, dict[str, int]]:
+    """How many claims of each group have each verdict; restored formulas are not counted."""
+    found = Counter(
+        zip(data["group"].values.tolist(), data["verdict"].values.tolist(), strict=True)
+    )
+    return {group: {verdict: found[group, verdict] for verdict in VERDICTS} for group in GROUPS}
+
+
+def summary(data: xr.Dataset) -> list[list[str]]:
+    """Rows of texts with the number of claims of each group and verdict, the header first."""
+    found = counts(data)
+    used = [verdict for verdict in VERDICTS if any(by[verdict] for by in found.values())]
+    rows = [["group", "claims", *used]]
+    for group, by in found.items():
+        numbers = [sum(by.values()), *(by[verdict] for verdict in used)]
+        rows.append([f"{group}s", *map(str, numbers)])
+    return rows
+
+
+INTRODUCTION = """\
+# The claims of the paper and the verdict on each
+
+A row is one claim of the paper, in our words, with its place in the paper.
+
+- A printed number is *reproduced* if the computed one rounds to it, *not to the digit* if it does
+  not, but differs by at most 1 %, and *contradicted* beyond. The distance is in units of the last
+  printed digit and in per cent of the printed number.
+- A statement is turned into a condition for each way in which its words can be read. It is
+  *reproduced* or *contradicted* if all these readings agree. It is right *by reading* if they do
+  not, and the readings are named for which it is right and for which it is not. It is *undecidable*
+  if the text lacks what would choose among them, and a *definition* if it could not have failed.
+- A claim is *not asked* if this run has other parameters than the claim needs, and *not computed*
+  if a dataset or a number is missing.
+- A formula was *restored* from the damaged text by deriving it again. That the tests confirm it
+  shows that the restored form is right, and not that it was printed. Restored formulas are not
+  counted.
+"""
+
+
+def claims_markdown(data: xr.Dataset) -> str:
+    """The claims with their verdicts as a page."""
+    text = f"{INTRODUCTION}\n## How many\n\n{markdown(summary(data))}"
+    for group, columns in SECTIONS.items():
+        rows = chosen(columns, claims_of(data, group))
+        text += f"\n## {group.capitalize()}s\n\n{markdown(rows)}"
+    return text

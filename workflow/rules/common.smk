@@ -4,23 +4,13 @@ import os
 import sys
 from pathlib import Path
 
-# The checkout. Runs in another folder (--directory), or as a module of another workflow, read its
-# configuration, code and reference, and write their results below the folder of the run.
-CHECKOUT = Path(workflow.current_basedir).parents[1].resolve()
 # Scripts import the package of this checkout, whatever else is installed.
 paths = [str(CHECKOUT / "src"), os.environ.get("PYTHONPATH", "")]
 os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, paths)))
 
-# The datasets of each stage.
-STAGES = {
-    "restitution_model": ["fig02", "fig03", "three_balls"],
-    "apparent_restitution": ["fig05", "fig06", "fig10", "fig13"],
-    "continuation": ["fig08", "fig09", "fig15", "table1", "lowest_doubling"],
-    "table1_readings": ["table1_readings"],
-    "permanent_contact": ["fig11", "fig16"],
-    "error_thresholds": ["fig14", "thresholds"],
-    "time_histories": ["fig07", "fig12"],
-}
+# The datasets of each stage: those that have parameters, and one that has none.
+STAGES = {stage: list(names) for stage, names in config.items() if isinstance(names, dict)}
+STAGES["table1_readings"] = ["table1_readings"]
 DATASETS = [name for names in STAGES.values() for name in names]
 # Figures of the models, which show no data.
 SCHEMATICS = ["fig01", "fig04"]
@@ -42,8 +32,8 @@ SETTINGS = {
 # The modules of the package that each script imports, directly or by another module. A change of
 # one of them runs the script again. A test compares these lists with the imports.
 ORBITS = ["restitution", "spring_damper", "orbits", "continuation"]
-CLAIMS = ["restitution", "spring_damper", "claims", "tables"]
-COMPARISON = [*CLAIMS, "article", "drawing", "figures", "compare", "datasets"]
+CLAIMS = ["restitution", "spring_damper", "verdicts", "claims", "tables"]
+COMPARISON = [*CLAIMS, "article", "drawing", "figures", "differences", "compare", "datasets"]
 MODULES = {
     "restitution_model": ["restitution", "datasets"],
     "apparent_restitution": [*ORBITS, "datasets"],

@@ -3,11 +3,18 @@
 # what is allowed.
 
 import math
+import os
+import re
 import sys
 from difflib import get_close_matches
+from pathlib import Path
 
 import yaml
 from jsonschema import Draft202012Validator, validators
+
+# The checkout. Runs in another folder (--directory), or as a module of another workflow, read its
+# configuration, code and reference, and write their results below the folder of the run.
+CHECKOUT = Path(workflow.current_basedir).parents[1].resolve()
 
 
 configfile: os.path.relpath(CHECKOUT / "config/config.yaml")
@@ -18,6 +25,10 @@ is_module = Path(workflow.basedir).resolve() != CHECKOUT
 if not is_module and Path.cwd() != CHECKOUT and os.path.exists("config/config.yaml"):
 
     configfile: "config/config.yaml"
+
+
+# Figures that are not in the paper may have any parameters, unless the schema has them.
+FURTHER = re.compile("fig1[7-9]")
 
 
 def is_whole(checker, value):
@@ -46,6 +57,8 @@ def mistakes(config, schema):
         if error.validator == "additionalProperties":
             allowed = error.schema["properties"]
             for key in error.instance.keys() - allowed:
+                if len(error.absolute_path) == 1 and FURTHER.fullmatch(str(key)):
+                    continue
                 near = get_close_matches(str(key), allowed, n=1) or allowed
                 yield f"unknown key {place([*error.absolute_path, key])}, allowed: {', '.join(near)}"
         elif (
@@ -58,7 +71,7 @@ def mistakes(config, schema):
 def crossed(parameters, keys=()):
     """A line for each mistake that a schema cannot know, in a section and those inside."""
     for key, value in parameters.items():
-        if isinstance(value, dict):
+        if isinstance(value, dict) and not FURTHER.fullmatch(key):
             yield from crossed(value, (*keys, key))
     if {"min", "max"} <= parameters.keys() and parameters["min"] >= parameters["max"]:
         yield f"{place(keys)}.min = {parameters['min']}: must be less than max = {parameters['max']}"

@@ -9,7 +9,7 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
-from bouncing_ball.datasets import grid, save
+from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
@@ -34,17 +34,6 @@ def along_frequency_ratio(
     )
 
 
-def with_limits(dataset: xr.Dataset, n: int) -> xr.Dataset:
-    """With phase and velocities of the restitution model, the limits of a stiff contact."""
-    phases = restitution.impact_phase(n, dataset.restitution.values, dataset.amplitude.values)
-    velocity = float(restitution.bounce_velocity(n))
-    return dataset.assign(
-        restitution_phase=("case", phases),
-        restitution_bounce_velocity=velocity,
-        restitution_impact_velocity=-velocity,
-    )
-
-
 def cases(parameters: dict, release: str) -> xr.Dataset:
     """Pairs of r and Λ (Figs. 5 and 6)."""
     r = np.array([each["restitution"] for each in parameters["cases"]])
@@ -53,20 +42,28 @@ def cases(parameters: dict, release: str) -> xr.Dataset:
     return along_frequency_ratio(parameters["n"], r, amplitude, ratios, release)
 
 
-def fig10(parameters: dict, release: str) -> xr.Dataset:
-    """One r and several Λ."""
+def amplitudes(parameters: dict, ratios: np.ndarray, release: str) -> xr.Dataset:
+    """One r and several Λ, with the limits of a stiff contact: phase and velocities of the
+    restitution model.
+    """
     n = parameters["n"]
     amplitude = np.array(parameters["amplitude"])
     r = np.full(amplitude.shape, parameters["restitution"])
-    ratios = grid(parameters["frequency_ratio"])
-    return with_limits(along_frequency_ratio(n, r, amplitude, ratios, release), n)
+    velocity = float(restitution.bounce_velocity(n))
+    return along_frequency_ratio(n, r, amplitude, ratios, release).assign(
+        restitution_phase=("case", restitution.impact_phase(n, r, amplitude)),
+        restitution_bounce_velocity=velocity,
+        restitution_impact_velocity=-velocity,
+    )
+
+
+def fig10(parameters: dict, release: str) -> xr.Dataset:
+    """One r and several Λ at the frequency ratios of the grid."""
+    return amplitudes(parameters, grid(parameters["frequency_ratio"]), release)
 
 
 def fig13(parameters: dict, release: str) -> xr.Dataset:
     """As Fig. 10, with the frequency ratios 2, 5 and the decades added, which are labelled."""
-    n = parameters["n"]
-    amplitude = np.array(parameters["amplitude"])
-    r = np.full(amplitude.shape, parameters["restitution"])
     ratios = grid(parameters["frequency_ratio"])
     round_values = np.array([0.1, 1, 2, 5, *10.0 ** np.arange(1, 7)])
     # The ends of the grid, and decades inside, are round up to rounding errors.
@@ -74,7 +71,7 @@ def fig13(parameters: dict, release: str) -> xr.Dataset:
     inside &= round_values <= ratios[-1] * (1 + 1e-12)
     near = np.abs(ratios[:, np.newaxis] / round_values[inside] - 1).min(axis=1) < 1e-12
     merged = np.sort(np.concatenate([ratios[~near], round_values[inside]]))
-    dataset = with_limits(along_frequency_ratio(n, r, amplitude, merged, release), n)
+    dataset = amplitudes(parameters, merged, release)
     return dataset.assign(labelled=("frequency_ratio", np.isin(merged, round_values)))
 
 
@@ -90,9 +87,5 @@ STAGE = {
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
-    release = snakemake.params.release
-    for name, (compute, title) in STAGE.items():
-        parameters = snakemake.params.config[name]
-        dataset = compute(parameters, release)
-        known = {**parameters, "release": release}
-        save(dataset, snakemake.output[name], title, known, snakemake.input.code)
+    settings = {"release": snakemake.params.release}
+    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)

@@ -3,18 +3,18 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball import claims
-from bouncing_ball.datasets import read, save
-from bouncing_ball.tables import comma_separated
+from bouncing_ball.claims import judge
+from bouncing_ball.datasets import printed_table, read, save
+from bouncing_ball.tables import all_claims, claims_markdown, comma_separated
 
 sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
-verdicts = claims.judge(datasets, claims.printed_table(snakemake.input.printed))
+verdicts = judge(datasets, printed_table(snakemake.input.printed))
 title = "Verdicts on the paper's claims"
 save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code)
 texts = {
-    snakemake.output.md: claims.claims_markdown(verdicts),
-    snakemake.output.csv: comma_separated(claims.all_rows(verdicts)),
+    snakemake.output.md: claims_markdown(verdicts),
+    snakemake.output.csv: comma_separated(all_claims(verdicts)),
 }
 for path, text in texts.items():
     Path(path).write_text(text, encoding="utf-8", newline="\n")

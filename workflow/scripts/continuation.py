@@ -1,6 +1,5 @@
 """Stage: branches of n-T orbits along Λ, and their bifurcations (Figs. 8, 9 and 15, Table 1)."""
 
-import csv
 import sys
 
 import numpy as np
@@ -8,12 +7,10 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import Branch, NoOrbit, bifurcations, branch
-from bouncing_ball.datasets import grid, save
+from bouncing_ball.datasets import grid, printed_table, save
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
-
-BOUNDS = ("saddle-node", "period doubling")
 
 
 def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
@@ -30,14 +27,13 @@ def padded(values: list, count: int, fill) -> list:
     return [*values, *[fill] * (count - len(values))]
 
 
-def branches(
-    parameters: dict, ratios: list[float], release: str, largest_step: float
-) -> xr.Dataset:
-    """The branches of one family on contacts of several frequency ratios.
+def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+    """The branches of one family on contacts of one or several frequency ratios.
 
     They have the quantities of the orbits, their multipliers, the special points, of which all
     branches get as many as the one with most, and the reasons of the ends.
     """
+    ratios = np.atleast_1d(parameters["frequency_ratio"])
     zeta = float(damping_ratio(parameters["restitution"]))
     families = [Family(parameters["n"], Contact(ratio, zeta, release)) for ratio in ratios]
     found = [followed(family, parameters, largest_step) for family in families]
@@ -82,16 +78,11 @@ def branches(
     )
 
 
-def domains(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
-    """One family on several contacts (Figs. 8 and 9)."""
-    return branches(parameters, parameters["frequency_ratio"], release, largest_step)
-
-
 def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     """One family on one contact, and in the restitution model."""
     n = parameters["n"]
     r = parameters["restitution"]
-    dataset = branches(parameters, [parameters["frequency_ratio"]], release, largest_step)
+    dataset = branches(parameters, release, largest_step)
     x = float(restitution.saddle_node(n, r))
     highest = np.sqrt(parameters["amplitude_max"] ** 2 - x**2)
     lift = np.linspace(-highest, highest, parameters["points"])
@@ -108,27 +99,26 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     )
 
 
-def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
+def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
     """Ranges of Λ in which the orbits are stable, computed and printed, and those of both maps of
     the restitution model. An end beyond the largest amplitude is NaN.
     """
     n = parameters["n"]
     r = parameters["restitution"]
     ratios = parameters["frequency_ratio"]
+    bounds = printed["bound"].values
     contact = Contact(np.array(ratios), damping_ratio(r), release)
-    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in BOUNDS], axis=-1)
+    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in bounds], axis=-1)
     amplitude, phase, _, angle = np.where(ends[0] <= parameters["amplitude_max"], ends, np.nan)
     duration = angle / np.array(ratios)[:, np.newaxis]
     fold = restitution.saddle_node(n, r)
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
-    unknown = [np.nan, np.nan]
     shape = ("n", "frequency_ratio", "bound")
-    return xr.Dataset(
+    dataset = xr.Dataset(
         {
             "computed": (shape, amplitude),
             "special_phase": (shape, phase),
             "special_contact_duration": (shape, duration),
-            "printed": (shape, [[printed.get((ratio, k), unknown) for ratio in ratios] for k in n]),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
                 [np.stack([fold, each], axis=-1) for each in doublings],
@@ -137,20 +127,13 @@ def table1(parameters: dict, release: str, printed: dict) -> xr.Dataset:
         {
             "frequency_ratio": ratios,
             "n": n,
-            "bound": list(BOUNDS),
+            "bound": bounds,
             "impact_map": ["exact", "holmes"],
         },
-    ).transpose("impact_map", "frequency_ratio", "n", "bound")
-
-
-def read_printed(path: str) -> dict[tuple[float, int], list[float]]:
-    """The printed ends of Table 1 by frequency ratio and n."""
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {
-        (float(row["frequency_ratio"]), int(row["n"])): [float(row[bound]) for bound in BOUNDS]
-        for row in rows
-    }
+    )
+    return dataset.assign(printed=printed.reindex_like(dataset["computed"])).transpose(
+        "impact_map", "frequency_ratio", "n", "bound"
+    )
 
 
 def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
@@ -177,10 +160,10 @@ if __name__ == "__main__":
     config = snakemake.params.config
     release = snakemake.params.release
     step = snakemake.params.largest_step
-    printed = read_printed(snakemake.input.printed)
+    printed = printed_table(snakemake.input.printed).astype(float)
     computed = {
-        "fig08": domains(config["fig08"], release, step),
-        "fig09": domains(config["fig09"], release, step),
+        "fig08": branches(config["fig08"], release, step),
+        "fig09": branches(config["fig09"], release, step),
         "fig15": fig15(config["fig15"], release, step),
         "table1": table1(config["table1"], release, printed),
         "lowest_doubling": lowest_doubling(config["lowest_doubling"], release),

@@ -5,7 +5,7 @@ import sys
 import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
-from bouncing_ball.datasets import grid, save
+from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import permanent_contact_error, threshold
 
 
@@ -47,9 +47,5 @@ STAGE = {
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
-    release = snakemake.params.release
-    for name, (compute, title) in STAGE.items():
-        parameters = snakemake.params.config[name]
-        dataset = compute(parameters, release)
-        known = {**parameters, "release": release}
-        save(dataset, snakemake.output[name], title, known, snakemake.input.code)
+    settings = {"release": snakemake.params.release}
+    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.datasets import save
+from bouncing_ball.datasets import save_stage
 
 
 def fig02(parameters: dict) -> xr.Dataset:
@@ -97,7 +97,5 @@ STAGE = {
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
-    for name, (compute, title) in STAGE.items():
-        parameters = snakemake.params.config[name]
-        dataset = compute(parameters)
-        save(dataset, snakemake.output[name], title, parameters, snakemake.input.code)
+    settings = {}
+    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)

@@ -5,7 +5,6 @@ reading is a hypothesis about the reason: another damping ratio, another release
 contact, another stability, digits that were cut off, or the formulas of the restitution model.
 """
 
-import csv
 import sys
 
 import numpy as np
@@ -14,7 +13,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import at_bifurcation, bifurcations, walk
-from bouncing_ball.datasets import save
+from bouncing_ball.datasets import printed_table, save
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio, force_release_restitution
 
@@ -23,20 +22,6 @@ RESTITUTION = 0.85
 PRINTED_DAMPING = 0.052
 """ζ as the paper rounds it in the captions of Figs. 8 to 10."""
 LAST_DIGIT = 0.001
-
-
-def read_printed(path: str) -> xr.DataArray:
-    """The printed ends of Table 1, over frequency_ratio, n and bound."""
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    ratios = list(dict.fromkeys(float(row["frequency_ratio"]) for row in rows))
-    n = list(dict.fromkeys(int(row["n"]) for row in rows))
-    values = np.array([[float(row[bound]) for bound in BOUNDS] for row in rows])
-    return xr.DataArray(
-        values.reshape(len(ratios), len(n), 2),
-        {"frequency_ratio": ratios, "n": n, "bound": list(BOUNDS)},
-        ("frequency_ratio", "n", "bound"),
-    )
 
 
 def high_bounce_doubling(family: Family, y: np.ndarray) -> np.ndarray:
@@ -273,7 +258,7 @@ def table1_readings(printed: xr.DataArray) -> xr.Dataset:
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
     save(
-        table1_readings(read_printed(snakemake.input.printed)),
+        table1_readings(printed_table(snakemake.input.printed).astype(float)),
         snakemake.output.table1_readings,
         "Table 1 under readings of what the authors may have done",
         {},

@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
-from bouncing_ball.datasets import save
+from bouncing_ball.datasets import save_stage
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
@@ -94,9 +94,5 @@ STAGE = {
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
-    release = snakemake.params.release
-    for name, (compute, title) in STAGE.items():
-        parameters = snakemake.params.config[name]
-        dataset = compute(parameters, release)
-        known = {**parameters, "release": release}
-        save(dataset, snakemake.output[name], title, known, snakemake.input.code)
+    settings = {"release": snakemake.params.release}
+    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)

@@ -1,0 +1,260 @@
+"""How a claim of the paper is judged.
+
+A claim is a printed number or a statement. A printed number is compared with the computed one:
+*reproduced* if this rounds to it, *not to the digit* if it does not but differs by at most 1 %, and
+*contradicted* beyond. A statement is turned into one condition for each way in which its words can
+be read. It is *reproduced* or *contradicted* if all of these readings agree, and *by reading* if
+they do not: then the verdict names those for which it is right and those for which it is not. It is
+*undecidable* if the text lacks what would choose among the readings, and a *definition* if it could
+not have failed. A claim is *not asked* if a dataset was computed with other parameters than the
+claim needs, and *not computed* if a dataset or a number is missing.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from bouncing_ball.datasets import Datasets, parameters
+
+LIMIT = 0.01
+"""The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
+ROUNDING = 1e-9
+"""Numbers that differ by less are equal: rounding errors of the datasets are some 1e-12."""
+
+VERDICTS = (
+    "reproduced",
+    "definition",
+    "by reading",
+    "not to the digit",
+    "contradicted",
+    "undecidable",
+    "not asked",
+    "not computed",
+)
+
+
+# Printed numbers
+
+
+class Comparison(NamedTuple):
+    """A computed number beside a printed one: the verdict, and the distance in units of the last
+    printed digit and as a share of the printed number.
+    """
+
+    verdict: str
+    units: float
+    share: float
+
+
+def against_print(found: float, printed: str) -> Comparison:
+    """The verdict on a printed number, of which the text has the digits.
+
+    A number halfway between two roundings counts as rounding to either.
+
+    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2570, 0.2580)]
+    ['reproduced', 'not to the digit', 'contradicted']
+    """
+    decimals = len(printed.partition(".")[2])
+    distance = found - float(printed)
+    units = distance * 10.0**decimals
+    share = distance / abs(float(printed))
+    if np.isnan(found):
+        verdict = "not computed"
+    elif abs(units) <= 0.5 + ROUNDING:
+        verdict = "reproduced"
+    elif abs(share) <= LIMIT + ROUNDING:
+        verdict = "not to the digit"
+    else:
+        verdict = "contradicted"
+    return Comparison(verdict, units, share)
+
+
+# Statements
+
+
+class Reading(NamedTuple):
+    """One way to read a statement: what is meant, whether it holds, the number that decides, NaN
+    if none does, and what is required of it, or the reason without a number.
+    """
+
+    name: str
+    holds: bool
+    found: float
+    required: str
+
+
+def complete(values: ArrayLike) -> NDArray:
+    """Numbers as an array; ValueError if there are none, or one of them is NaN."""
+    numbers = np.asarray(values, dtype=float)
+    missing = int(np.isnan(numbers).sum())
+    if missing or not numbers.size:
+        raise ValueError(f"{missing} of {numbers.size} numbers are missing")
+    return numbers
+
+
+def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
+    """The reading that no number is larger than a bound."""
+    largest = float(complete(values).max())
+    required = "≤ 0 but for rounding" if bound == ROUNDING else f"≤ {bound:.3g}"
+    return Reading(name, largest <= bound, largest, required)
+
+
+def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
+    """The reading that no number is smaller than a bound."""
+    smallest = float(complete(values).min())
+    return Reading(name, smallest >= bound, smallest, f"≥ {bound:.3g}")
+
+
+def above(name: str, values: ArrayLike) -> Reading:
+    """The reading that every number is positive."""
+    smallest = float(complete(values).min())
+    return Reading(name, smallest > 0, smallest, "> 0")
+
+
+def argued(name: str, holds: bool, reason: str) -> Reading:
+    """A reading that no number decides, with the reason."""
+    return Reading(name, holds, np.nan, reason)
+
+
+# Claims
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim: its name, its place in the paper, what it says in our words, and how it is decided.
+
+    `datasets` are the names of the datasets that decide it, with the parameters that it needs of
+    each. `decide` takes these datasets in their order, and returns the computed number if a number
+    is `printed`, and otherwise the readings. `missing` is what the text lacks to choose among them.
+    """
+
+    name: str
+    place: str
+    text: str
+    datasets: Mapping[str, Mapping]
+    decide: Callable[..., Any]
+    printed: str = ""
+    missing: str = ""
+    definition: bool = False
+    remark: str = ""
+
+
+def answer(claim: Claim, datasets: Datasets) -> dict:
+    """The verdict on a claim, with what belongs to it: the number found and its distance from the
+    printed one, the conditions in words, and the reason for having no other verdict.
+
+    What is missing for one claim changes no other.
+    """
+    absent = [name for name in claim.datasets if name not in datasets]
+    if absent:
+        return {"verdict": "not computed", "reason": f"there is no dataset {', '.join(absent)}"}
+    others = [
+        other_parameters(name, datasets[name], needed) for name, needed in claim.datasets.items()
+    ]
+    if any(others):
+        return {"verdict": "not asked", "reason": "; ".join(filter(None, others))}
+    try:
+        decided = claim.decide(*(datasets[name] for name in claim.datasets))
+        if claim.printed:
+            return of_number(claim, decided)
+        return of_readings(claim, decided)
+    except (KeyError, ValueError, IndexError) as error:
+        return {"verdict": "not computed", "reason": f"{type(error).__name__}: {error}"}
+
+
+def of_number(claim: Claim, computed: ArrayLike) -> dict:
+    """The verdict on a printed number."""
+    found = float(complete(computed))
+    verdict, units, share = against_print(found, claim.printed)
+    return {"verdict": verdict, "found": found, "deviation_units": units, "deviation": share}
+
+
+def of_readings(claim: Claim, readings: list[Reading]) -> dict:
+    """The verdict on a statement from its readings; the number found is that of the first."""
+    right = [reading for reading in readings if reading.holds]
+    wrong = [reading for reading in readings if not reading.holds]
+    found = {"found": readings[0].found, "condition": listed(readings)}
+    if not wrong:
+        return found | {"verdict": "definition" if claim.definition else "reproduced"}
+    if not right:
+        return found | {"verdict": "contradicted"}
+    found["condition"] = f"right for {listed(right)}; not for {listed(wrong)}"
+    if not claim.missing:
+        return found | {"verdict": "by reading"}
+    return found | {"verdict": "undecidable", "reason": f"the text lacks {claim.missing}"}
+
+
+def listed(readings: list[Reading]) -> str:
+    """Readings in words, each with its number and what is required of it."""
+    texts = []
+    for reading in readings:
+        number = "" if np.isnan(reading.found) else f"{rounded(reading.found)}, required "
+        texts.append(f"{reading.name} ({number}{reading.required})")
+    return ", ".join(texts)
+
+
+def rounded(number: float) -> str:
+    """Three digits of a number; zero if it is zero but for rounding."""
+    return f"{number:.3g}" if abs(number) > ROUNDING else "0"
+
+
+# Parameters
+
+
+def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
+    """What differs from the parameters that are needed of a dataset; empty if nothing does."""
+    given = parameters(data)
+    return "; ".join(
+        f"{name}: {key} is {given.get(key)}, and the claim needs {value}"
+        for key, value in needed.items()
+        if not agrees(given.get(key), value)
+    )
+
+
+def agrees(given, needed) -> bool:
+    """Whether a parameter is the needed one; of a range only the needed keys count."""
+    if isinstance(needed, Mapping) and isinstance(given, Mapping):
+        return all(agrees(given.get(key), value) for key, value in needed.items())
+    return given == needed
+
+
+SYMBOLS = {"n": "n", "restitution": "r", "amplitude": "Λ", "frequency_ratio": "ϖ"}
+
+
+def parameters_text(datasets: Mapping[str, Mapping]) -> str:
+    """The parameters that are needed of datasets in words."""
+    return "; ".join(
+        f"{spoken(name)}: {in_symbols(needed)}" for name, needed in datasets.items() if needed
+    )
+
+
+def spoken(name: str) -> str:
+    """The name of a figure or table in words.
+
+    >>> spoken("fig05"), spoken("table1"), spoken("lowest_doubling")
+    ('Fig. 5', 'Table 1', 'lowest doubling')
+    """
+    kind = {"fig": "Fig.", "table": "Table"}.get(name.rstrip("0123456789"))
+    return f"{kind} {int(name.lstrip('figtable'))}" if kind else name.replace("_", " ")
+
+
+def in_symbols(values: Mapping) -> str:
+    """Parameters in symbols.
+
+    >>> in_symbols({"n": [1, 2], "restitution": 0.85, "frequency_ratio": {"min": 0.5, "max": 1e4}})
+    'n = 1, 2, r = 0.85, ϖ = 0.5 to 10000'
+    """
+    texts = []
+    for key, value in values.items():
+        if key == "cases":
+            pairs = (f"({case['restitution']:g}, {case['amplitude']:g})" for case in value)
+            texts.append(f"(r, Λ) = {', '.join(pairs)}")
+        elif isinstance(value, Mapping):
+            texts.append(f"{SYMBOLS[key]} = {value['min']:g} to {value['max']:g}")
+        elif key in SYMBOLS:
+            texts.append(f"{SYMBOLS[key]} = {', '.join(f'{each:g}' for each in np.ravel(value))}")
+    return ", ".join(texts)

@@ -1,0 +1,73 @@
+"""How a claim is judged: printed numbers, and statements with their readings."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from bouncing_ball import verdicts
+
+# Printed numbers
+
+
+@pytest.mark.parametrize(
+    ("found", "printed", "verdict"),
+    [
+        (0.2545, "0.255", "reproduced"),
+        (0.2555, "0.255", "reproduced"),
+        (0.25449, "0.255", "not to the digit"),
+        (0.25551, "0.255", "not to the digit"),
+        (0.7505, "0.750", "reproduced"),
+        (0.751, "0.750", "not to the digit"),
+        (0.751, "0.75", "reproduced"),
+        (82.5, "82", "reproduced"),
+        (82.6, "82", "not to the digit"),
+        (82.82, "82", "not to the digit"),
+        (82.83, "82", "contradicted"),
+        (6.49, "6", "reproduced"),
+        (6.51, "6", "contradicted"),
+        (np.nan, "6", "not computed"),
+    ],
+)
+def test_a_number_is_reproduced_if_it_rounds_to_the_printed_one(found, printed, verdict):
+    assert verdicts.against_print(found, printed).verdict == verdict
+
+
+# Statements
+
+
+def test_readings_that_agree_decide_and_others_are_named():
+    low = verdicts.at_most("the lower", [1.0, 2.0], 2.0)
+    high = verdicts.at_most("the higher", [1.0, 2.1], 2.0)
+    claim = verdicts.Claim("name", "Fig. 1", "text", {}, lambda: [])
+    assert verdicts.of_readings(claim, [low])["verdict"] == "reproduced"
+    assert verdicts.of_readings(claim, [high, high])["verdict"] == "contradicted"
+    mixed = verdicts.of_readings(claim, [high, low])
+    assert mixed["verdict"] == "by reading"
+    assert mixed["condition"] == (
+        "right for the lower (2, required ≤ 2); not for the higher (2.1, required ≤ 2)"
+    )
+
+
+def test_what_the_text_lacks_makes_a_statement_undecidable_only_if_readings_differ():
+    claim = verdicts.Claim("name", "Fig. 1", "text", {}, lambda: [], missing="the axis")
+    low = verdicts.above("the lower", 1.0)
+    high = verdicts.above("the higher", 0.0)
+    undecidable = verdicts.of_readings(claim, [low, high])
+    assert undecidable["verdict"] == "undecidable"
+    assert undecidable["reason"] == "the text lacks the axis"
+    assert verdicts.of_readings(claim, [low, low])["verdict"] == "reproduced"
+
+
+def test_conditions_take_the_worst_number_and_refuse_a_missing_one():
+    assert verdicts.at_most("", [1.0, 3.0], 2.0)[1:3] == (False, 3.0)
+    assert verdicts.at_least("", [1.0, 3.0], 2.0)[1:3] == (False, 1.0)
+    assert verdicts.above("", [0.0, 3.0])[1:3] == (False, 0.0)
+    for condition in (
+        partial(verdicts.at_most, bound=0.0),
+        partial(verdicts.at_least, bound=0.0),
+        verdicts.above,
+    ):
+        for values in ([1.0, np.nan], []):
+            with pytest.raises(ValueError, match="missing"):
+                condition("", values)

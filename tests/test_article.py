@@ -196,7 +196,7 @@ def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
     text = article.filled_in("paper", data)
     assert f"velocity (off by up to {velocity}) and the apparent restitution coefficient" in text
     assert f"coefficient ({apparent}), both at r = 0.1" in text
-    assert f"relative to itself ({phase})" in text
+    assert f"relative to its own value ({phase})" in text
     assert f"the curve of r = 0.1 only, with {velocity} and {apparent}." in text
 
 

@@ -97,7 +97,11 @@ def test_a_changed_number_changes_its_verdict_alone(reference, judged, ratio, ve
 READINGS = {
     "safe above 100": (
         ["the greatest height", "permanent contact"],
-        ["the bouncing-off velocity", "the apparent restitution", "the phase relative to itself"],
+        [
+            "the bouncing-off velocity",
+            "the apparent restitution",
+            "the phase relative to its own value",
+        ],
     ),
     "stiff row": (
         ["the printed row and Eqs. 7 and 8", "the computed row and the map of Eq. 5"],

@@ -51,7 +51,7 @@ def test_numbers_of_readme_are_those_of_the_datasets():
         f"greatest height ({article.at_most(worst.sel(measure='max_height'), 2)} at most",
         f"velocity ({article.percent(worst.sel(measure='bounce_velocity'), 2)}), the apparent "
         f"restitution ({article.percent(worst.sel(measure='apparent_restitution'), 2)}) and the "
-        "phase of the impact relative to itself "
+        "phase of the impact relative to its own value "
         f"({article.percent(worst.sel(measure='phase'), 1)}).",
         f"Of the {sum(judged.values())} statements that we judged, {judged['reproduced']} are "
         f"*reproduced*, {judged['definition']} are *definitions*, {judged['by reading']} are right "

@@ -1020,7 +1020,7 @@ def safe_above_100(fig05, fig06, fig10, fig16, thresholds):
         at_most("the period doubling of Eq. 8", error_of_eq_8(thresholds), LIMIT),
         at_most("the bouncing-off velocity", orbits.sel(measure="bounce_velocity"), LIMIT),
         at_most("the apparent restitution", orbits.sel(measure="apparent_restitution"), LIMIT),
-        at_most("the phase relative to itself", orbits.sel(measure="phase"), LIMIT),
+        at_most("the phase relative to its own value", orbits.sel(measure="phase"), LIMIT),
     ]
 
 

@@ -145,9 +145,7 @@ VARIABLES = {
     "restitution_threshold": Variable(
         "threshold of permanent contact, restitution model", "Λ_CR", "Eq. 9"
     ),
-    "minimum_frequency_ratio": Variable(
-        "where the lowest threshold is", "1/√(1-2ζ²)", "Eq. 36"
-    ),
+    "minimum_frequency_ratio": Variable("where the lowest threshold is", "1/√(1-2ζ²)", "Eq. 36"),
     "minimum_threshold": Variable("lowest threshold of permanent contact", "2ζ√(1-ζ²)", "Eq. 36"),
     # Errors of the restitution model
     "relative_error": Variable("relative error of the restitution model", "", "Eqs. 37-38"),

@@ -6,7 +6,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
-SNAKEMAKE := $(RUN) snakemake --cores 2 --quiet host rules reason --
+SNAKEMAKE := $(RUN) snakemake --cores 2 --quiet host reason --
 PIP := $(RUN) pip install --quiet --disable-pip-version-check
 LOCKED := $(PIP) --require-hashes --only-binary :all: --no-binary connection-pool --no-build-isolation
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade

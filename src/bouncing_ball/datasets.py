@@ -187,6 +187,9 @@ VARIABLES = {
         "largest change of √(Λ_PD² - Λ_SN²) by rounding of the printed ends"
     ),
     # Three balls
+    "impact": Variable("number of the impact"),
+    "impact_time": Variable("time of the impact", "τ", "Eq. 5"),
+    "impact_bounce": Variable("velocity of the ball after the impact", "z′", "Eq. 5"),
     "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
     "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
     "stickings": Variable("number of impacts after which the ball sticks to the table"),

@@ -59,10 +59,16 @@ def checkout(path):
     return local(os.path.relpath(CHECKOUT / path))
 
 
+# The table as the paper prints it, which some scripts read: it decides what they make as code does.
+PRINTED = "config/table1_printed.csv"
+READ_PRINTED = ["continuation", "table1_readings", "claims"]
+
+
 def code(script):
-    """The files of code that decide what a script makes: itself and what it imports."""
+    """The files that decide what a script makes: itself, what it imports, the printed Table 1."""
     modules = [f"src/bouncing_ball/{module}.py" for module in ["__init__", *MODULES[script]]]
-    return [checkout(path) for path in [f"workflow/scripts/{script}.py", *modules]]
+    printed = [PRINTED] if script in READ_PRINTED else []
+    return [checkout(path) for path in [f"workflow/scripts/{script}.py", *modules, *printed]]
 
 
 def datasets(stage):
@@ -97,10 +103,15 @@ def files(name):
 
 
 def requested(wildcards):
-    """The figures and tables that the command line names together with `diff` or `accept`."""
-    targets = workflow.dag_settings.targets
-    names = [name for stage in STAGES if stage in targets for name in STAGES[stage]]
-    return sorted({*names, *(name for name in ARTIFACTS if name in targets)}) or ARTIFACTS
+    """The figures and tables that the command line names together with `diff` or `accept`.
+
+    With any other target, such as `article` or a file, everything is compared.
+    """
+    known = {name: [name] for name in ARTIFACTS} | STAGES | {"schematics": SCHEMATICS}
+    targets = set(workflow.dag_settings.targets) - {"diff", "accept"}
+    if not targets or targets - known.keys():
+        return ARTIFACTS
+    return sorted({name for target in targets for name in known[target]})
 
 
 def requested_files(wildcards):

@@ -41,7 +41,7 @@ rule compute_apparent_restitution:
 rule compute_continuation:
     """Branches of n-T orbits along the amplitude, with their bifurcations"""
     input:
-        printed=checkout("config/table1_printed.csv"),
+        printed=checkout(PRINTED),
         code=code("continuation"),
     output:
         **datasets("continuation"),
@@ -62,7 +62,7 @@ rule compute_continuation:
 rule compute_table1_readings:
     """Table 1 under hypotheses about what the authors may have computed"""
     input:
-        printed=checkout("config/table1_printed.csv"),
+        printed=checkout(PRINTED),
         code=code("table1_readings"),
     output:
         **datasets("table1_readings"),

@@ -21,7 +21,7 @@ rule claims:
     """The claims of the paper and their verdicts"""
     input:
         data=expand("results/figures/{name}.nc", name=DATASETS),
-        printed=checkout("config/table1_printed.csv"),
+        printed=checkout(PRINTED),
         code=code("claims"),
     output:
         nc="results/figures/claims.nc",

@@ -6,7 +6,7 @@ from pathlib import Path
 from bouncing_ball.article import filled_in
 from bouncing_ball.datasets import read
 
-sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 for name, path in snakemake.output.items():
     Path(path).write_text(filled_in(name, datasets), encoding="utf-8", newline="\n")

@@ -7,7 +7,7 @@ from bouncing_ball.claims import judge
 from bouncing_ball.datasets import printed_table, read, save
 from bouncing_ball.tables import all_claims, claims_markdown, comma_separated
 
-sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 verdicts = judge(datasets, printed_table(snakemake.input.printed))
 title = "Verdicts on the paper's claims"

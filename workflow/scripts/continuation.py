@@ -156,7 +156,7 @@ TITLES = {
 }
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     config = snakemake.params.config
     release = snakemake.params.release
     step = snakemake.params.largest_step

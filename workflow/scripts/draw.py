@@ -7,7 +7,7 @@ from bouncing_ball.datasets import commit, read
 from bouncing_ball.drawing import save_picture
 from bouncing_ball.figures import draw
 
-sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
 datasets = {Path(file).stem: read(file) for file in snakemake.input.get("data", [])}
 for png, svg in zip(snakemake.output.png, snakemake.output.svg, strict=True):
     name = Path(png).stem

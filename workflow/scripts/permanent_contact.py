@@ -46,6 +46,6 @@ STAGE = {
 }
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     settings = {"release": snakemake.params.release}
     save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)

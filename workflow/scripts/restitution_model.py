@@ -8,6 +8,9 @@ import xarray as xr
 from bouncing_ball import restitution
 from bouncing_ball.datasets import save_stage
 
+# Impacts of each ball that are stored.
+FIRST = 12
+
 
 def fig02(parameters: dict) -> xr.Dataset:
     """Ball and table over some periods of the stable n-T orbit."""
@@ -57,7 +60,8 @@ def fig03(parameters: dict) -> xr.Dataset:
 
 
 def three_balls(parameters: dict) -> xr.Dataset:
-    """After how many impacts the motion of each ball repeats, or how fast its neighbours separate.
+    """After how many impacts the motion of each ball repeats, or how fast its neighbours separate,
+    and its first impacts, before rounding errors have grown.
 
     All balls have the same phase and relative speed at their first impact.
     """
@@ -65,9 +69,11 @@ def three_balls(parameters: dict) -> xr.Dataset:
     amplitudes = np.array(parameters["amplitude"])
     phase = parameters["phase"]
     rows = []
+    paths = []
     for amplitude in amplitudes:
         velocity = amplitude * np.cos(phase) + r * parameters["impact_speed"]
         path = restitution.simulate(r, amplitude, phase, velocity, parameters["impacts"])
+        paths.append(path)
         impacts, periods = restitution.repetition(path)
         exponent = (np.nan, np.nan)
         if not impacts and not path.stickings:
@@ -81,8 +87,10 @@ def three_balls(parameters: dict) -> xr.Dataset:
             "stickings": ("amplitude", list(stickings)),
             "lyapunov_exponent": ("amplitude", list(exponents)),
             "lyapunov_error": ("amplitude", list(errors)),
+            "impact_time": (("amplitude", "impact"), [path.time[:FIRST] for path in paths]),
+            "impact_bounce": (("amplitude", "impact"), [path.velocity[:FIRST] for path in paths]),
         },
-        {"amplitude": amplitudes},
+        {"amplitude": amplitudes, "impact": np.arange(FIRST)},
     )
 
 
@@ -96,6 +104,6 @@ STAGE = {
 }
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     settings = {}
     save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)

@@ -256,7 +256,7 @@ def table1_readings(printed: xr.DataArray) -> xr.Dataset:
 
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     save(
         table1_readings(printed_table(snakemake.input.printed).astype(float)),
         snakemake.output.table1_readings,

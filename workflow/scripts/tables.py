@@ -6,7 +6,7 @@ from pathlib import Path
 from bouncing_ball.datasets import read
 from bouncing_ball.tables import TABLES, comma_separated, markdown
 
-sys.stderr = open(snakemake.log[0], "w")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
 files = zip(snakemake.input.data, snakemake.output.md, snakemake.output.csv, strict=True)
 for path, *outputs in files:
     rows = TABLES[Path(path).stem](read(path))

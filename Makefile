@@ -89,8 +89,10 @@ clean:
 ci:
 	.ci/run
 
-# The other packages have a Makefile of their own, in beyond/.
+# The other packages have a Makefile of their own, in beyond/ and contacts/.
 everything: all
 	$(MAKE) -C beyond setup all
+	$(MAKE) -C contacts setup
 test-everything: test
-	$(MAKE) -C beyond test test-contacts
+	$(MAKE) -C beyond test
+	$(MAKE) -C contacts test

@@ -1,5 +1,5 @@
 """One site for all packages: READMEs, docs, articles, tables and docstrings, as they are in the
-repository. Of the replication it has the pages alone, whichever there are.
+repository. Of the replication and of contacts it has the pages alone, whichever there are.
 
 The repository is Sphinx's source folder, so that relative links and pictures are those of the
 files. Nothing is loaded from the network, neither when the site is built nor when it is read:
@@ -18,10 +18,7 @@ import bouncing_ball_beyond
 
 ROOT = Path(__file__).parents[2]
 EXPLORER = "beyond/figures/explorer.html"
-PACKAGES = {
-    "bouncing_ball_beyond": "beyond/src",
-    "bouncing_ball_contacts": "contacts/src",
-}
+PACKAGES = {"bouncing_ball_beyond": "beyond/src"}
 
 project = "Bouncing ball"
 author = "The bouncing-ball maintainers"
@@ -38,7 +35,6 @@ include_patterns = [
     "beyond/figures/*.md",
     "contacts/*.md",
     "contacts/docs/*.md",
-    "contacts/docs/data/*.md",
     "beyond/results/api/**.rst",
 ]
 exclude_patterns = [
@@ -95,6 +91,7 @@ PARTS = {
         "beyond/docs/inherited/python",
         "beyond/docs/inherited/gallery",
         "beyond/docs/inherited/lesson",
+        "beyond/docs/inherited/contacts",
         "beyond/docs/inherited/closed-form",
     ],
     "Contacts with units": [
@@ -104,8 +101,6 @@ PARTS = {
         "contacts/docs/bounces",
         "contacts/docs/measured",
         "contacts/docs/python",
-        "contacts/docs/gallery",
-        "contacts/docs/data/*",
     ],
     "Code": [
         *("CONTRIBUTING", "CHANGELOG"),

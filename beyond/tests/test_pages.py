@@ -11,6 +11,7 @@ from page_checks import every_module_exists, its_examples_run, lost_references
 import bouncing_ball_beyond
 from bouncing_ball_beyond.cli.commands import COMMANDS
 from bouncing_ball_beyond.inherited.cli.commands import COMMANDS as INHERITED
+from bouncing_ball_beyond.inherited.contacts.cli.commands import COMMANDS as OF_CONTACTS
 
 HOUSE = Path(__file__).resolve().parents[1]
 DOCS = sorted((HOUSE / "docs").rglob("*.md"))
@@ -45,7 +46,7 @@ def test_every_module_that_a_page_names_exists(page):
 @every_page
 def test_every_command_that_a_page_shows_is_one(page):
     shown = re.findall(r"bouncing-ball ([a-z][\w-]*)", page.read_text(encoding="utf-8"))
-    assert {*shown} <= {*COMMANDS, *INHERITED}
+    assert {*shown} <= {*COMMANDS, *INHERITED, *OF_CONTACTS}
 
 
 # The first part of the lesson draws pictures, and has a test of them.

@@ -198,8 +198,8 @@ COMMANDS = {
 """The subcommands of this house by name."""
 
 _GROUP = "bouncing_ball_beyond.commands"
-# The subcommands of the package of contacts.
-_OF_CONTACTS = ("design", "fit")
+# The subcommands that moved to the package of contacts, which has a command of its own.
+_OF_CONTACTS = ("fit",)
 
 
 def commands() -> dict[str, Command]:
@@ -211,17 +211,18 @@ def commands() -> dict[str, Command]:
 
 
 def how_to_install(command: str) -> str:
-    """A sentence for a subcommand of contacts if these are not installed; empty for an unknown one.
+    """A sentence for a subcommand that moved to contacts; empty for another one.
 
     Examples
     --------
-    >>> how_to_install("design")
-    'design is a command of contacts: pip install ./beyond ./contacts, or make everything'
+    >>> how_to_install("fit")
+    'fit is a command of contacts: make -C contacts setup, then contacts/.venv/bin/bounce fit'
     >>> how_to_install("orbits")
     ''
     """
     if command not in _OF_CONTACTS:
         return ""
     return (
-        f"{command} is a command of contacts: pip install ./beyond ./contacts, or make everything"
+        f"{command} is a command of contacts: make -C contacts setup, then "
+        f"contacts/.venv/bin/bounce {command}"
     )

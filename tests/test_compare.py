@@ -1,11 +1,15 @@
 """What the comparison must call different, what it must not, and what it says of the cause."""
 
+import io
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import matplotlib
 import netCDF4
@@ -259,7 +263,7 @@ DATASET_LIES = {
     ),
     "fewer points": (
         lambda data: data.isel(frequency_ratio=slice(30)),
-        "max_height has dimensions {'frequency_ratio': 30}, in the reference",
+        "frequency_ratio: without 10.0; the other 30 agree",
     ),
 }
 
@@ -329,8 +333,27 @@ def test_a_changed_parameter_is_the_cause(record):
     assert (
         record.report("fig14")
         .lines[0]
-        .endswith("; changed parameter: frequency_ratio.max 10.0 -> 20.0")
+        .endswith(
+            "; changed parameter: frequency_ratio.max 10.0 -> 20.0"
+            "; changes of the code are unknown without git"
+        )
     )
+
+
+def test_only_a_changed_parameter_is_a_difference(record):
+    record.edit(lambda data: data.assign_attrs(parameters="{}"))
+    assert "fig14: its parameters changed, and its values did not" in record.lines("fig14")
+
+
+def test_results_without_a_reference_may_be_stale(record):
+    (record.reference / "figures" / "fig14.nc").unlink()
+    (record.reference / "study.py").write_text("# edited\n")
+    assert "fig14: stale: it was made by other code than today's" in record.lines("fig14")
+
+
+def test_a_name_that_is_not_compared_is_refused(record):
+    with pytest.raises(ValueError, match=r"^fig17: no file of that name .* are claims, fig14, p"):
+        record.report("fig17", "fig14")
 
 
 def test_results_that_are_the_reference_are_refused(record):
@@ -563,9 +586,9 @@ def the_cause(record):
 
 def test_without_git_causes_are_unknown(record, monkeypatch):
     record.edit(scaled("error_threshold", 2, ()))
-    assert the_cause(record) == "causes are unknown without git"
+    assert the_cause(record) == "changes of the code are unknown without git"
     monkeypatch.setenv("PATH", "")
-    assert the_cause(record) == "causes are unknown without git"
+    assert the_cause(record) == "changes of the code are unknown without git"
 
 
 def test_causes_are_files_of_the_rule_that_git_knows_to_have_changed(committed):
@@ -582,6 +605,43 @@ def test_causes_are_files_of_the_rule_that_git_knows_to_have_changed(committed):
     assert the_cause(committed) == "changed: study.py (on this branch)"
     (folder / "study.py").write_text("# four\n")
     assert the_cause(committed) == "changed: study.py (not committed)"
+
+
+def test_a_changed_file_does_not_hide_behind_a_changed_parameter(committed):
+    changed = json.dumps(PARAMETERS | {"restitution": 0.7})
+    committed.edit(lambda data: data.assign_attrs(parameters=changed))
+    (committed.reference / "study.py").write_text("# two\n")
+    assert the_cause(committed) == (
+        "changed parameter: restitution 0.65 -> 0.7; changed: study.py (not committed)"
+    )
+
+
+def test_the_first_line_is_about_the_most_exceeded_tolerance_and_names_the_file(committed):
+    (committed.reference / "study.py").write_text("# two\n")
+    committed.edit(scaled("max_height", 10))
+    lines = [finding.line for finding in committed.report("fig14").findings]
+    numbers = [line for line in lines if "exceeded" in line]
+    assert numbers[0].startswith("fig14: max_height is ")
+    assert numbers[0].endswith("; changed: study.py (not committed)")
+    assert numbers[1].startswith("fig14: error_threshold is ") and "study.py" not in numbers[1]
+
+
+def test_code_that_cannot_draw_the_reference_is_named(drawn, monkeypatch):
+    git(drawn.reference, "init", "-q", "-b", "main")
+    code = drawn.reference / "draw.py"
+    git(drawn.reference, "add", ".")
+    git(drawn.reference, "commit", "-q", "-m", "code")
+    code.write_text("# two\n")
+
+    def failing(data, folder):
+        raise KeyError("heights")
+
+    changed = compare.Product(PICTURE.files, ("fig14",), failing, (code,))
+    monkeypatch.setattr(compare, "PRODUCTS", [changed])
+    assert drawn.report().lines[0] == (
+        "fig14: today's code cannot make it of the dataset in the reference: KeyError('heights'); "
+        "changed: draw.py (not committed)"
+    )
 
 
 def test_a_changed_text_is_blamed_for_the_text_only(committed, monkeypatch):
@@ -643,6 +703,69 @@ def test_accepted_results_are_the_reference(clean):
     assert accepted(clean) == ["figures/fig14.nc", "paper.md"]
     assert clean.lines() == ""
     assert accepted(clean) == []
+
+
+def test_a_stale_dataset_that_the_reference_lacks_is_not_accepted(clean):
+    path = clean.reference / "figures" / "fig14.nc"
+    path.unlink()
+    git(clean.reference, "commit", "-q", "-a", "-m", "without")
+    clean.artifacts["fig14"] |= {"parameters": PARAMETERS | {"restitution": 0.7}}
+    with pytest.raises(ValueError, match="fig14: stale: the configuration"):
+        accepted(clean)
+    assert not path.exists()
+
+
+@pytest.fixture
+def run(clean, monkeypatch):
+    """Run a script as Snakemake does; returns its exit status, what it prints and its log."""
+    monkeypatch.chdir(clean.results.parent)
+    scripts = Path(__file__).parents[1] / "workflow" / "scripts"
+    log = Path("log")
+
+    def script(name, *names):
+        params = SimpleNamespace(
+            reference=clean.reference, artifacts=clean.artifacts, names=list(names)
+        )
+        log.unlink(missing_ok=True)
+        monkeypatch.setattr(sys, "path", [*sys.path])
+        monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(io.BytesIO(), "utf-8"))
+        status = 0
+        try:
+            given = {"snakemake": SimpleNamespace(params=params, log=[str(log)])}
+            runpy.run_path(str(scripts / f"{name}.py"), given, "__main__")
+        except SystemExit as end:
+            status = end.code
+        sys.stdout.seek(0)
+        return status, sys.stdout.read(), log.read_text("utf-8") if log.exists() else ""
+
+    return script
+
+
+def test_the_log_has_the_verdict_and_then_the_first_lines(run):
+    status, printed, log = run("compare")
+    assert status == 1
+    verdict, first = log.splitlines()
+    assert verdict.startswith("Differences: 1, in fig14.")
+    assert first.startswith("fig14: error_threshold is ")
+    assert printed.startswith(first)
+
+
+def test_accept_says_whether_it_wrote_something(run):
+    assert run("accept")[:2] == (
+        0,
+        "figures/fig14.nc\npaper.md\n2 files of the reference were written.\n",
+    )
+    assert run("accept")[:2] == (
+        0,
+        "Nothing was written, because the reference has these results already.\n",
+    )
+
+
+@pytest.mark.parametrize("script", ["compare", "accept"])
+def test_a_refused_name_is_the_message_and_the_log_and_nothing_else(run, script):
+    status, printed, log = run(script, "fig17")
+    assert status == log and printed == ""
+    assert log == "fig17: no file of that name is compared; allowed are claims, fig14, paper"
 
 
 def test_nothing_is_accepted_that_does_not_follow_from_committed_code(clean):

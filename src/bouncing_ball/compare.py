@@ -162,11 +162,11 @@ def cause(files: Collection[str | Path], commit: str) -> str:
     is none of these, what changed since `commit`, that of the reference.
     """
     if not files:
-        return "causes are unknown"
+        return "changes of the code are unknown"
     paths = [str(Path(file).resolve()) for file in files]
     folder = Path(paths[0]).parent
     if git(folder, "rev-parse", "HEAD") is None:
-        return "causes are unknown without git"
+        return "changes of the code are unknown without git"
     edited = changed_files(folder, paths, "HEAD") or []
     created = git(folder, "ls-files", "--others", "--full-name", "--", *paths) or ""
     uncommitted = sorted({*edited, *created.splitlines()})
@@ -179,7 +179,7 @@ def cause(files: Collection[str | Path], commit: str) -> str:
         return f"changed: {', '.join(changed)}"
     since = changed_files(folder, paths, commit[:40], "HEAD")
     if since is None:
-        return "causes are unknown: git does not know the commit of the reference"
+        return "changes of the code are unknown: git does not know the commit of the reference"
     if since:
         return f"also changed since the reference was made: {', '.join(since)}"
     return "no file that it is made from has changed"
@@ -253,8 +253,9 @@ def compare(
 
     `artifacts` has for each dataset the "parameters" of the configuration and the files of "code"
     that compute it; "settings" are parameters that count where a result records them. Without
-    parameters and code it is unknown whether a result is stale, and why it differs. Raises
-    ValueError if the results are the reference itself.
+    parameters and code it is unknown whether a result is stale, and why it differs. The cause of
+    differences is stated once for each artifact. Raises ValueError if the results are the reference
+    itself, or for a name that is not compared.
     """
     compared, products = chosen(names)
     files = [f"figures/{name}.nc" for name in compared]
@@ -269,16 +270,20 @@ def compare(
     whole = len(products) == len(PRODUCTS)
     findings = [*file_findings(new, files, whole), *file_findings(old, files, whole)]
     for name in compared:
-        if name in new.data and name in old.data:
+        if name in new.data:
             artifact = artifacts.get(name, {})
-            findings += dataset_findings(name, new.data[name], old.data[name], artifact)
+            findings += dataset_findings(name, new.data[name], old.data.get(name), artifact)
     with tempfile.TemporaryDirectory() as scratch:
         for side in (new, old):
             (Path(scratch) / side.name / "figures").mkdir(parents=True)
         for product in products:
             findings += product_findings(product, new, old, Path(scratch))
-    kinds = list(KINDS)
-    findings.sort(key=lambda each: (kinds.index(each.kind), each.order, each.artifact))
+    findings.sort(key=lambda each: each.rank)
+    stated = {(each.artifact, each.cause): each for each in reversed(findings)}
+    findings = [
+        each if stated[each.artifact, each.cause] is each else replace(each, cause="")
+        for each in findings
+    ]
     red = {finding.artifact for finding in findings}
     return Report(
         findings,
@@ -295,7 +300,15 @@ def compare(
 
 
 def chosen(names: Collection[str]) -> tuple[list[str], list[Product]]:
-    """The datasets and products to compare: those named, and those that need no other datasets."""
+    """The datasets and products to compare: those named, and those that need no other datasets.
+
+    Raises ValueError for a name that is not compared, so that nothing is not taken for agreement.
+    """
+    known = {*ALL, *(product.artifact for product in PRODUCTS)}
+    unknown = sorted(set(names) - known)
+    if unknown:
+        allowed = f"allowed are {', '.join(sorted(known))}"
+        raise ValueError(f"{', '.join(unknown)}: no file of that name is compared; {allowed}")
     if not names:
         return list(ALL), PRODUCTS
     products = [
@@ -353,21 +366,22 @@ def file_findings(side: Side, files: Collection[str], whole: bool) -> Iterator[F
 
 
 def dataset_findings(
-    name: str, new: xr.Dataset, old: xr.Dataset, artifact: Mapping
+    name: str, new: xr.Dataset, old: xr.Dataset | None, artifact: Mapping
 ) -> Iterator[Finding]:
-    """Whether a dataset is stale, and where it differs from the reference, with the cause."""
+    """Whether a dataset is stale, and where it differs from the reference, with the causes."""
     for words in staleness(new, artifact):
         yield Finding("stale", words, artifact=name, of_results=True)
+    if old is None:
+        return
     try:
-        differences = list(dataset_differences(new, old))
+        differences = dataset_differences(new, old)
     except (KeyError, TypeError, ValueError) as error:
         differences = [Finding("file", f"the datasets cannot be compared: {error!r}")]
     if differences:
-        changed = "; ".join(changes(record(old, "parameters"), record(new, "parameters")))
-        commit = str(old.attrs.get("commit"))
-        why = (
-            f"changed parameter: {changed}" if changed else cause(artifact.get("code", ()), commit)
-        )
+        changed = changes(record(old, "parameters"), record(new, "parameters"))
+        causes = [f"changed parameter: {'; '.join(changed)}"] if changed else []
+        causes.append(cause(artifact.get("code", ()), str(old.attrs.get("commit"))))
+        why = "; ".join(causes)
         yield from (replace(each, artifact=name, cause=why) for each in differences)
 
 
@@ -402,7 +416,9 @@ def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> I
                 product.make(side.data, made)
             except Exception as error:  # Whatever a drawing does not find in an older dataset.
                 words = f"today's code cannot make it of the dataset in the {side.name}: {error!r}"
-                yield Finding("file", words, artifact=product.artifact, of_results=side is new)
+                why = "" if side is new else cause(product.code, commit)
+                failed = Finding("file", words, artifact=product.artifact, cause=why)
+                yield replace(failed, of_results=side is new)
                 return
         loosely = bool(side.other_matplotlib(product.needs))
         for file in product.files:
@@ -502,7 +518,7 @@ def stage(red: Collection[str], new: Side, old: Datasets, folder: Path, commit: 
     for name in red:
         if name in new.data and (
             name not in old
-            or any(dataset_differences(new.data[name], old[name]))
+            or dataset_differences(new.data[name], old[name])
             # Its pictures are drawn anew, by the matplotlib of today.
             or record(old[name], "versions").get("matplotlib") != matplotlib.__version__
         ):
@@ -522,9 +538,9 @@ def fitting_claims(new: Side, old: Datasets, folder: Path, commit: str) -> xr.Da
     path = folder / "figures" / "claims.nc"
     judged = datasets.read(path)
     path.unlink()
-    if "claims" in old and not any(dataset_differences(judged, old["claims"])):
+    if "claims" in old and not dataset_differences(judged, old["claims"]):
         return old["claims"]
-    if "claims" in new.data and not any(dataset_differences(judged, new.data["claims"])):
+    if "claims" in new.data and not dataset_differences(judged, new.data["claims"]):
         return stamped(new.folder, folder, "claims", commit)
     raise ValueError("nothing is accepted: it changes the claims; make and accept all results")
 

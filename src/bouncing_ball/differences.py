@@ -2,8 +2,8 @@
 
 Datasets are compared by names, dimensions, types, attributes, texts and places of NaN exactly, and
 by numbers within the tolerance that the reference declares beside the variable (`datasets` says
-what it means). Texts are compared exactly, SVG byte for byte but for its description, PNG pixel for
-pixel.
+what it means). If a curve or a claim was added or removed, the others are compared. Texts are
+compared exactly, SVG byte for byte but for its description, PNG pixel for pixel.
 
 Another version of matplotlib places texts, and with them everything else, a little differently.
 Then SVG files are compared by what they draw: strokes, fills, words and curves. PNG files are not
@@ -64,6 +64,11 @@ class Finding:
         """The finding in a sentence."""
         return f"{self.artifact}: {self.text}{'; ' if self.cause else ''}{self.cause}"
 
+    @property
+    def rank(self) -> tuple:
+        """The place among other findings: the most telling is the smallest."""
+        return list(KINDS).index(self.kind), self.order, self.artifact
+
 
 # Datasets
 
@@ -74,8 +79,54 @@ STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value",
 """How a file packs a variable; other encodings, such as compression, do not change values."""
 
 
-def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
+def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     """Differences of a dataset from the reference `old`, whose tolerances apply."""
+    labels, *shared = at_shared_labels(new, old)
+    found = [*variables_differences(*shared)]
+    if labels:
+        rest = "were compared" if found else "agree"
+        text = "; ".join(f"{each} {rest}" for each in labels)
+        found.append(Finding("content", text, (-1.0,)))
+    if not found and record(old, "parameters") != record(new, "parameters"):
+        found.append(Finding("content", "its parameters changed, and its values did not"))
+    return found
+
+
+def at_shared_labels(new: xr.Dataset, old: xr.Dataset) -> tuple[list[str], xr.Dataset, xr.Dataset]:
+    """Both datasets where they have the same labels, and what only one has along each dimension.
+
+    Labels are the values of a coordinate along its own dimension. Numbers, which another processor
+    may round otherwise, are taken as labels only if there are more or fewer of them.
+    """
+    found = []
+    for dim in [str(dim) for dim in old.indexes if dim in new.indexes]:
+        labels = new.indexes[dim], old.indexes[dim]
+        common = labels[0].isin(labels[1]), labels[1].isin(labels[0])
+        rounded = labels[1].dtype.kind == "f" and len(labels[0]) == len(labels[1])
+        gained = gained_and_lost(labels[0].tolist(), labels[1].tolist())
+        if gained and common[1].any() and not rounded:
+            new = new.isel({dim: common[0]})
+            old = old.isel({dim: common[1]})
+            found.append(f"{dim}: {gained}; the other {np.count_nonzero(common[1])}")
+    return found, new, old
+
+
+def gained_and_lost(new: list, old: list) -> str:
+    """What is in one of two lists only, as "new 'a', without 'b', 'c'"; of many the first three."""
+    sides = {
+        "new": [each for each in new if each not in old],
+        "without": [each for each in old if each not in new],
+    }
+    return ", ".join(
+        f"{word} {', '.join(map(repr, some[:3]))}"
+        + (f" and {len(some) - 3} more" if len(some) > 3 else "")
+        for word, some in sides.items()
+        if some
+    )
+
+
+def variables_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
+    """Differences in the names of variables, in each of them, and in attributes of the dataset."""
     added = [str(name) for name in new.variables if name not in old.variables]
     for name in old.variables:
         if name in new.variables:
@@ -86,8 +137,6 @@ def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
             yield Finding("content", f"{name} is missing{renamed}")
     for name in added:
         yield Finding("content", f"{name} is not in the reference")
-    for change in changes(record(old, "parameters"), record(new, "parameters")):
-        yield Finding("content", f"parameter {change}", (1.0,))
     judged = [
         {key: value for key, value in data.attrs.items() if key not in (*PROVENANCE, "parameters")}
         for data in (new, old)
@@ -154,7 +203,7 @@ def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[F
     if count > 1:
         text += f", and {count - 1} more of {y.size} values"
     kind = "verdict" if name == "verdict" else "number" if numbers else "content"
-    yield Finding(kind, text, (y.size, -multiple[worst]))
+    yield Finding(kind, text, (-multiple[worst],))
 
 
 def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
@@ -203,14 +252,17 @@ def record(data: xr.Dataset, key: str) -> dict:
 
 
 def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
-    """Changed parameters, as "frequency_ratio.max 1000.0 -> 500.0"."""
+    """Changed parameters, as "frequency_ratio.max 1000.0 -> 500.0" or "amplitude: new 1.2"."""
     found = []
     for key in sorted({*old, *new}):
         values = old.get(key, "absent"), new.get(key, "absent")
         if all(isinstance(value, Mapping) for value in values):
             found += changes(*values, f"{above}{key}.")
         elif values[0] != values[1]:
-            found.append(f"{above}{key} {values[0]} -> {values[1]}")
+            lists = all(isinstance(value, list) for value in values)
+            gained = gained_and_lost(values[1], values[0]) if lists else ""
+            words = f": {gained}" if gained else f" {values[0]} -> {values[1]}"
+            found.append(f"{above}{key}{words}")
     return found
 
 
@@ -238,10 +290,10 @@ def file_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
     try:
         if path.suffix == ".nc":
             found = dataset_differences(datasets.read(made), datasets.read(path))
-            named = (
+            named = [
                 replace(each, text=each.text.replace("the reference", "the file")) for each in found
-            )
-            return next(named, None)
+            ]
+            return min(named, key=lambda each: each.rank, default=None)
         if path.suffix == ".png":
             return None if loosely else png_difference(made, path)
         return text_difference(made, path, loosely)

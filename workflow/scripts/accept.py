@@ -1,6 +1,7 @@
 """Make results the reference: those of the figures and tables named, or all that differ."""
 
 import sys
+from pathlib import Path
 
 from bouncing_ball import compare
 
@@ -8,5 +9,8 @@ options = snakemake.params
 try:
     files = compare.accept("results", options.reference, options.artifacts, options.names)
 except ValueError as error:
+    Path(snakemake.log[0]).write_text(str(error), encoding="utf-8")
     sys.exit(str(error))
-print("\n".join([*files, f"{len(files)} files of the reference were written."]))
+none = ["Nothing was written, because the reference has these results already."]
+written = [*files, f"{len(files)} files of the reference were written."]
+print("\n".join(written if files else none))

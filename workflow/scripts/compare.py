@@ -52,11 +52,15 @@ if __name__ == "__main__":
         if "snakemake" in globals():
             given = snakemake.params
             report = main("results", given.reference, given.artifacts, given.names)
-            Path(snakemake.log[0]).write_text(report.lines[-1], encoding="utf-8")
+            # Snakemake shows the log of a failed job last.
+            *told, verdict = report.lines
+            Path(snakemake.log[0]).write_text("\n".join([verdict, *told]), encoding="utf-8")
         elif len(sys.argv) in (2, 3):
             report = main(sys.argv[1], [*sys.argv, str(CHECKOUT)][2], configured(), [])
         else:
             sys.exit("usage: python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]")
     except ValueError as error:
+        if "snakemake" in globals():
+            Path(snakemake.log[0]).write_text(str(error), encoding="utf-8")
         sys.exit(str(error))
     sys.exit(1 if report.findings else 0)

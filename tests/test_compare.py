@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 
 import matplotlib
 import netCDF4
@@ -722,17 +722,22 @@ def run(clean, monkeypatch):
     scripts = Path(__file__).parents[1] / "workflow" / "scripts"
     log = Path("log")
 
-    def script(name, *names):
+    def script(name, *names, given=MappingProxyType({"release": "displacement"})):
         params = SimpleNamespace(
-            reference=clean.reference, artifacts=clean.artifacts, names=list(names)
+            results=clean.results,
+            reference=clean.reference,
+            artifacts=clean.artifacts,
+            names=list(names),
+            config=given,
+            accepted={"release": "displacement"},
         )
         log.unlink(missing_ok=True)
         monkeypatch.setattr(sys, "path", [*sys.path])
         monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(io.BytesIO(), "utf-8"))
         status = 0
         try:
-            given = {"snakemake": SimpleNamespace(params=params, log=[str(log)])}
-            runpy.run_path(str(scripts / f"{name}.py"), given, "__main__")
+            names = {"snakemake": SimpleNamespace(params=params, log=[str(log)])}
+            runpy.run_path(str(scripts / f"{name}.py"), names, "__main__")
         except SystemExit as end:
             status = end.code
         sys.stdout.seek(0)
@@ -766,6 +771,30 @@ def test_a_refused_name_is_the_message_and_the_log_and_nothing_else(run, script)
     status, printed, log = run(script, "fig17")
     assert status == log and printed == ""
     assert log == "fig17: no file of that name is compared; allowed are claims, fig14, paper"
+
+
+def test_results_of_another_configuration_are_not_accepted(run):
+    status, printed, log = run("accept", given={"release": "force"})
+    assert status == log == "config/config.yaml has another release than this run"
+    assert printed == ""
+
+
+def test_a_reference_that_was_edited_is_named(committed):
+    file = committed.reference / "figures" / "fig14.nc"
+    data = xr.load_dataset(file)
+    data["max_height"] = data["max_height"] * 2
+    data.to_netcdf(file)
+    assert the_cause(committed) == "changed: figures/fig14.nc (not committed)"
+
+
+def test_other_claims_follow_from_other_numbers():
+    number = differences.Finding("number", "a number", artifact="fig14", cause="changed: orbits.py")
+    verdict = differences.Finding("verdict", "a verdict", artifact="claims", cause="old")
+    assert [each.cause for each in compare.derived([verdict, number])] == [
+        "follows from fig14: changed: orbits.py",
+        "changed: orbits.py",
+    ]
+    assert [*compare.derived([verdict])] == [verdict]
 
 
 def test_nothing_is_accepted_that_does_not_follow_from_committed_code(clean):

@@ -90,13 +90,16 @@ WRITING: Code = (
 
 
 def picture(name: str) -> Product:
-    """A figure, drawn from its dataset, if it has one, as PNG and as SVG."""
+    """A figure, drawn from its dataset, if it has one, as SVG and as PNG.
+
+    The SVG comes first, because a difference of its lines tells more than one of pixels.
+    """
     needs = () if name in figures.SCHEMATICS else (name,)
-    files = (f"figures/{name}.png", f"figures/{name}.svg")
+    files = (f"figures/{name}.svg", f"figures/{name}.png")
 
     def make(data: Datasets, folder: Path) -> None:
         figure = figures.draw(name, *(data[need] for need in needs))
-        png, svg = (folder / file for file in files)
+        svg, png = (folder / file for file in files)
         drawing.save_picture(figure, png, svg, datasets.commit())
 
     return Product(files, needs, make, DRAWING)
@@ -155,16 +158,18 @@ PRODUCTS = [
 # Causes
 
 
-def cause(files: Collection[str | Path], commit: str) -> str:
+def cause(files: Collection[str | Path], commit: str, reference: Path) -> str:
     """The changed files, as far as git knows, among those that a result is made from.
 
-    First what is not committed, then what this branch changed against the main one; only if there
-    is none of these, what changed since `commit`, that of the reference.
+    First what is not committed, then what this branch changed against the main one, in the code and
+    in the file of the reference itself; only if there is none of these, what changed in the code
+    since `commit`, that of the reference.
     """
     if not files:
         return "changes of the code are unknown"
-    paths = [str(Path(file).resolve()) for file in files]
-    folder = Path(paths[0]).parent
+    code = [str(Path(file).resolve()) for file in files]
+    paths = [*code, str(reference.resolve())]
+    folder = Path(code[0]).parent
     if git(folder, "rev-parse", "HEAD") is None:
         return "changes of the code are unknown without git"
     edited = changed_files(folder, paths, "HEAD") or []
@@ -177,7 +182,7 @@ def cause(files: Collection[str | Path], commit: str) -> str:
     changed += [f"{name} (on this branch)" for name in branch or [] if name not in uncommitted]
     if changed:
         return f"changed: {', '.join(changed)}"
-    since = changed_files(folder, paths, commit[:40], "HEAD")
+    since = changed_files(folder, code, commit[:40], "HEAD")
     if since is None:
         return "changes of the code are unknown: git does not know the commit of the reference"
     if since:
@@ -273,6 +278,7 @@ def compare(
         if name in new.data:
             artifact = artifacts.get(name, {})
             findings += dataset_findings(name, new.data[name], old.data.get(name), artifact)
+    findings = [*derived(findings)]
     with tempfile.TemporaryDirectory() as scratch:
         for side in (new, old):
             (Path(scratch) / side.name / "figures").mkdir(parents=True)
@@ -297,6 +303,17 @@ def compare(
         notes(new, old, artifacts),
         len(files),
     )
+
+
+def derived(findings: list[Finding]) -> Iterator[Finding]:
+    """The findings of datasets, where other claims follow from other numbers if there are any."""
+    reasons = {each.artifact: each.cause for each in findings if each.artifact in STUDIES}
+    for each in findings:
+        if each.artifact == "claims" and each.cause and reasons:
+            first, why = next(iter(reasons.items()))
+            yield replace(each, cause=f"follows from {first}: {why}" if why else each.cause)
+        else:
+            yield each
 
 
 def chosen(names: Collection[str]) -> tuple[list[str], list[Product]]:
@@ -380,7 +397,8 @@ def dataset_findings(
     if differences:
         changed = changes(record(old, "parameters"), record(new, "parameters"))
         causes = [f"changed parameter: {'; '.join(changed)}"] if changed else []
-        causes.append(cause(artifact.get("code", ()), str(old.attrs.get("commit"))))
+        reference = Path(old.encoding["source"])
+        causes.append(cause(artifact.get("code", ()), str(old.attrs.get("commit")), reference))
         why = "; ".join(causes)
         yield from (replace(each, artifact=name, cause=why) for each in differences)
 
@@ -397,7 +415,7 @@ def staleness(new: xr.Dataset, artifact: Mapping) -> Iterator[str]:
         if changed:
             yield f"stale: the configuration is another than it was made with: {'; '.join(changed)}"
     if "code" in artifact and new.attrs.get("code") != datasets.digest(artifact["code"]):
-        yield "stale: it was made by other code than today's"
+        yield "stale: it was made by other code than today's; remove it, and run again"
 
 
 def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> Iterator[Finding]:
@@ -416,7 +434,7 @@ def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> I
                 product.make(side.data, made)
             except Exception as error:  # Whatever a drawing does not find in an older dataset.
                 words = f"today's code cannot make it of the dataset in the {side.name}: {error!r}"
-                why = "" if side is new else cause(product.code, commit)
+                why = "" if side is new else cause(product.code, commit, side.folder)
                 failed = Finding("file", words, artifact=product.artifact, cause=why)
                 yield replace(failed, of_results=side is new)
                 return
@@ -428,7 +446,7 @@ def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> I
                 what = f"today's code makes another {file} of the reference"
                 if side is new:
                     what = f"{file} in the results is not what its dataset gives"
-                why = "" if side is new else cause(product.code, commit)
+                why = "" if side is new else cause(product.code, commit, path)
                 words = f"{what}: {difference.text}"
                 named = replace(difference, artifact=product.artifact, text=words)
                 yield replace(named, cause=why, of_results=side is new)

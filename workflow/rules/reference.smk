@@ -2,6 +2,11 @@
 # `accept` writes to them. Both rules have no outputs, so that they run whenever they are named.
 
 
+def results_folder(wildcards):
+    """The folder of the results, below a prefix if this workflow is a module with one."""
+    return os.path.dirname(rules.article.output.paper)
+
+
 rule diff:
     """Compares the results with the reference: results/diff/index.html"""
     localrule: True
@@ -11,6 +16,7 @@ rule diff:
     params:
         names=requested,
         artifacts={name: description(name) for name in ARTIFACTS},
+        results=results_folder,
         reference=checkout("."),
     log:
         "results/logs/diff.log",
@@ -29,7 +35,11 @@ rule accept:
     params:
         names=requested,
         artifacts={name: description(name) for name in ARTIFACTS},
+        results=results_folder,
         reference=checkout("."),
+        # The reference is that of the configuration in git.
+        config=config,
+        accepted=yaml.safe_load((CHECKOUT / "config/config.yaml").read_text("utf-8")),
     log:
         "results/logs/accept.log",
     conda:

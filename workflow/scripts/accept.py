@@ -6,8 +6,13 @@ from pathlib import Path
 from bouncing_ball import compare
 
 options = snakemake.params
+given = options.config
+accepted = options.accepted
+changed = [key for key in {**given, **accepted} if given.get(key) != accepted.get(key)]
 try:
-    files = compare.accept("results", options.reference, options.artifacts, options.names)
+    if changed:
+        raise ValueError(f"config/config.yaml has another {', '.join(changed)} than this run")
+    files = compare.accept(options.results, options.reference, options.artifacts, options.names)
 except ValueError as error:
     Path(snakemake.log[0]).write_text(str(error), encoding="utf-8")
     sys.exit(str(error))

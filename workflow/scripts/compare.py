@@ -51,10 +51,12 @@ if __name__ == "__main__":
     try:
         if "snakemake" in globals():
             given = snakemake.params
-            report = main("results", given.reference, given.artifacts, given.names)
+            report = main(given.results, given.reference, given.artifacts, given.names)
             # Snakemake shows the log of a failed job last.
             *told, verdict = report.lines
             Path(snakemake.log[0]).write_text("\n".join([verdict, *told]), encoding="utf-8")
+        elif len(sys.argv) in (2, 3) and not Path(sys.argv[1]).is_dir():
+            sys.exit(f"there is no folder {sys.argv[1]}")
         elif len(sys.argv) in (2, 3):
             report = main(sys.argv[1], [*sys.argv, str(CHECKOUT)][2], configured(), [])
         else:

@@ -28,7 +28,6 @@ root_doc = "README"
 include_patterns = [
     "*.md",
     "docs/*.md",
-    "config/README.md",
     "figures/*.md",
     "beyond/*.md",
     "beyond/docs/**.md",
@@ -69,7 +68,6 @@ PARTS = {
         "[a-z]*",
         "docs/*",
         "figures/*",
-        "config/*",
     ],
     "Beyond the paper": [
         "beyond/README",

@@ -95,26 +95,29 @@ def refuses_an_unknown_option(refused: Callable, example: str, word: str) -> Non
     assert status == 2 and f"unrecognized arguments: --{word}=1" in line
 
 
-class OptionsAreRefused:
-    """Tests of the options of a house, which has ``commands``."""
+def options_are_refused(commands: Mapping[str, Any]) -> type:
+    """A class of tests of the options of these commands.
 
-    commands: Mapping[str, Any]
+    Each call makes functions of its own, because Hypothesis refuses a test that several classes
+    inherit: it would keep the examples of one for another.
+    """
 
-    @classmethod
     @functools.cache
-    def cases(cls) -> list[TypedOption]:
-        """The options of the house, for which each command has a parser of its own."""
-        return typed_options(cls.commands)
+    def cases() -> list[TypedOption]:
+        return typed_options(commands)
 
-    @given(st.data())
-    def test_a_wrong_option_is_refused(self, refused, data):
-        case = data.draw(st.sampled_from(self.cases()))
-        refuses_a_wrong_option(refused, data.draw, case)
+    class OptionsAreRefused:
+        @given(st.data())
+        def test_a_wrong_option_is_refused(self, refused, data):
+            case = data.draw(st.sampled_from(cases()))
+            refuses_a_wrong_option(refused, data.draw, case)
 
-    @given(st.data(), UNKNOWN)
-    def test_an_unknown_option_is_refused(self, refused, data, word):
-        command = data.draw(st.sampled_from(sorted(self.commands)))
-        refuses_an_unknown_option(refused, self.commands[command].examples[0], word)
+        @given(st.data(), UNKNOWN)
+        def test_an_unknown_option_is_refused(self, refused, data, word):
+            command = data.draw(st.sampled_from(sorted(commands)))
+            refuses_an_unknown_option(refused, commands[command].examples[0], word)
+
+    return OptionsAreRefused
 
 
 # Arguments of public functions.

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_laws import arguments
 from random_mistakes import (
-    OptionsAreRefused,
     given_arguments,
+    options_are_refused,
     refuses_a_wrong_argument,
     right_arguments,
     typed_options,
@@ -23,10 +23,8 @@ from bouncing_ball_beyond.cli.commands import COMMANDS
 # The command line.
 
 
-class TestOptions(OptionsAreRefused):
-    """The commands of beyond."""
-
-    commands = COMMANDS
+# The commands of beyond.
+TestOptions = options_are_refused(COMMANDS)
 
 
 # Arguments of public functions.

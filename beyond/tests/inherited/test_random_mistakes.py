@@ -18,8 +18,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_mistakes import (
     WORDS,
-    OptionsAreRefused,
     given_arguments,
+    options_are_refused,
     refuses_a_wrong_argument,
     right_arguments,
     typed_options,
@@ -37,10 +37,8 @@ ROOT = Path(__file__).parents[2]
 # The command line.
 
 
-class TestOptions(OptionsAreRefused):
-    """The commands of the root."""
-
-    commands = COMMANDS
+# The commands of the root.
+TestOptions = options_are_refused(COMMANDS)
 
 
 # Arguments of public functions.

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_mistakes import (
     WORDS,
-    OptionsAreRefused,
+    options_are_refused,
     outside,
     typed_options,
 )
@@ -26,10 +26,8 @@ from bouncing_ball_beyond.inherited.errors import ModelError
 # The command line.
 
 
-class TestOptions(OptionsAreRefused):
-    """The commands of the contacts."""
-
-    commands = COMMANDS
+# The commands of the contacts.
+TestOptions = options_are_refused(COMMANDS)
 
 
 # Quantities with units.

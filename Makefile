@@ -34,7 +34,7 @@ $(VENV)/.installed: requirements-build.lock requirements.lock
 	@touch $@
 
 test: setup
-	OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2 --dist worksteal
+	OMP_NUM_THREADS=1 $(RUN) pytest
 
 # A stage on a Slurm that the test starts; it is skipped where there is none.
 test-cluster: setup

@@ -53,7 +53,8 @@ class Refused(ValueError):
 def _registry() -> Any:
     import pint
 
-    return pint.UnitRegistry(cache_folder=":auto:")
+    # Pint's cache on disk keeps paths of the environment that wrote it, and fails in another one.
+    return pint.UnitRegistry()
 
 
 def in_si(name: str, value: Any, unit: str) -> float:
@@ -105,8 +106,9 @@ def _read(name: str, text: str, unit: str) -> float:
         return number
     if typed in _COMMON[unit]:
         return number * _COMMON[unit][typed]
+    registry = _registry()
     try:
-        quantity = _registry().Quantity(number, typed)
+        quantity = registry.Quantity(number, typed)
     except Exception:  # pint raises errors of many kinds, also those of Python's tokenizer
         raise Refused(f"{name}: the unit of {text!r} is not known; {_wanted(unit)}") from None
     return _converted(name, quantity, unit, text)

@@ -6,6 +6,7 @@ numbers of a whole run are those of the reference is for `make replication` to s
 
 import importlib.util
 import runpy
+import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -114,7 +115,57 @@ def test_claims_are_judged_from_the_datasets_and_written_in_three_forms(run, tmp
     assert Path(made["csv"]).read_text("utf-8") == every
 
 
+@pytest.mark.parametrize(("factor", "status"), [(1.0, 0), (1.01, 1)])
+def test_a_comparison_ends_with_1_if_something_differs(run, tmp_path, monkeypatch, factor, status):
+    figures = tmp_path / "results" / "figures"
+    figures.mkdir(parents=True)
+    for path in REFERENCE.glob("fig11.*"):
+        shutil.copyfile(path, figures / path.name)
+    if factor != 1:
+        data = read(REFERENCE / "fig11.nc")
+        changed = data.assign(threshold_amplitude=factor * data.threshold_amplitude)
+        changed.to_netcdf(figures / "fig11.nc")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    given = {"reference": str(ROOT), "artifacts": {}, "names": ["fig11"]}
+    with pytest.raises(SystemExit) as ended:
+        run("compare", {}, {}, given)
+    assert ended.value.code == status
+    assert (tmp_path / "results" / "diff" / "index.html").is_file()
+
+
 # What they compute
+
+
+def test_the_ball_of_figure_2_obeys_the_law_of_the_impact():
+    given = {"n": 2, "restitution": 0.65, "amplitude": 1.8, "periods": 2, "samples": 401}
+    data = module("restitution_model").fig02(given)
+    impact = 2 * np.pi * given["n"]
+    table_speed = given["amplitude"] * np.cos(float(data.phase))
+    # Eq. 2, with the velocity before the impact from a fall over the whole flight.
+    before = float(data.ball_velocity[0]) - impact
+    assert float(data.ball_velocity[0]) - table_speed == pytest.approx(
+        -given["restitution"] * (before - table_speed), abs=1e-12
+    )
+    assert float(data.ball[0]) == pytest.approx(float(data.table[0]), abs=1e-12)
+    # It is on the table at each impact, and above it in between.
+    landings = np.isclose(data.time % impact, 0) | np.isclose(data.time % impact, impact)
+    assert int(landings.sum()) == 1 + given["periods"]
+    assert (data.ball > data.table)[~landings].all()
+
+
+def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
+    given = {"n": [1, 2, 3], "restitution": 0.85, "amplitude_max": 2.0, "points": 41}
+    data = module("restitution_model").fig03(given)
+    # Eq. 6: X = Λ cos φ is nπ(1 - r)/(1 + r) on a whole branch, and lifts are at equal steps.
+    x = data.n * np.pi * 0.15 / 1.85
+    xr.testing.assert_allclose((data.amplitude * np.cos(data.phase) / x), 0 * data.amplitude + 1)
+    lift = data.amplitude * np.sin(data.phase)
+    steps = lift.diff("point")
+    assert float((steps.max("point") / steps.min("point") - 1).max()) < 1e-9
+    ends = data.amplitude.isel(point=[0, -1])
+    assert ends.values == pytest.approx(np.full((3, 2), 2.0))
+
 
 READINGS = module("table1_readings")
 
@@ -144,6 +195,32 @@ def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
         assert row.special_amplitude.values[:count] == pytest.approx(amplitudes)
         assert np.isnan(row.special_amplitude.values[count:]).all()
     assert counts[0] < counts[1] == data.sizes["special"]
+
+
+def saddle_node(n, ratio, zeta, release):
+    """The orbit at the saddle-node, from the closed form by the duration of the contact."""
+    half = np.pi / ratio / np.sqrt(1 - zeta**2)
+
+    def turn(duration):
+        return independent.test_functions(n, ratio, zeta, release, duration)[0]
+
+    durations = independent.roots(turn, half * np.linspace(0.7, 1.3, 601))
+    orbits = [independent.orbit(n, ratio, zeta, release, duration) for duration in durations]
+    (found,) = (y for y in orbits if abs(y[1]) < np.pi / 2 and y[2] < 0)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("reading", "release"),
+    [("equations as they stand", "displacement"), ("force release", "force")],
+)
+def test_a_reading_has_the_saddle_nodes_of_its_release(readings, reading, release):
+    zeta = independent.restitution_to_damping(0.85)
+    found = readings.computed.sel(reading=reading, bound="saddle-node")
+    for n in (1, 2):
+        for ratio in (10.0, 2.0):
+            expected = saddle_node(n, ratio, zeta, release)[0]
+            assert float(found.sel(n=n, frequency_ratio=ratio)) == pytest.approx(expected, abs=1e-9)
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
@@ -205,17 +282,7 @@ def test_orbits_of_the_integrated_motion_solve_equations_21_to_26(n, ratio, r):
 @pytest.mark.parametrize(("n", "ratio"), [(1, 2.0), (1, 10.0), (2, 10.0)])
 def test_the_needed_tolerance_is_the_least_norm_of_the_defects(n, ratio):
     zeta = independent.restitution_to_damping(0.85)
-    half = np.pi / ratio / np.sqrt(1 - zeta**2)
-
-    def turn(duration):
-        return independent.test_functions(n, ratio, zeta, "displacement", duration)[0]
-
-    grid = half * np.linspace(0.8, 1.2, 2001)
-    orbits = [
-        independent.orbit(n, ratio, zeta, "displacement", duration)
-        for duration in independent.roots(turn, grid)
-    ]
-    node = min((y for y in orbits if y[0] > 0.1 and y[2] < 0), key=lambda y: abs(y[1]))
+    node = saddle_node(n, ratio, zeta, "displacement")
     start = unknowns_at(n, ratio, zeta, node)
     for below in (1e-3, 1e-4):
         amplitude = node[0] - below

@@ -19,7 +19,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
 
-from bouncing_ball import compare, datasets, differences, drawing
+from bouncing_ball import claims, compare, datasets, differences, drawing
 
 PARAMETERS = {"restitution": 0.65, "frequency_ratio": {"min": 1.0, "max": 10.0}}
 STYLE = {"color": "#0072b2"}
@@ -819,3 +819,57 @@ def test_nothing_is_accepted_that_does_not_follow_from_committed_code(clean):
     refused("commit first: .* src/new.py")
     shutil.rmtree(clean.reference / ".git")
     refused("the commit of the code is unknown")
+
+
+# The claims of what is accepted
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_claims_are_judged_anew_from_the_datasets_of_a_folder(tmp_path):
+    data = compare.load(ROOT, compare.ALL)
+    (tmp_path / "figures").mkdir()
+    compare.judge(data, tmp_path)
+    judged = datasets.read(tmp_path / "figures" / "claims.nc")
+    printed = datasets.printed_table(ROOT / "config" / "table1_printed.csv")
+    xr.testing.assert_equal(judged, claims.judge(data, printed))
+    assert judged.attrs["title"] == data["claims"].attrs["title"]
+
+
+@pytest.fixture
+def judging(clean, monkeypatch):
+    """As `clean`, with claims of which the second follows from the threshold."""
+
+    def judge(data, folder):
+        right = float(data["fig14"].error_threshold) < 1000
+        verdict = ["reproduced", "contradicted" if right else "reproduced"]
+        judged = verdicts().assign(verdict=("claim", verdict))
+        datasets.save(judged, folder / "figures" / "claims.nc", "Claims", {}, [])
+
+    product = compare.Product(("figures/claims.nc",), ("fig14",), judge, ())
+    monkeypatch.setattr(compare, "PRODUCTS", [product, PAPER])
+    return clean
+
+
+def test_claims_that_stay_as_they_are_stay_in_the_reference(judging):
+    path = judging.reference / "figures" / "claims.nc"
+    before = path.read_bytes()
+    assert accepted(judging) == ["figures/fig14.nc", "paper.md"]
+    assert path.read_bytes() == before
+
+
+def test_claims_change_with_the_dataset_that_decides_them(judging):
+    judging.edit(scaled("error_threshold", 100, ()))
+    data = compare.load(judging.results, ["fig14"])
+    (judged,) = (product for product in compare.PRODUCTS if product.artifact == "claims")
+    # The results still have the claims of before.
+    with pytest.raises(ValueError, match=r"figures/claims\.nc in the results is not what"):
+        accepted(judging)
+    judged.make(data, judging.results)
+    judging.edit(
+        lambda made: made.assign_attrs(code=datasets.digest([judging.reference / "study.py"])),
+        "claims",
+    )
+    PAPER.make(compare.load(judging.results, ["fig14", "claims"]), judging.results)
+    assert accepted(judging) == ["figures/claims.nc", "figures/fig14.nc", "paper.md"]
+    assert judging.lines() == ""

@@ -58,6 +58,12 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path):
     assert small.phase.attrs == {}
 
 
+def test_a_path_may_be_a_text_as_snakemake_gives_it(small, tmp_path):
+    path = tmp_path / "fig02.nc"
+    datasets.save(small, str(path), "Figure 2", {}, [])
+    xr.testing.assert_equal(datasets.read(path), small)
+
+
 def test_a_variable_without_description_is_refused(small, tmp_path):
     with pytest.raises(ValueError, match=r"^fig02.nc: .* has no description of height, speed$"):
         datasets.save(small.assign(height=1.0, speed=2.0), tmp_path / "fig02.nc", "", {}, [])

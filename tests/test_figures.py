@@ -125,6 +125,35 @@ def test_labels(name):
     assert set(LABELS[name]) <= set(found)
 
 
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in SCHEMATICS])
+def test_every_axis_has_a_name(name):
+    for axes in of_reference(name).axes:
+        assert axes.get_ylabel()
+        # Panels with the same horizontal axis name it once, below.
+        assert axes.get_xlabel() or not drawn_tick_labels(axes.xaxis)[0].get_visible()
+
+
+@pytest.mark.parametrize("name", DOMAINS)
+def test_names_at_the_right_are_level_with_their_branches_or_next_to_each_other(name):
+    figure = of_reference(name)
+    axes = figure.axes[0]
+    points = drawing.POINTS / figure.dpi
+    names = [text for text in axes.texts if text.get_text().startswith(("$\\varpi", "rest"))]
+    centres = []
+    moved = []
+    for text in names:
+        end = axes.transData.transform((0.0, text.xy[1]))[1] * points
+        moved.append(text.xyann[1])
+        centres.append(end + text.xyann[1])
+    order = np.argsort(centres)
+    gaps = np.diff(np.array(centres)[order])
+    # Numbers of the size of a panel in points, with rounding errors.
+    assert gaps.min() > drawing.LINE_HEIGHT - 1e-6
+    touching = np.abs(gaps - drawing.LINE_HEIGHT) < 1e-6
+    beside = np.concatenate([[False], touching]) | np.concatenate([touching, [False]])
+    assert (beside | (np.abs(np.array(moved)[order]) < 1e-6)).all()
+
+
 def branches(name, data):
     """The branches of a figure of domains, and the phases that it shows."""
     if name == "fig03":

@@ -127,7 +127,7 @@ def test_a_comparison_ends_with_1_if_something_differs(run, tmp_path, monkeypatc
         changed.to_netcdf(figures / "fig11.nc")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
-    given = {"reference": str(ROOT), "artifacts": {}, "names": ["fig11"]}
+    given = {"results": "results", "reference": str(ROOT), "artifacts": {}, "names": ["fig11"]}
     with pytest.raises(SystemExit) as ended:
         run("compare", {}, {}, given)
     assert ended.value.code == status

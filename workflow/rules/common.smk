@@ -121,6 +121,11 @@ def requested_files(wildcards):
     return [file for name in requested(wildcards) for file in files(name)]
 
 
+def results_folder(wildcards):
+    """The folder of the results, below a prefix if this workflow is a module with one."""
+    return os.path.dirname(rules.article.output.paper)
+
+
 def description(name):
     """The parameters and the code from which a figure or table is made."""
     for stage, names in STAGES.items():

@@ -2,11 +2,6 @@
 # `accept` writes to them. Both rules have no outputs, so that they run whenever they are named.
 
 
-def results_folder(wildcards):
-    """The folder of the results, below a prefix if this workflow is a module with one."""
-    return os.path.dirname(rules.article.output.paper)
-
-
 rule diff:
     """Compares the results with the reference: results/diff/index.html"""
     localrule: True

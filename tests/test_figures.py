@@ -501,7 +501,7 @@ def saved(folder, name, commit="abc123", settings=None):
     return [path.read_bytes() for path in paths]
 
 
-@pytest.mark.parametrize("name", ["fig04", "fig08", "fig16"])
+@pytest.mark.parametrize("name", ["fig04", "fig08"])
 def test_settings_of_the_user_change_no_byte(tmp_path, name):
     assert saved(tmp_path / "usual", name) == saved(tmp_path / "other", name, settings=SETTINGS)
 

@@ -83,7 +83,8 @@ def test_a_failed_save_leaves_the_old_file(small, tmp_path, monkeypatch):
 
 
 def test_the_digest_ignores_order_and_line_ends_only(tmp_path):
-    first, second = tmp_path / "a.py", tmp_path / "b.py"
+    first = tmp_path / "a.py"
+    second = tmp_path / "b.py"
     first.write_bytes(b"x = 1\n")
     second.write_bytes(b"y = 2\n")
     digest = datasets.digest([first, second])

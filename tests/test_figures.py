@@ -180,7 +180,8 @@ def at(line, x, y):
 
 @pytest.mark.parametrize("name", ["fig03", *DOMAINS])
 def test_line_styles_are_the_stability(name):
-    data, figure = reference(name), of_reference(name)
+    data = reference(name)
+    figure = of_reference(name)
     for branch in branches(name, data):
         kinds = np.where(branch.stable, "stable", "unstable")
         for phase in PHASES[: 1 if name == "fig03" else 2]:
@@ -200,7 +201,8 @@ def test_line_styles_are_the_stability(name):
 
 @pytest.mark.parametrize("name", ["fig03", *DOMAINS])
 def test_marks_are_at_the_special_points(name):
-    data, figure = reference(name), of_reference(name)
+    data = reference(name)
+    figure = of_reference(name)
     count = 0
     for branch in branches(name, data):
         special = branch.isel(special=np.flatnonzero(branch.special_amplitude.notnull()))

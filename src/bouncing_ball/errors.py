@@ -106,8 +106,10 @@ def orbit_errors(
         "phase": (lambda family, y: y[1], phase),
         "apparent_restitution": (Family.apparent_restitution, r),
     }
+    family = Family(n, Contact(ratios, damping_ratio(r), release))
+    condition = at_amplitude(amplitude)
     return {
-        name: _along(n, r, ratios, release, orbits, at_amplitude(amplitude), value, reference)
+        name: _along(family, orbits, condition, value, reference)
         for name, (value, reference) in quantities.items()
     }
 
@@ -127,36 +129,35 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
     for name, (kind, test, reference) in kinds.items():
         orbits = bifurcations(n, kind, ratios, contact)[:, 0]
         condition = at_bifurcation(test)
-        found[name] = _along(
-            n, r, ratios, release, orbits, condition, lambda family, y: y[0], reference
-        )
+        family = Family(n, contact)
+        found[name] = _along(family, orbits, condition, lambda family, y: y[0], reference)
     return found
 
 
 def _along(
-    n: int,
-    r: float,
-    ratios: NDArray,
-    release: str,
+    family: Family,
     orbits: NDArray,
     condition: Condition,
     value: Callable[[Family, NDArray], NDArray],
     reference: Numbers,
 ) -> Error:
-    """The error of a quantity of the orbits at the ratios of a scan, shape (4, ratios)."""
-    zeta = damping_ratio(r)
+    """The error of a quantity of the orbits of a scan, shape (4, ratios).
 
-    def error(ratio, y):
-        return relative_error(value(Family(n, Contact(ratio, zeta, release)), y), reference)
+    The ratios of the scan are those of the family's contact.
+    """
+    ratios = np.asarray(family.contact.frequency_ratio)
+
+    def error(family, y):
+        return relative_error(value(family, y), reference)
 
     def between(ratio, i):
-        family = Family(n, Contact(ratio, zeta, release))
+        one = replace(family, contact=replace(family.contact, frequency_ratio=ratio))
         part = np.log(ratio / ratios[i]) / np.log(ratios[i + 1] / ratios[i])
         guess = orbits[:, i] + part * (orbits[:, i + 1] - orbits[:, i])
-        return float(error(ratio, correct(family, guess, condition)))
+        return float(error(one, correct(one, guess, condition)))
 
     # Where there is no orbit, the restitution model is as wrong as can be.
-    values = error(ratios, orbits)
+    values = error(family, orbits)
     return Error(np.where(np.isnan(values), np.inf, values), between)
 
 

@@ -19,7 +19,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
 
-from bouncing_ball import claims, compare, datasets, differences, drawing
+from bouncing_ball import claims, compare, datasets, differences, drawing, products
 
 PARAMETERS = {"restitution": 0.65, "frequency_ratio": {"min": 1.0, "max": 10.0}}
 STYLE = {"color": "#0072b2"}
@@ -106,7 +106,9 @@ class Record:
         self.artifacts = {"fig14": code, "claims": code | {"parameters": {}}}
 
     def report(self, *names):
-        return compare.compare(self.results, self.reference, self.artifacts, names)
+        return compare.compare(
+            self.results, self.reference, products.PRODUCTS, self.artifacts, names
+        )
 
     def lines(self, *names):
         """The report in one text, or nothing if all agrees."""
@@ -130,16 +132,14 @@ class Record:
 @pytest.fixture
 def record(tmp_path, original, monkeypatch):
     """Datasets and a text; without a picture a comparison takes no time."""
-    monkeypatch.setattr(compare, "STUDIES", ["fig14"])
-    monkeypatch.setattr(compare, "ALL", ("fig14", "claims"))
-    monkeypatch.setattr(compare, "PRODUCTS", [PAPER])
+    monkeypatch.setattr(products, "PRODUCTS", [PAPER])
     return Record(tmp_path, original, "*.png", "*.svg")
 
 
 @pytest.fixture
 def drawn(record, tmp_path, original, monkeypatch):
     """Datasets, a text and a picture."""
-    monkeypatch.setattr(compare, "PRODUCTS", [PICTURE, PAPER])
+    monkeypatch.setattr(products, "PRODUCTS", [PICTURE, PAPER])
     return Record(tmp_path / "drawn", original)
 
 
@@ -269,8 +269,7 @@ DATASET_LIES = {
 
 
 @pytest.mark.parametrize("lie", DATASET_LIES)
-def test_a_changed_dataset_is_different(record, lie, monkeypatch):
-    monkeypatch.setattr(compare, "PRODUCTS", [])
+def test_a_changed_dataset_is_different(record, lie):
     change, said = DATASET_LIES[lie]
     record.edit(change)
     assert f"fig14: {said}" in record.lines("fig14")
@@ -424,7 +423,7 @@ def test_a_text_that_is_written_otherwise_is_different(record, monkeypatch):
         return article(data).replace("82.18", "82.17")
 
     changed = compare.text("paper.md", ("fig14", "claims"), floor)
-    monkeypatch.setattr(compare, "PRODUCTS", [changed])
+    monkeypatch.setattr(products, "PRODUCTS", [changed])
     finding = record.report().findings[0]
     assert "-The threshold is 82.18.\n+The threshold is 82.17." in finding.lines
 
@@ -637,7 +636,7 @@ def test_code_that_cannot_draw_the_reference_is_named(drawn, monkeypatch):
         raise KeyError("heights")
 
     changed = compare.Product(PICTURE.files, ("fig14",), failing, (code,))
-    monkeypatch.setattr(compare, "PRODUCTS", [changed])
+    monkeypatch.setattr(products, "PRODUCTS", [changed, PAPER])
     assert drawn.report().lines[0] == (
         "fig14: today's code cannot make it of the dataset in the reference: KeyError('heights'); "
         "changed: draw.py (not committed)"
@@ -648,8 +647,9 @@ def test_a_changed_text_is_blamed_for_the_text_only(committed, monkeypatch):
     committed.edit(scaled("error_threshold", 0.5, ()))
     code = committed.reference / "draw.py"
     code.write_text("# two\n")
-    changed = compare.text("paper.md", ("fig14",), lambda data: "The threshold.\n", (code,))
-    monkeypatch.setattr(compare, "PRODUCTS", [changed])
+    needs = ("fig14", "claims")
+    changed = compare.text("paper.md", needs, lambda data: "The threshold.\n", (code,))
+    monkeypatch.setattr(products, "PRODUCTS", [changed])
     assert committed.report().lines[0] == (
         "paper: today's code makes another paper.md of the reference: line 1: "
         "'The threshold is 82.18.\\n' -> 'The threshold.\\n'; changed: draw.py (not committed)"
@@ -686,7 +686,7 @@ def clean(committed):
 
 
 def accepted(record):
-    return compare.accept(record.results, record.reference, record.artifacts)
+    return compare.accept(record.results, record.reference, products.PRODUCTS, record.artifacts)
 
 
 def test_a_picture_is_accepted_with_its_dataset(drawn, monkeypatch):
@@ -790,11 +790,11 @@ def test_a_reference_that_was_edited_is_named(committed):
 def test_other_claims_follow_from_other_numbers():
     number = differences.Finding("number", "a number", artifact="fig14", cause="changed: orbits.py")
     verdict = differences.Finding("verdict", "a verdict", artifact="claims", cause="old")
-    assert [each.cause for each in compare.derived([verdict, number])] == [
+    assert [each.cause for each in compare.derived([verdict, number], ["fig14"])] == [
         "follows from fig14: changed: orbits.py",
         "changed: orbits.py",
     ]
-    assert [*compare.derived([verdict])] == [verdict]
+    assert [*compare.derived([verdict], ["fig14"])] == [verdict]
 
 
 def test_nothing_is_accepted_that_does_not_follow_from_committed_code(clean):
@@ -827,9 +827,9 @@ ROOT = Path(__file__).parents[1]
 
 
 def test_claims_are_judged_anew_from_the_datasets_of_a_folder(tmp_path):
-    data = compare.load(ROOT, compare.ALL)
+    data = compare.load(ROOT, products.ALL)
     (tmp_path / "figures").mkdir()
-    compare.judge(data, tmp_path)
+    products.judge(data, tmp_path)
     judged = datasets.read(tmp_path / "figures" / "claims.nc")
     printed = datasets.printed_table(ROOT / "config" / "table1_printed.csv")
     xr.testing.assert_equal(judged, claims.judge(data, printed))
@@ -847,7 +847,7 @@ def judging(clean, monkeypatch):
         datasets.save(judged, folder / "figures" / "claims.nc", "Claims", {}, [])
 
     product = compare.Product(("figures/claims.nc",), ("fig14",), judge, ())
-    monkeypatch.setattr(compare, "PRODUCTS", [product, PAPER])
+    monkeypatch.setattr(products, "PRODUCTS", [product, PAPER])
     return clean
 
 
@@ -861,7 +861,7 @@ def test_claims_that_stay_as_they_are_stay_in_the_reference(judging):
 def test_claims_change_with_the_dataset_that_decides_them(judging):
     judging.edit(scaled("error_threshold", 100, ()))
     data = compare.load(judging.results, ["fig14"])
-    (judged,) = (product for product in compare.PRODUCTS if product.artifact == "claims")
+    (judged,) = (product for product in products.PRODUCTS if product.artifact == "claims")
     # The results still have the claims of before.
     with pytest.raises(ValueError, match=r"figures/claims\.nc in the results is not what"):
         accepted(judging)

@@ -19,25 +19,15 @@ import shutil
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import jinja2
 import matplotlib
 import netCDF4
 import xarray as xr
+from matplotlib.figure import Figure
 
-from bouncing_ball import (
-    article,
-    claims,
-    datasets,
-    drawing,
-    figures,
-    restitution,
-    spring_damper,
-    tables,
-    verdicts,
-)
+from bouncing_ball import datasets, drawing
 from bouncing_ball.datasets import Datasets
 from bouncing_ball.differences import (
     KINDS,
@@ -71,42 +61,24 @@ class Product:
         return Path(self.files[0]).stem
 
 
-PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
-DRAWING: Code = (figures.__file__, drawing.__file__)
-TABULATING: Code = (tables.__file__, claims.__file__, verdicts.__file__)
-JUDGING: Code = (
-    claims.__file__,
-    verdicts.__file__,
-    restitution.__file__,
-    spring_damper.__file__,
-    PRINTED,
-)
-WRITING: Code = (
-    article.__file__,
-    tables.__file__,
-    *JUDGING,
-    *sorted(article.TEMPLATES.glob("*.md.j2")),
-)
-
-
-def picture(name: str) -> Product:
-    """A figure, drawn from its dataset, if it has one, as SVG and as PNG.
+def picture(
+    name: str, needs: tuple[str, ...], draw: Callable[[Datasets], Figure], code: Code
+) -> Product:
+    """A figure as SVG and as PNG.
 
     The SVG comes first, because a difference of its lines tells more than one of pixels.
     """
-    needs = () if name in figures.SCHEMATICS else (name,)
     files = (f"figures/{name}.svg", f"figures/{name}.png")
 
     def make(data: Datasets, folder: Path) -> None:
-        figure = figures.draw(name, *(data[need] for need in needs))
         svg, png = (folder / file for file in files)
-        drawing.save_picture(figure, png, svg, datasets.commit())
+        drawing.save_picture(draw(data), png, svg, datasets.commit())
 
-    return Product(files, needs, make, DRAWING)
+    return Product(files, needs, make, code)
 
 
 def text(
-    file: str, needs: tuple[str, ...], write: Callable[[Datasets], str], code: Code = WRITING
+    file: str, needs: tuple[str, ...], write: Callable[[Datasets], str], code: Code = ()
 ) -> Product:
     """A file of text."""
 
@@ -120,39 +92,21 @@ def table(
     file: str,
     rows: Callable[[xr.Dataset], list[list[str]]],
     write: Callable[[list[list[str]]], str],
+    code: Code,
 ) -> Product:
     """A table of the dataset with the name of its file."""
     name = Path(file).stem
-    return text(f"figures/{file}", (name,), lambda data: write(rows(data[name])), TABULATING)
+    return text(f"figures/{file}", (name,), lambda data: write(rows(data[name])), code)
 
 
-def judge(data: Datasets, folder: Path) -> None:
-    """Write the verdicts on the claims, with what the dataset of claims records of itself."""
-    judged = claims.judge({name: data[name] for name in STUDIES}, datasets.printed_table(PRINTED))
-    title = data["claims"].attrs["title"]
-    path = folder / "figures" / "claims.nc"
-    datasets.save(judged, path, title, record(data["claims"], "parameters"), code=[])
+def needed(products: Collection[Product]) -> list[str]:
+    """The datasets that some products follow from."""
+    return list(dict.fromkeys(name for product in products for name in product.needs))
 
 
-DRAWN = [name for name in figures.FIGURES if name not in figures.SCHEMATICS]
-DECIDING = [name for claim in claims.CLAIMS for name in claim.datasets]
-STUDIES = list(dict.fromkeys([*DRAWN, *tables.TABLES, *DECIDING]))
-"""The datasets that are computed from the models."""
-ALL = (*STUDIES, "claims")
-"""All datasets. The claims follow from the others."""
-
-PRODUCTS = [
-    *(picture(name) for name in figures.FIGURES),
-    *(table(f"{name}.md", rows, tables.markdown) for name, rows in tables.TABLES.items()),
-    *(table(f"{name}.csv", rows, tables.comma_separated) for name, rows in tables.TABLES.items()),
-    Product(("figures/claims.nc",), ALL, judge, JUDGING),
-    text("figures/claims.md", ("claims",), lambda data: tables.claims_markdown(data["claims"])),
-    table("claims.csv", tables.all_claims, tables.comma_separated),
-    text("paper.md", ALL, partial(article.filled_in, "paper")),
-    text("supplement.md", ALL, partial(article.filled_in, "supplement")),
-    text("figures/README.md", ALL, partial(article.filled_in, "figures")),
-]
-"""All files that follow from datasets, and how."""
+def following(products: Collection[Product]) -> set[str]:
+    """The datasets that are products: they follow from other datasets."""
+    return {Path(file).stem for each in products for file in each.files if file.endswith(".nc")}
 
 
 # Causes
@@ -251,38 +205,39 @@ class Side:
 def compare(
     results: str | Path,
     reference: str | Path,
+    products: Collection[Product],
     artifacts: Mapping[str, Mapping],
     names: Collection[str] = (),
 ) -> Report:
     """Compare the results in a folder with the reference: all, or those with the names given.
 
+    `products` are all files that follow from datasets; these and their datasets are compared.
     `artifacts` has for each dataset the "parameters" of the configuration and the files of "code"
     that compute it; "settings" are parameters that count where a result records them. Without
     parameters and code it is unknown whether a result is stale, and why it differs. The cause of
     differences is stated once for each artifact. Raises ValueError if the results are the reference
     itself, or for a name that is not compared.
     """
-    compared, products = chosen(names)
+    compared, made = chosen(products, names)
     files = [f"figures/{name}.nc" for name in compared]
-    files += [file for product in products for file in product.files if file not in files]
+    files += [file for product in made for file in product.files if file not in files]
     folders = Path(results), Path(reference)
     refuse_links(*folders, files)
-    needed = [name for name in ALL if any(name in product.needs for product in products)]
     new, old = (
-        Side(name, folder, load(folder, [*compared, *needed] or STUDIES))
+        Side(name, folder, load(folder, [*compared, *needed(made)] or needed(products)))
         for name, folder in zip(("results", "reference"), folders, strict=True)
     )
-    whole = len(products) == len(PRODUCTS)
+    whole = len(made) == len(products)
     findings = [*file_findings(new, files, whole), *file_findings(old, files, whole)]
     for name in compared:
         if name in new.data:
             artifact = artifacts.get(name, {})
             findings += dataset_findings(name, new.data[name], old.data.get(name), artifact)
-    findings = [*derived(findings)]
+    findings = [*derived(findings, set(needed(products)) - following(products))]
     with tempfile.TemporaryDirectory() as scratch:
         for side in (new, old):
             (Path(scratch) / side.name / "figures").mkdir(parents=True)
-        for product in products:
+        for product in made:
             findings += product_findings(product, new, old, Path(scratch))
     findings.sort(key=lambda each: each.rank)
     stated = {(each.artifact, each.cause): each for each in reversed(findings)}
@@ -295,7 +250,7 @@ def compare(
         findings,
         [
             finding
-            for product in products
+            for product in made
             if red.intersection(product.needs)
             for finding in consequences(product, new, old)
         ],
@@ -305,35 +260,40 @@ def compare(
     )
 
 
-def derived(findings: list[Finding]) -> Iterator[Finding]:
-    """The findings of datasets, where other claims follow from other numbers if there are any."""
-    reasons = {each.artifact: each.cause for each in findings if each.artifact in STUDIES}
+def derived(findings: list[Finding], studies: Collection[str]) -> Iterator[Finding]:
+    """The findings of datasets, where those that follow from other datasets have their cause.
+
+    `studies` are the datasets that are computed from the models.
+    """
+    reasons = {each.artifact: each.cause for each in findings if each.artifact in studies}
     for each in findings:
-        if each.artifact == "claims" and each.cause and reasons:
+        if each.artifact not in studies and each.cause and reasons:
             first, why = next(iter(reasons.items()))
             yield replace(each, cause=f"follows from {first}: {why}" if why else each.cause)
         else:
             yield each
 
 
-def chosen(names: Collection[str]) -> tuple[list[str], list[Product]]:
+def chosen(
+    products: Collection[Product], names: Collection[str]
+) -> tuple[list[str], list[Product]]:
     """The datasets and products to compare: those named, and those that need no other datasets.
 
     Raises ValueError for a name that is not compared, so that nothing is not taken for agreement.
     """
-    known = {*ALL, *(product.artifact for product in PRODUCTS)}
+    known = {*needed(products), *(product.artifact for product in products)}
     unknown = sorted(set(names) - known)
     if unknown:
         allowed = f"allowed are {', '.join(sorted(known))}"
         raise ValueError(f"{', '.join(unknown)}: no file of that name is compared; {allowed}")
     if not names:
-        return list(ALL), PRODUCTS
-    products = [
+        return needed(products), [*products]
+    made = [
         product
-        for product in PRODUCTS
+        for product in products
         if product.artifact in names or (product.needs and set(product.needs) <= set(names))
     ]
-    return [name for name in ALL if name in names], products
+    return [name for name in needed(products) if name in names], made
 
 
 def refuse_links(results: Path, reference: Path, files: Collection[str]) -> None:
@@ -500,36 +460,46 @@ CODE = ("Snakefile", "config", "src", "workflow")
 def accept(
     results: str | Path,
     reference: str | Path,
+    products: Collection[Product],
     artifacts: Mapping[str, Mapping],
     names: Collection[str] = (),
+    code: Collection[str] = CODE,
 ) -> list[str]:
     """Make results the reference: those named, or all that differ; returns the files written.
 
     Datasets are copied, and name the commit of today. Pictures and texts, of these and of texts
-    that depend on them, are made anew from the datasets that are then the reference. Raises
-    ValueError, with the reason, if a result is stale, incomplete, or not what its dataset gives,
-    and if the code is not committed.
+    that depend on them, are made anew from the datasets that are then the reference. `code` are
+    files and folders of code beside the reference. Raises ValueError, with the reason, if a result
+    is stale, incomplete, or not what its dataset gives, and if the code is not committed.
     """
     old_folder = Path(reference)
     commit = datasets.commit(old_folder).removesuffix("+dirty")
     if not re.fullmatch("[0-9a-f]{40}", commit):
         raise ValueError(f"nothing is accepted, because the commit of the code is {commit}")
-    edited = git(old_folder, "status", "--porcelain", "--untracked-files=all", "--", *CODE) or ""
+    edited = git(old_folder, "status", "--porcelain", "--untracked-files=all", "--", *code) or ""
     if edited:
         raise ValueError(f"nothing is accepted, commit first: {', '.join(edited.splitlines())}")
-    report = compare(results, reference, artifacts, names)
-    new = Side("results", Path(results), load(Path(results), ALL))
+    report = compare(results, reference, products, artifacts, names)
+    every = needed(products)
+    new = Side("results", Path(results), load(Path(results), every))
     unfit = [finding.line for finding in report.findings if finding.of_results]
     unfit += notes(new, new, artifacts)
     if unfit:
         raise ValueError(f"nothing is accepted: {unfit[0]}")
     red = {finding.artifact for finding in report.findings}
     with tempfile.TemporaryDirectory() as scratch:
-        stage(red, new, load(old_folder, ALL), Path(scratch), commit)
+        stage(products, red, new, load(old_folder, every), Path(scratch), commit)
         return list(replaced(Path(scratch), old_folder))
 
 
-def stage(red: Collection[str], new: Side, old: Datasets, folder: Path, commit: str) -> None:
+def stage(
+    products: Collection[Product],
+    red: Collection[str],
+    new: Side,
+    old: Datasets,
+    folder: Path,
+    commit: str,
+) -> None:
     """Write what becomes the reference into a folder: datasets, and what is made from them."""
     (folder / "figures").mkdir()
     data = dict(old)
@@ -542,25 +512,27 @@ def stage(red: Collection[str], new: Side, old: Datasets, folder: Path, commit: 
         ):
             data[name] = stamped(new.folder, folder, name, commit)
     accepted = [name for name in data if data[name] is not old.get(name)]
-    for product in PRODUCTS:
+    for product in products:
         concerned = product.artifact in red or any(need in accepted for need in product.needs)
         if not concerned or any(need not in data for need in product.needs):
             continue
         product.make(data, folder)
-        if product.artifact == "claims":
-            data["claims"] = fitting_claims(new, old, folder, commit)
+        for name in following([product]):
+            data[name] = fitting(name, new, old, folder, commit)
 
 
-def fitting_claims(new: Side, old: Datasets, folder: Path, commit: str) -> xr.Dataset:
-    """The claims of the reference or of the results, whichever the accepted datasets give."""
-    path = folder / "figures" / "claims.nc"
-    judged = datasets.read(path)
+def fitting(name: str, new: Side, old: Datasets, folder: Path, commit: str) -> xr.Dataset:
+    """A dataset that follows from others, as the accepted ones give it: that of the reference, or
+    that of the results.
+    """
+    path = folder / "figures" / f"{name}.nc"
+    made = datasets.read(path)
     path.unlink()
-    if "claims" in old and not dataset_differences(judged, old["claims"]):
-        return old["claims"]
-    if "claims" in new.data and not dataset_differences(judged, new.data["claims"]):
-        return stamped(new.folder, folder, "claims", commit)
-    raise ValueError("nothing is accepted: it changes the claims; make and accept all results")
+    if name in old and not dataset_differences(made, old[name]):
+        return old[name]
+    if name in new.data and not dataset_differences(made, new.data[name]):
+        return stamped(new.folder, folder, name, commit)
+    raise ValueError(f"nothing is accepted: it changes the {name}; make and accept all results")
 
 
 def stamped(source: Path, folder: Path, name: str, commit: str) -> xr.Dataset:

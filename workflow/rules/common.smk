@@ -33,7 +33,8 @@ SETTINGS = {
 # one of them runs the script again. A test compares these lists with the imports.
 ORBITS = ["restitution", "spring_damper", "orbits", "continuation"]
 CLAIMS = ["restitution", "spring_damper", "verdicts", "claims", "tables"]
-COMPARISON = [*CLAIMS, "article", "drawing", "figures", "differences", "compare", "datasets"]
+DRAWING = ["drawing", "figures", "datasets"]
+COMPARISON = [*CLAIMS, *DRAWING, "article", "differences", "compare", "products"]
 MODULES = {
     "restitution_model": ["restitution", "datasets"],
     "apparent_restitution": [*ORBITS, "datasets"],
@@ -42,7 +43,7 @@ MODULES = {
     "permanent_contact": [*ORBITS, "errors", "datasets"],
     "error_thresholds": [*ORBITS, "errors", "datasets"],
     "time_histories": [*ORBITS, "datasets"],
-    "draw": ["drawing", "figures", "datasets"],
+    "draw": DRAWING,
     "tables": [*CLAIMS, "datasets"],
     "claims": [*CLAIMS, "datasets"],
     "article": [*CLAIMS, "article", "datasets"],

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from bouncing_ball import compare
+from bouncing_ball.products import PRODUCTS
 
 options = snakemake.params
 given = options.config
@@ -12,7 +13,9 @@ changed = [key for key in {**given, **accepted} if given.get(key) != accepted.ge
 try:
     if changed:
         raise ValueError(f"config/config.yaml has another {', '.join(changed)} than this run")
-    files = compare.accept(options.results, options.reference, options.artifacts, options.names)
+    files = compare.accept(
+        options.results, options.reference, PRODUCTS, options.artifacts, options.names
+    )
 except ValueError as error:
     Path(snakemake.log[0]).write_text(str(error), encoding="utf-8")
     sys.exit(str(error))

@@ -19,6 +19,7 @@ CHECKOUT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(CHECKOUT / "src"))
 
 from bouncing_ball import compare  # noqa: E402
+from bouncing_ball.products import PRODUCTS  # noqa: E402
 
 
 def configured() -> dict[str, dict]:
@@ -36,7 +37,7 @@ def configured() -> dict[str, dict]:
 
 def main(results: str, reference: str, artifacts: dict, names: list[str]) -> compare.Report:
     """Compare, write the page, and print the report."""
-    report = compare.compare(results, reference, artifacts, names)
+    report = compare.compare(results, reference, PRODUCTS, artifacts, names)
     page = Path(results) / "diff" / "index.html"
     page.parent.mkdir(parents=True, exist_ok=True)
     text = compare.page(report, CHECKOUT / "workflow" / "templates" / "diff.html.j2")

@@ -1,0 +1,403 @@
+"""What an impact does: a restitution coefficient, a spring with a damper, or an instant.
+
+The table is at Λ sin τ, and δ is the gap between ball and table. An impact starts at the time τ
+with the closing speed u = -δ′. After the duration D it leaves the ball at a gap δ with the relative
+speed w = δ′. All of this is analytic in all arguments and parameters, so that a complex step
+gives derivatives with all digits: if x has the imaginary part H = 1e-30, then f(x) has the
+imaginary part H f′(x).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+H = 1e-30
+"""The imaginary part of a complex step."""
+
+PATIENCE = 100 * 2 * np.pi
+"""A contact without a release within this time, 100 periods of the table, is a lasting one."""
+
+
+class Impact(NamedTuple):
+    """The end of an impact: all fields are numbers or arrays of one shape.
+
+    `release` is the release function, which is negative within the contact and zero at its end. It
+    is None if the ball has no contact of finite duration.
+    """
+
+    duration: np.ndarray
+    gap: np.ndarray
+    speed: np.ndarray
+    release: np.ndarray | None
+
+
+class Signature(NamedTuple):
+    """What a contact is as seen from outside, at a closing speed v.
+
+    ``restitution`` and ``duration`` are r and D of a free impact, without a load. ``centroid`` is
+    t_c, the time from its start to the centroid of the force. ``loss`` is σ, the derivative of the
+    impulse with respect to a constant load, at a fixed closing speed at the centroid. Seen from
+    outside, an impact under the load a = 1 - Λ sin τ is an instant, t_c after its start, at
+    which the ball gets the relative speed r v + σ a.
+    """
+
+    restitution: np.ndarray
+    duration: np.ndarray
+    centroid: np.ndarray
+    loss: np.ndarray
+
+
+class Ball:
+    """What all balls have. The methods that are not defined here are those of the subclasses."""
+
+    lasts: ClassVar[bool] = False
+
+    @property
+    def parameters(self):
+        """Names and values of the parameters that can be varied."""
+        return {name: value for name, value in vars(self).items() if _varies(value)}
+
+    def at(self, **values):
+        """The same ball with other values of parameters: numbers or arrays, real or complex.
+
+        The values are not checked.
+        """
+        unknown = values.keys() - vars(self).keys()
+        if unknown:
+            raise ValueError(
+                f"{', '.join(sorted(unknown))}: no parameter of {type(self).__name__},"
+                f" which has {', '.join(self.parameters) or 'none'}"
+            )
+        new = object.__new__(type(self))
+        vars(new).update(vars(self), **values)
+        return new
+
+    def start(self, u):
+        """The gap at which impacts of the closing speed u start."""
+        return 0.0 * u
+
+    def free(self, u):
+        """T of a free impact: 0 for impacts without a duration."""
+        return 0.0 * np.asarray(u)
+
+    def first_release(self, tau, u, amplitude, gravity=1.0):
+        """T of impacts: 0 for impacts without a duration."""
+        return 0.0 * (tau + u + amplitude)
+
+
+def _varies(value):
+    return not (value is None or callable(value) or isinstance(value, str))
+
+
+def _check(name, value, low, high, *, low_allowed):
+    """Raise ValueError unless all values are finite numbers from low to high."""
+    try:
+        values = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r}: must be a number or an array of numbers") from None
+    above = values >= low if low_allowed else values > low
+    good = np.isfinite(values) & above & (values <= high)
+    if not good.all():
+        wrong = values[~good].flat[0]
+        end = f"{high:g}]" if np.isfinite(high) else "∞)"
+        raise ValueError(
+            f"{name} = {wrong:g}: must be in {'[' if low_allowed else '('}{low:g}, {end}"
+        )
+
+
+@dataclass(frozen=True)
+class Rigid(Ball):
+    """Instantaneous impacts with a restitution coefficient r: w = r u (Eq. 5).
+
+    ``restitution`` is r in [0, 1], a number or an array, or a function r(u) of the closing speed,
+    which must be analytic.
+
+    Examples
+    --------
+    >>> float(Rigid(0.5).contact(0.0, 2.0, None, 1.0).speed)
+    1.0
+    """
+
+    restitution: float | np.ndarray | Callable
+
+    def __post_init__(self):
+        if not callable(self.restitution):
+            _check("restitution", self.restitution, 0, 1, low_allowed=True)
+
+    def _restitution(self, u):
+        return self.restitution(u) if callable(self.restitution) else self.restitution
+
+    def contact(self, tau, u, T, amplitude, gravity=1.0):
+        """The impact at the time τ with the speed u."""
+        nothing = 0.0 * (tau + u + amplitude)
+        return Impact(nothing, nothing, self._restitution(u) * u + nothing, None)
+
+    def signature(self, u):
+        """r, and D = t_c = σ = 0."""
+        nothing = 0.0 * u
+        return Signature(self._restitution(u) + nothing, nothing, nothing, nothing)
+
+
+def damping_of(restitution):
+    """Damping ratio ζ for which a free contact that ends at δ = 0 has r: -ln r/√(π² + ln² r) (16)."""
+    log = np.log(restitution)
+    return -log / np.sqrt(np.pi**2 + log * log)
+
+
+def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """δ and δ′ a time s after an impact has started at the time τ, from δ = gap and δ′ = -u.
+
+    They solve δ″ + 2ζϖδ′ + ϖ²δ = -g + Λ sin(τ + s), Eq. 11.
+    """
+    near = s * s * ((ratio - 1) * (ratio - 1) + zeta * zeta)
+    critical = s * s * ratio * ratio * (1 - zeta * zeta)
+    delicate = (np.abs(near) < 1) | (np.abs(critical) < 1)
+    if not np.any(delicate):
+        return _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta)
+    short = np.where(delicate, s, 0.0)
+    gap_near, rate_near = _by_doubling(short, tau, gap, u, amplitude, gravity, ratio, zeta)
+    if np.all(delicate):
+        return gap_near, rate_near
+    other_ratio, other_zeta = np.where(delicate, 2.0, ratio), np.where(delicate, 0.0, zeta)
+    gap_far, rate_far = _closed_form(s, tau, gap, u, amplitude, gravity, other_ratio, other_zeta)
+    return np.where(delicate, gap_near, gap_far), np.where(delicate, rate_near, rate_far)
+
+
+def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """Eqs. 12 and 13: a decaying oscillation about the steady response a sin(τ + s) + b cos(τ + s)."""
+    stiffness, decay = ratio * ratio, zeta * ratio
+    scale = amplitude / ((stiffness - 1) * (stiffness - 1) + 4 * decay * decay)
+    a, b = scale * (stiffness - 1), -2 * scale * decay
+    rest = -gravity / stiffness
+    sin_start, cos_start = np.sin(tau), np.cos(tau)
+    sin_end, cos_end = np.sin(tau + s), np.cos(tau + s)
+    c = gap - rest - a * sin_start - b * cos_start
+    d = -u - a * cos_start + b * sin_start + decay * c
+    cosine, sine = _decaying(s, ratio, zeta)
+    free_rate = (d - decay * c) * cosine - (stiffness * (1 - zeta * zeta) * c + decay * d) * sine
+    return (
+        c * cosine + d * sine + rest + a * sin_end + b * cos_end,
+        free_rate + a * cos_end - b * sin_end,
+    )
+
+
+def _decaying(s, ratio, zeta):
+    """e^{-ζϖs} cos ωs and e^{-ζϖs} sin(ωs)/ω with ω = ϖ√(1 - ζ²), which is imaginary for ζ > 1."""
+    over = np.real(zeta) > 1
+    square = (1 - zeta) * (1 + zeta)
+    omega = ratio * np.sqrt(np.where(over, 0.75, square))
+    envelope = np.exp(-np.where(over, 0.5, zeta) * ratio * s)
+    cosine, sine = envelope * np.cos(omega * s), envelope * np.sin(omega * s) / omega
+    if not np.any(over):
+        return cosine, sine
+    root = np.sqrt(np.where(over, -square, 0.75))
+    slow, fast = np.exp(-ratio * s / (zeta + root)), np.exp(-ratio * s * (zeta + root))
+    return (
+        np.where(over, (slow + fast) / 2, cosine),
+        np.where(over, (slow - fast) / (2 * ratio * root), sine),
+    )
+
+
+def _by_doubling(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """The same by a Taylor series of the responses over s/2^m and m doublings.
+
+    Nothing is divided by, so that values and derivatives keep all digits where terms of the closed
+    form cancel: near the resonance ϖ = 1, ζ = 0, near ζ = 1, and in short contacts. The responses
+    are g to an impulse, G to a constant force, S to sin s and C to cos s, of a ball at rest::
+
+        g″ + 2ζϖg′ + ϖ²g = 0,   g′(0) = 1,    G′ = g,    S′ = C,    C′ = g - S
+    """
+    loss, stiffness = 2 * zeta * ratio, ratio * ratio
+    size = np.max(np.abs(s) * (1 + ratio.real * (1 + 2 * zeta.real)))
+    doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
+    x = s / 2.0**doublings
+    g, rate, load, sine, cosine = term = 0 * x, 1 + 0 * x, 0 * x, 0 * x, 0 * x
+    for k in range(1, 21):
+        p, q, _, v, w = term
+        term = x / k * q, -x / k * (loss * q + stiffness * p), x / k * p, x / k * w, x / k * (p - v)
+        g, rate, load = g + term[0], rate + term[1], load + term[2]
+        sine, cosine = sine + term[3], cosine + term[4]
+    for _ in range(doublings):
+        held = rate + loss * g
+        a, b = held + np.cos(x), g + np.sin(x)
+        sine, cosine = a * sine + b * cosine, a * cosine - b * sine + g * g
+        load = (1 + held) * load + g * g
+        g, rate = g * (held + rate), rate * rate - stiffness * g * g
+        x = 2 * x
+    sin_start, cos_start = np.sin(tau), np.cos(tau)
+    forced = sin_start * cosine + cos_start * sine
+    forced_rate = sin_start * (g - sine) + cos_start * cosine
+    return (
+        gap * (rate + loss * g) - u * g - gravity * load + amplitude * forced,
+        -gap * stiffness * g - u * rate - gravity * g + amplitude * forced_rate,
+    )
+
+
+def _arc_over_root(zeta):
+    """2 arccos ζ/√(1 - ζ²), which is analytic at ζ = 1: 4A/(1 + ζ) with A = arctan(√t)/√t."""
+    t = (1 - zeta) / (1 + zeta)
+    near, over = np.abs(t) < 0.1, np.real(t) < 0
+    root = np.sqrt(np.where(near, 1.0, np.where(over, -t, t)))
+    arc = np.where(over, np.arctanh(np.where(over & ~near, root, 0.0)), np.arctan(root)) / root
+    series = sum((-np.where(near, t, 0.0)) ** k / (2 * k + 1) for k in range(17))
+    return 4 * np.where(near, series, arc) / (1 + zeta)
+
+
+@dataclass(frozen=True)
+class SpringDamper(Ball):
+    """The paper's contact with a spring and a damper: δ″ + 2ζϖδ′ + ϖ²δ = -g + Λ sin τ (Eq. 11).
+
+    Parameters
+    ----------
+    frequency_ratio : array_like
+        ϖ > 0: a stiff contact has a large one.
+    restitution, damping_ratio : array_like
+        One of both: r in (0, 1], from which Eq. 16 gives ζ, or ζ ≥ 0. With the force release or
+        under a load the restitution of the contact is another one.
+    release : {"displacement", "force"}
+        Contacts end where δ = 0 (Eq. 23), or where the force vanishes, δ + κδ′ = 0 with κ = 2ζ/ϖ.
+
+    Notes
+    -----
+    The unknown T of a contact is ϖD, which changes little along ϖ.
+
+    After a release by the force the ball is below the table's level, δ = -κδ′. If the line
+    δ + κδ′ = 0 is reached again before the level, then the contact resumes there. This is an
+    impact whose closing speed u = -δ′ is negative, and which starts at the gap κu; a landing has
+    u > 0 and starts at the gap 0.
+
+    A contact with ζ ≥ 1 and the displacement release ends only where the table retracts from the ball.
+    It has no free impacts: `free` and `signature` are NaN.
+
+    Examples
+    --------
+    >>> ball = SpringDamper(10.0, restitution=0.85)
+    >>> round(float(ball.zeta), 5)
+    0.05166
+    >>> round(float(ball.free(1.0)), 5)
+    3.1458
+    """
+
+    frequency_ratio: float | np.ndarray
+    restitution: float | np.ndarray | None = None
+    damping_ratio: float | np.ndarray | None = None
+    release: str = "displacement"
+
+    lasts: ClassVar[bool] = True
+
+    def __post_init__(self):
+        _check("frequency_ratio", self.frequency_ratio, 0, np.inf, low_allowed=False)
+        if (self.restitution is None) == (self.damping_ratio is None):
+            raise ValueError("restitution, damping_ratio: exactly one of them must be given")
+        if self.restitution is not None:
+            _check("restitution", self.restitution, 0, 1, low_allowed=False)
+        else:
+            _check("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
+        if self.release not in ("displacement", "force"):
+            raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
+
+    def at(self, **values):
+        """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""
+        if "damping_ratio" in values:
+            values = {"restitution": None} | values
+        elif "restitution" in values:
+            values = {"damping_ratio": None} | values
+        return super().at(**values)
+
+    @property
+    def zeta(self):
+        """Damping ratio ζ, given or from r."""
+        return damping_of(self.restitution) if self.damping_ratio is None else self.damping_ratio
+
+    @property
+    def kappa(self):
+        """κ of the release δ + κδ′ = 0: 2ζ/ϖ, or 0 for the displacement release."""
+        return 2 * self.zeta / self.frequency_ratio if self.release == "force" else 0.0
+
+    def start(self, u):
+        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
+        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
+
+    def contact(self, tau, u, T, amplitude, gravity=1.0):
+        """The state of the contact at the time τ + T/ϖ, with the release function ϖ(δ + κδ′)."""
+        ratio = self.frequency_ratio
+        duration = T / ratio
+        given = tau, self.start(u), u, amplitude, gravity, ratio, self.zeta
+        gap, speed = in_contact(duration, *given)
+        return Impact(duration + 0 * gap, gap, speed, ratio * (gap + self.kappa * speed))
+
+    def free(self, u):
+        """T of a free impact: π/√(1 - ζ²), or 2 arccos ζ/√(1 - ζ²) with the force release."""
+        zeta = self.zeta
+        if self.release == "force":
+            return _arc_over_root(zeta) + 0 * u
+        square = np.where(np.real(zeta) < 1, (1 - zeta) * (1 + zeta), np.nan)
+        return np.pi / np.sqrt(square) + 0 * u
+
+    def signature(self, u):
+        """r = e^{-ζT}, D = T/ϖ, t_c = r (D + κ)/(1 + r), σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ."""
+        T = self.free(u)
+        r, duration = np.exp(-self.zeta * T), T / self.frequency_ratio
+        through = duration + self.kappa
+        loss = (1 - r) * through - 2 * self.zeta * (1 + r) / self.frequency_ratio
+        return Signature(r, duration, r * through / (1 + r), loss)
+
+    def first_release(self, tau, u, amplitude, gravity=1.0):
+        """T of the first release of contacts; NaN if a ball stays in contact."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Corrected(Ball):
+    """The corrected restitution model: the impacts of another ball as instants.
+
+    An impact of the closing speed v takes place at the gap -v t_c(v), in the flight that is continued
+    into the contact, and leaves the ball there with the relative speed w = r(v) v + σ(v) a, where
+    a = g - Λ sin τ is the load.
+
+    Parameters
+    ----------
+    of : Ball
+        The ball whose signature (r, t_c, σ) this one has. Its parameters are also those of this ball.
+
+    Examples
+    --------
+    >>> ball = Corrected(SpringDamper(2.0, damping_ratio=0.0))
+    >>> float(ball.start(1.0)) == -np.pi / 4
+    True
+    """
+
+    of: Ball
+
+    def __post_init__(self):
+        if not isinstance(self.of, Ball):
+            raise ValueError(f"of = {self.of!r}: must be a ball")
+        if not np.isfinite(self.of.signature(1.0)).all():
+            raise ValueError(f"of = {self.of!r}: must have free impacts that end")
+
+    @property
+    def parameters(self):
+        """Those of the ball with contacts."""
+        return self.of.parameters
+
+    def at(self, **values):
+        """The corrected model of the ball at these values."""
+        new = object.__new__(type(self))
+        vars(new)["of"] = self.of.at(**values)
+        return new
+
+    def start(self, u):
+        """The gap -u t_c(u) of the instant."""
+        return -u * self.of.signature(u).centroid
+
+    def contact(self, tau, u, T, amplitude, gravity=1.0):
+        """The instant at the time τ with the speed u."""
+        r, _, centroid, loss = self.of.signature(u)
+        speed = r * u + loss * (gravity - amplitude * np.sin(tau))
+        return Impact(0 * speed, 0 * speed - u * centroid, speed, None)
+
+    def signature(self, u):
+        """That of the ball with contacts."""
+        return self.of.signature(u)

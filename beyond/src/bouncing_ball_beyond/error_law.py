@@ -1,0 +1,318 @@
+"""How far the restitution model is from a contact: by a law in closed form, and exactly.
+
+The error of a quantity q is (q_contact - q)/q, relative to the restitution model (Eqs. 37, 38).
+
+The law
+-------
+All n-T orbits of the restitution model have the closing speed v₀ = 2nπ/(1 + r). In the plane
+(X, Y) = Λ(cos ψ, sin ψ) of the table's phase ψ at the impact they lie on the line X = C with
+C = v₀ - nπ, at the distance Λ from the origin: Y₀ = √(Λ² - C²). A contact of finite duration D is
+an impact at the centroid of its force, t_c after the touch, whose impulse grows by σ for each unit
+of the load 1 - Y. To first order in D its orbit is that of the restitution model with C - s in
+place of C, turned by -s, and delayed by t_c, where s = σ/(1 + b) and b = d(rv)/dv at v₀:
+
+    Y₁ = √(Λ² - (C - s)²),    cos ψ₁ = (C - s)/Λ.
+
+This holds from the saddle-node, where the height is wrong by √(2Cs)/H, to the period doubling.
+The proof is in article.md, and docs/error-law.md says how good the law is.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize.elementwise import find_root
+
+from bouncing_ball_beyond.balls import H, Ball
+
+QUANTITIES = (
+    "max_height",
+    "bounce_velocity",
+    "phase",
+    "apparent_restitution",
+    "saddle_node",
+    "period_doubling",
+)
+"""The greatest height, the absolute velocity after the impact, the phase of the touch and the ratio
+of the relative speeds of the n-T orbit at an amplitude, and the amplitudes of its bifurcations."""
+
+
+class FreeImpact(NamedTuple):
+    """The free impact with the closing speed v₀ of the n-T orbits: its signature and derivatives.
+
+    ``slope`` is b = d(rv)/dv and ``curvature`` d²(rv)/dv²; ``centroid_slope`` is e = d(v t_c)/dv,
+    and ``load_slope`` dσ/dv. Each is a number or an array with the shape of the ball's parameters.
+    """
+
+    speed: NDArray
+    restitution: NDArray
+    slope: NDArray
+    curvature: NDArray
+    duration: NDArray
+    centroid: NDArray
+    centroid_slope: NDArray
+    load: NDArray
+    load_slope: NDArray
+
+    def stretched(self, factor: ArrayLike) -> "FreeImpact":
+        """The impact on the contact with the force f(p/γ, p′)/γ, for the factor γ.
+
+        It lasts γ times as long, has the same restitution coefficient, and the contact with a
+        spring and a damper becomes that with the frequency ratio ϖ/γ.
+        """
+        lengths = {name: factor * getattr(self, name) for name in self._fields[4:]}
+        return self._replace(**lengths)
+
+
+def free_impact(ball: Ball, n: int = 1) -> FreeImpact:
+    """The free impact of a ball whose closing speed is a root of (1 + r(v)) v = 2nπ."""
+    half = n * np.pi
+    speed = np.asarray(1.5 * half)
+    step = speed
+    # The error of Newton's method after a step is of the order of the square of the step.
+    while np.any(np.abs(step) > 1e-8 * speed):
+        bounced = _bounced(ball, speed + 1j * H)
+        step = (speed + bounced.real - 2 * half) / (1 + bounced.imag / H)
+        # Because r is between 0 and 1.
+        speed = np.clip(speed - step, half, 2 * half)
+    at = speed + 1j * H
+    signature = ball.signature(at)
+    aside = 1e-4 * speed
+    slopes = [_bounced(ball, at + sign * aside).imag / H for sign in (-1, 1)]
+    return FreeImpact(
+        speed=speed,
+        restitution=np.real(signature.restitution),
+        slope=np.imag(signature.restitution * at) / H,
+        curvature=(slopes[1] - slopes[0]) / (2 * aside),
+        duration=np.real(signature.duration),
+        centroid=np.real(signature.centroid),
+        centroid_slope=np.imag(signature.centroid * at) / H,
+        load=np.real(signature.loss),
+        load_slope=np.imag(signature.loss) / H,
+    )
+
+
+def _bounced(ball: Ball, speed: NDArray) -> NDArray:
+    """The speed r(v) v after a free impact."""
+    return ball.signature(speed).restitution * speed
+
+
+def restitution_values(impact: FreeImpact, amplitude: ArrayLike, n: int = 1) -> dict:
+    """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1).
+
+    The restitution coefficient is the function r(v) of the impact, on whose slope the period
+    doubling depends: Y_D = 2(1 + rb)/[(1 + r)(1 + b)]. NaN below the saddle-node Λ = C.
+    """
+    half = n * np.pi
+    line = impact.speed - half
+    lift = _root(np.square(amplitude) - line**2)
+    return {
+        "max_height": lift + half**2 / 2,
+        "bounce_velocity": half + 0 * lift,
+        "phase": np.arctan2(lift, line),
+        "apparent_restitution": impact.restitution + 0 * lift,
+        "saddle_node": line + 0 * lift,
+        "period_doubling": np.hypot(line, _doubling_lift(impact)) + 0 * lift,
+    }
+
+
+def _doubling_lift(impact: FreeImpact) -> NDArray:
+    """Y_D, the Λ sin ψ at which the orbits of the restitution model double their period."""
+    r, b = impact.restitution, impact.slope
+    return 2 * (1 + r * b) / ((1 + r) * (1 + b))
+
+
+def _root(square: NDArray) -> NDArray:
+    """The square root, NaN of a negative number without a warning."""
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(square)
+
+
+def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
+    """The error law: relative errors of the restitution model in the six quantities.
+
+    Parameters
+    ----------
+    impact
+        A ball, or its :func:`free_impact` for this n.
+    amplitude
+        Λ, a number or an array that broadcasts with the parameters of the ball.
+
+    Returns
+    -------
+    dict
+        Signed errors by the names in :data:`QUANTITIES`. They are right to the second order in the
+        duration of the contact, and next to the saddle-node to the order 3/2. NaN where the
+        restitution model or, by the law, the contact has no orbit.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import SpringDamper
+    >>> ball = SpringDamper(frequency_ratio=82.18, restitution=0.65)
+    >>> round(float(law_errors(ball, amplitude=1.0)["max_height"]), 5)
+    -0.01
+    """
+    impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
+    reference = restitution_values(impact, amplitude, n)
+    v, r, b = impact.speed, impact.restitution, impact.slope
+    duration, delay = impact.duration, impact.centroid
+    half = n * np.pi
+    line = v - half
+    shift = impact.load / (1 + b)
+    lift = _root(np.square(amplitude) - line**2)
+    turned = _root(np.square(amplitude) - (line - shift) ** 2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        turn = np.arccos((line - shift) / amplitude) - np.arccos(line / amplitude)
+        risen = turned - lift - shift * line - v * delay
+        loaded = impact.load - duration + (1 + r) * delay - (b - r) * shift
+        return {
+            "max_height": risen / reference["max_height"],
+            "bounce_velocity": -(duration - delay) / reference["bounce_velocity"],
+            "phase": (turn - shift - delay) / reference["phase"],
+            "apparent_restitution": loaded * (1 - turned + shift * line) / (r * v),
+            "saddle_node": -shift / reference["saddle_node"],
+            "period_doubling": _doubling_error(impact, half) + 0 * lift,
+        }
+
+
+def _doubling_error(impact: FreeImpact, half: float) -> NDArray:
+    """The relative error of the amplitude of the period doubling, from its shift (δX, δY)."""
+    v, b = impact.speed, impact.slope
+    line = v - half
+    lift = _doubling_lift(impact)
+    across = impact.load / (1 + b) * (lift - 1)
+    steeper = impact.load_slope * (1 - lift) + impact.curvature * across
+    along = (
+        (1 - b) * across
+        + 2 * impact.centroid_slope * (lift - 1)
+        - half * impact.load * line
+        + steeper * (half * (2 - lift) - v)
+    ) / (half * (1 + b))
+    return (line * across + lift * along) / (line**2 + lift**2)
+
+
+def law_coefficients(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
+    """The coefficients K of the errors Kγ, far above the saddle-node, for a contact stretched by γ.
+
+    The K of K/ϖ are those of the contact with ϖ = 1. At the saddle-node the coefficients of the
+    height and of the phase are infinite, because their errors are of the order √γ there.
+    """
+    impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
+    errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, n=n)
+    return {name: np.imag(error) / H for name, error in errors.items()}
+
+
+def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
+    """Estimates of what the error law leaves of the six errors, at most.
+
+    They are Sη with η = D max(1, Λ) + D (1 + |1 - Y₀|)/(r v₀) and a scale S of the moduli of the
+    terms of the law. The theorem has their order in D; their factor 1 is fitted to random orbits
+    and not proved (docs/error-law.md).
+    """
+    impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
+    reference = restitution_values(impact, amplitude, n)
+    v, delay = impact.speed, impact.centroid
+    half = n * np.pi
+    line = v - half
+    shift = np.abs(impact.load / (1 + impact.slope))
+    weight = 1 + np.abs(1 - _root(np.square(amplitude) - line**2))
+    loaded = impact.duration * weight / (impact.restitution * v)
+    small = impact.duration * np.maximum(1, amplitude) + loaded
+    with np.errstate(invalid="ignore", divide="ignore"):
+        later = shift * weight / _root(np.square(amplitude) - (line - shift) ** 2)
+        scales = {
+            "max_height": (line * later + v * delay) / reference["max_height"],
+            "bounce_velocity": (impact.duration - delay) / reference["bounce_velocity"],
+            "phase": (later + delay) / reference["phase"],
+            "apparent_restitution": loaded,
+            "saddle_node": shift / reference["saddle_node"],
+            "period_doubling": shift / reference["saddle_node"] + delay / half,
+        }
+        return {name: scale * small for name, scale in scales.items()}
+
+
+def law_thresholds(
+    contacts: "SpringDamper | Callable",
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    tolerance: float = 0.01,
+) -> dict:
+    """The ϖ from which on the restitution model is within a tolerance, by the error law.
+
+    Parameters
+    ----------
+    contacts
+        A ball with a spring and a damper, whose ϖ is disregarded, or a function from a number x to
+        the ball, whose contact has a duration in proportion to 1/x; x then takes the place of ϖ.
+    amplitude
+        Λ, a number or an array that broadcasts with the parameters of the ball.
+    tolerance
+        Largest modulus ε of the relative error.
+
+    Returns
+    -------
+    dict
+        By the names in :data:`QUANTITIES`: |K|/ε, but for the height and for the phase, which feel
+        the saddle-node in the first order. As functions of 1/ϖ their errors are concave: they
+        leave the tolerance downwards, or first upwards (Eq. R9 of the article).
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import SpringDamper
+    >>> found = law_thresholds(SpringDamper(1.0, restitution=0.65), amplitude=1.0)
+    >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
+    (82.18, 132.3)
+    """
+    impact = free_impact(along_ratio(contacts)(1.0), n)
+    found = {
+        name: np.abs(coefficient) / tolerance
+        for name, coefficient in law_coefficients(impact, amplitude=amplitude, n=n).items()
+    }
+    half = n * np.pi
+    line = impact.speed - half
+    shift = impact.load / (1 + impact.slope)
+    # The error of the height is largest where Y₁ rises as fast as the depth of the instant, and
+    # that of the phase where ψ₁ does: at these values of C - s.
+    deeper = shift * line + impact.speed * impact.centroid
+    later = shift + impact.centroid
+    turns = {
+        "max_height": deeper * amplitude / np.hypot(shift, deeper),
+        "phase": _root(np.maximum(np.square(amplitude) - (shift / later) ** 2, 0)),
+    }
+    for name, turn in turns.items():
+        found[name] = 1 / _longest(impact, amplitude, n, tolerance, name, turn)
+    return found
+
+
+def _longest(impact, amplitude, n, tolerance, name, turn) -> NDArray:
+    """The stretch γ up to which a concave error is within the tolerance.
+
+    ``turn`` is the value of C - s at which the error is largest.
+    """
+    line = impact.speed - n * np.pi
+    shift = impact.load / (1 + impact.slope)
+
+    def error(stretch, amplitude, *fields):
+        return law_errors(FreeImpact(*fields).stretched(stretch), amplitude=amplitude, n=n)[name]
+
+    with np.errstate(invalid="ignore", divide="ignore"):
+        largest = np.where(shift > 0, np.maximum((line - turn) / shift, 0), 0)
+        # The law has orbits as long as |C - s| is below Λ. A contact of 4π is out of its range.
+        end = (line + np.copysign(amplitude, shift)) / shift * (1 - 1e-9)
+    end = np.fmin(end, 4 * np.pi / impact.duration)
+    upwards = error(largest, amplitude, *impact) >= tolerance
+    found = find_root(
+        lambda stretch, bound, *known: error(stretch, *known) - bound,
+        (np.where(upwards, 0, largest), np.where(upwards, largest, end)),
+        args=(np.where(upwards, tolerance, -tolerance), amplitude, *impact),
+    )
+    return np.where(error(end, amplitude, *impact) > -tolerance, end, found.x)
+
+
+def along_ratio(contacts: "SpringDamper | Callable") -> Callable:
+    """The function from ϖ to the ball: that which is given, or that of a spring and a damper."""
+    if isinstance(contacts, Ball):
+        return lambda ratio: contacts.at(frequency_ratio=ratio)
+    return contacts

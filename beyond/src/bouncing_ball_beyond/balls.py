@@ -74,6 +74,16 @@ class Ball:
         vars(new).update(vars(self), **values)
         return new
 
+    @property
+    def kappa(self):
+        """κ of a release where δ + κδ′ = 0: 0 for a release where δ = 0."""
+        return 0.0
+
+    @property
+    def frequency_powers(self):
+        """Powers of Ω to which parameters are proportional for one contact, by their names."""
+        return {}
+
     def start(self, u):
         """The gap at which impacts of the closing speed u start."""
         return 0.0 * u
@@ -316,6 +326,11 @@ class SpringDamper(Ball):
         """κ of the release δ + κδ′ = 0: 2ζ/ϖ, or 0 for the displacement release."""
         return 2 * self.zeta / self.frequency_ratio if self.release == "force" else 0.0
 
+    @property
+    def frequency_powers(self):
+        """ϖ is proportional to 1/Ω."""
+        return {"frequency_ratio": -1.0}
+
     def start(self, u):
         """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
         return np.where(np.real(u) < 0, self.kappa * u, 0.0)
@@ -345,8 +360,74 @@ class SpringDamper(Ball):
         return Signature(r, duration, r * through / (1 + r), loss)
 
     def first_release(self, tau, u, amplitude, gravity=1.0):
-        """T of the first release of contacts; NaN if a ball stays in contact."""
-        raise NotImplementedError
+        """T of the first release after impacts at the times τ with the speeds u; an array.
+
+        It is NaN for a ball that stays in contact: for ever, as `stays` shows, or for `PATIENCE`.
+
+        Examples
+        --------
+        >>> ball = SpringDamper(10.0, restitution=0.5)
+        >>> ball.first_release(0.0, np.array([1.0, 1e-3]), amplitude=0.9).round(3)
+        array([3.282,   nan])
+        """
+        ratio, zeta, kappa = self.frequency_ratio, self.zeta, self.kappa
+        given = tau, self.start(u), u, amplitude, gravity, ratio, zeta, kappa
+        given = np.broadcast_arrays(*(np.asarray(each, float) for each in given))
+        shape = given[0].shape
+        rows = np.array(given).reshape(len(given), -1)
+        time, found = np.zeros(rows.shape[1]), np.full(rows.shape[1], np.nan)
+        left = np.arange(rows.shape[1])
+        while left.size:
+            now, row = time[left], rows[:, left]
+            gap, rate = in_contact(now, *row[:-1])
+            ahead = step_to_release(now, gap, rate, row[0], *row[3:])
+            released = (now > 0) & (ahead <= 2**-52 * now)
+            time[left] += ahead
+            found[left[released]] = time[left[released]]
+            over = released | stays(now, gap, rate, row[0], *row[3:]) | (now > PATIENCE)
+            left = left[~over]
+        return ratio * found.reshape(shape)
+
+
+def step_to_release(s, gap, rate, tau, amplitude, gravity, ratio, zeta, kappa):
+    """A step from δ and δ′ at the time s of a contact that ends at the next release or before it.
+
+    The release function f = δ + κδ′ has |f″| ≤ M over a time of 1/ϖ, and the step is the first positive
+    zero of f + f′h + Mh²/2, but at most 1/ϖ. Near a release it becomes Newton's step. M follows from
+    the energy, because the spring and the damper do not raise e = √(δ′² + ϖ²δ²)::
+
+        e ≤ e₀ + (g + Λ)/ϖ,    |δ″| ≤ g + Λ + ϖ√(1 + 4ζ²) e,
+        f″ = (1 - 2ζϖκ) δ″ - κϖ²δ′ + κΛ cos(τ + s)
+    """
+    stiffness, loss = ratio * ratio, 2 * zeta * ratio
+    acceleration = amplitude * np.sin(tau + s) - gravity - loss * rate - stiffness * gap
+    value, slope = gap + kappa * rate, rate + kappa * acceleration
+    strength = np.abs(gravity) + np.abs(amplitude)
+    speed = np.sqrt(rate * rate + stiffness * gap * gap) + strength / ratio
+    bound = np.abs(1 - loss * kappa) * (strength + ratio * np.sqrt(1 + 4 * zeta * zeta) * speed)
+    bound = bound + kappa * (stiffness * speed + np.abs(amplitude))
+    root = np.sqrt(np.maximum(slope * slope - 2 * bound * value, 0.0))
+    # Each zero is the quotient without a difference of nearly equal numbers.
+    rising = np.maximum(slope + root, 1e-300)
+    step = np.where(slope < 0, (root - slope) / bound, -2 * value / rising)
+    return np.minimum(step, 1 / ratio)
+
+
+def stays(s, gap, rate, tau, amplitude, gravity, ratio, zeta, kappa):
+    """Whether a ball in contact with δ and δ′ at the time s is never released.
+
+    The steady response has f = δ + κδ′ ≤ -g/ϖ² + Λ√((1 + κ²)/γ), γ = (ϖ² - 1)² + (2ζϖ)². What is left of
+    the transient adds at most e√(1/ϖ² + κ²), where its e = √(δ′² + ϖ²δ²) never rises.
+    """
+    stiffness, loss = ratio * ratio, 2 * zeta * ratio
+    gamma = np.maximum((stiffness - 1) * (stiffness - 1) + loss * loss, 1e-300)
+    a, b = amplitude * (stiffness - 1) / gamma, -amplitude * loss / gamma
+    sin, cos = np.sin(tau + s), np.cos(tau + s)
+    transient = gap + gravity / stiffness - a * sin - b * cos
+    transient_rate = rate - a * cos + b * sin
+    energy = transient_rate * transient_rate + stiffness * transient * transient
+    steady = np.abs(amplitude) * np.sqrt((1 + kappa * kappa) / gamma) - gravity / stiffness
+    return steady + np.sqrt(energy * (1 / stiffness + kappa * kappa)) < 0
 
 
 @dataclass(frozen=True)
@@ -387,6 +468,11 @@ class Corrected(Ball):
         new = object.__new__(type(self))
         vars(new)["of"] = self.of.at(**values)
         return new
+
+    @property
+    def frequency_powers(self):
+        """Those of the ball with contacts."""
+        return self.of.frequency_powers
 
     def start(self, u):
         """The gap -u t_c(u) of the instant."""

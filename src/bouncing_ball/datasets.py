@@ -238,20 +238,19 @@ def save(
     title: str,
     parameters: Mapping,
     code: Iterable[str | Path],
+    variables: Mapping[str, Variable] = VARIABLES,
 ) -> None:
     """Save a dataset as netCDF, with the descriptions of its variables and its provenance.
 
     `parameters` are the parameters it was computed with, `code` the files of code that computed
     it: the script and the modules of the package that it uses. The file appears whole or not at
-    all. Raises ValueError for a variable that `VARIABLES` does not describe.
+    all. Raises ValueError for a variable that `variables` do not describe.
     """
     path = Path(path)
     files = [Path(file) for file in code]
-    unknown = [str(name) for name in dataset.variables if name not in VARIABLES]
+    unknown = [str(name) for name in dataset.variables if name not in variables]
     if unknown:
-        raise ValueError(
-            f"{path.name}: datasets.VARIABLES has no description of {', '.join(unknown)}"
-        )
+        raise ValueError(f"{path.name}: VARIABLES has no description of {', '.join(unknown)}")
     described = dataset.drop_encoding().assign_attrs(
         Conventions="CF-1.11",
         title=title,
@@ -262,7 +261,7 @@ def save(
         versions=json.dumps(versions()),
     )
     for name, variable in described.variables.items():
-        variable.attrs = description(VARIABLES[str(name)], variable.dtype)
+        variable.attrs = description(variables[str(name)], variable.dtype)
     with whole(path) as unfinished:
         described.to_netcdf(unfinished, engine="netcdf4")
 
@@ -285,6 +284,7 @@ def save_stage(
     settings: Mapping,
     files: Mapping[str, str],
     code: Iterable[str | Path],
+    variables: Mapping[str, Variable] = VARIABLES,
 ) -> None:
     """Compute and save the datasets of a stage, which has the function and the title of each.
 
@@ -292,7 +292,8 @@ def save_stage(
     """
     for name, (compute, title) in stage.items():
         dataset = compute(parameters[name], **settings)
-        save(dataset, files[name], title, {**parameters[name], **settings}, code)
+        known = {**parameters[name], **settings}
+        save(dataset, files[name], title, known, code, variables)
 
 
 def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:

@@ -1,0 +1,227 @@
+// One orbit in the three models: the verdict on it, its drawings and its tables.
+"use strict";
+
+const NAMES = ["spring-damper", "restitution", "corrected"];
+// Of their dots: each is seen where they lie upon each other.
+const SIZES = [8, 5.5, 3.5];
+
+// What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
+const BESIDE = 1e-3;
+function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
+  const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
+  return `one that starts beside it ${SAID[end.kind](end)}`;
+}
+
+// By which of the two definitions the errors beside it are, and the other one of the greatest height.
+function definitionOf({physical, tolerance}, exact, simple) {
+  const contact = "relative to the contact", own = "relative to the simple model, as in Eqs. 37 and 38";
+  const other = (physical ? paperError : deviation)(exact.max_height, simple.max_height);
+  return `Errors here are ${physical ? `${contact}, as in the command design` : own}`
+    + (Number.isFinite(other) ? `; ${physical ? own : contact}, that of the restitution model is ${signed(other, tolerance)}.` : ".");
+}
+
+function verdictOf(found, question) {
+  const {n, physical, tolerance} = question;
+  const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
+  const wrong = exact.exists !== simple.exists
+    ? (exact.exists ? `it misses the ${n}-T orbit, which the contact has`
+      : `it has the ${n}-T orbit, which the contact has not`)
+    : exact.is_stable !== simple.is_stable
+      ? `its ${n}-T orbit ` + (simple.is_stable ? "is stable, and the contact's is not"
+        : "is not stable, and the contact's is") : "";
+  const same = exact.exists === corrected.exists && exact.is_stable === corrected.is_stable;
+  const heights = [simple, exact].map(orbit => orbit.max_height * (physical?.length ?? 1));
+  const predicted = `for the greatest height of the ${n}-T orbit it predicts `
+    + `${inPlaceOf(...heights, physical && "m")}, ${signed(error, tolerance)}`;
+  const definition = definitionOf(question, exact, simple);
+  if (!exact.exists && !simple.exists)
+    return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
+      + `${shown(found.limits[0].saddle_node, 4)}.`];
+  if (exact.exists && !exact.is_stable)
+    return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
+  if (!wrong && Math.abs(error) <= tolerance)
+    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}. ${definition}`];
+  return [false, `The restitution model is not good enough: `
+    + `${wrong || `${predicted}, beyond ${percent(tolerance)}`}`
+    + (same && Math.abs(found.corrected.max_height) <= tolerance
+      ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height, tolerance)}. `
+      : "; nor is the corrected one: simulate the contact. ") + definition];
+}
+
+function drawBranch(found, {n, amplitude}) {
+  const [contact, simple, corrected] = found.models;
+  const top = 1.15 * Math.max(amplitude, 1.2,
+    ...found.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
+  const plot = new Plot("branch", [0, top], [-0.5, 0.5], "excitation amplitude Λ", "phase φ/π",
+    `Branches of ${n}-T orbits: phase against amplitude. The contact's saddle-node is at `
+    + `${shown(found.limits[0].saddle_node)}, its period doubling at `
+    + `${shown(found.limits[0].period_doubling)}.`);
+  for (const [model, kind] of [[simple, "restitution"], [corrected, "corrected"]])
+    for (const side of ["unstable", "stable"]) {
+      const start = model.saddleNode(n), turned = {true: [], false: []};
+      for (let k = 0; k <= 160; k++) {
+        const lam = start + (top - start) * (k / 160) ** 2, at = model.orbit(n, lam, side);
+        for (const stable of [true, false])
+          turned[stable].push(at.is_stable === stable ? [lam, at.phase / Math.PI] : [NaN, NaN]);
+      }
+      plot.line(turned[true], `curve ${kind}`);
+      plot.line(turned[false], `curve unstable ${kind}`);
+    }
+  const points = contact.drawn(n), place = at => [at.amplitude, at.phase / Math.PI];
+  for (const stable of [true, false])
+    plot.line(points.map(at => isStable(at.trace, at.determinant) === stable ? place(at) : [NaN, NaN]),
+      `curve ${stable ? "" : "unstable "}spring-damper`);
+  contact.bifurcations(n).forEach((at, k) => plot.mark(["circle", "square"][k], ...place(at), "bifurcation"));
+  found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, orbit.phase / Math.PI, `dot ${NAMES[k]}`, SIZES[k]));
+}
+
+let motion = null;
+function drawMotion(found, {n, amplitude}) {
+  const end = 2 * Math.PI * (n + 0.25), times = Array.from({length: 601}, (_, k) => k * end / 600);
+  const curves = found.orbits.map(orbit => orbit.exists
+    ? times.map(t => heightAt(orbit, t - orbit.phase)) : null);
+  const heights = [amplitude, -amplitude, ...curves.flatMap(c => c ?? [])];
+  const low = Math.min(...heights), high = Math.max(...heights), room = 0.05 * (high - low || 1);
+  const plot = new Plot("motion", [0, end], [low - room, high + room], "time τ = Ωt", "height Ω²z/g",
+    `Height of the ball over one cycle in the models, and of the table. Greatest heights: `
+    + NAMES.map((name, k) => `${name} ${shown(found.orbits[k].max_height, 4)}`).join(", ") + ".");
+  plot.line(times.map(t => [t, amplitude * Math.sin(t)]), "curve table");
+  curves.forEach((curve, k) => curve && plot.line(times.map((t, i) => [t, curve[i]]), `curve ${NAMES[k]}`));
+  const movers = found.orbits.map((orbit, k) => orbit.exists
+    ? plot.add("circle", {class: `dot ${NAMES[k]}`, r: SIZES[k], cx: -20, cy: -20}) : null);
+  const table = plot.add("rect", {class: "dot table", width: 18, height: 3, x: -40, y: -40});
+  motion = {place(t) {
+    table.setAttribute("x", plot.x(t) - 9);
+    table.setAttribute("y", plot.y(amplitude * Math.sin(t)));
+    found.orbits.forEach((orbit, k) => {
+      if (!orbit.exists) return;
+      movers[k].setAttribute("cx", plot.x(t));
+      movers[k].setAttribute("cy", plot.y(heightAt(orbit, t - orbit.phase)));
+    });
+  }, end};
+  motion.place(0);
+}
+
+function drawMultipliers(found) {
+  const plot = new Plot("multipliers", [-1.5, 1.5], [-1.5, 1.5], "real part", "imaginary part",
+    "Floquet multipliers in the plane: " + NAMES.map((name, k) =>
+      `${name} ${found.orbits[k].multipliers.map(m => `${shown(m[0], 3)} + ${shown(m[1], 3)} i`).join(" and ")}`)
+      .join("; ") + ".");
+  const circle = Array.from({length: 181}, (_, k) => [Math.cos(k * Math.PI / 90), Math.sin(k * Math.PI / 90)]);
+  plot.line(circle, "curve table");
+  found.orbits.forEach((orbit, k) => orbit.multipliers.forEach(
+    ([re, im]) => plot.mark("dot", re, im, `dot ${NAMES[k]}`, SIZES[k])));
+}
+
+// ---- Tables.
+function row(name, cells) {
+  const made = document.createElement("tr"), head = document.createElement("th");
+  head.scope = "row";
+  head.textContent = name;
+  made.append(head, ...cells.map(([text, value, key]) => {
+    const cell = document.createElement("td");
+    cell.textContent = text;
+    if (key) [cell.dataset.key, cell.dataset.value] = [key, String(value)];
+    return cell;
+  }));
+  return made;
+}
+
+const ORBIT_ROWS = {
+  phase: "phase of impact φ", contact_duration: "duration of contact τ_b",
+  impact_velocity: "velocity before, z′_i", bounce_velocity: "bouncing-off velocity z′_b",
+  apparent_restitution: "apparent restitution r_a", max_height: "greatest height max z",
+};
+
+function fillTables(found, question) {
+  const cells = read => NAMES.map((name, k) => {
+    const [text, value, key] = read(found.orbits[k], found.limits[k], k);
+    return [text, value, key && `${name} ${key}`];
+  });
+  const yes = (orbit, value) => !orbit.exists ? "no orbit" : value ? "yes" : "no";
+  $("orbit-rows").replaceChildren(
+    row("exists", cells(o => [o.exists ? "yes" : "no", o.exists, "exists"])),
+    row("stable", cells(o => [yes(o, o.is_stable), o.is_stable, "is_stable"])),
+    row("admissible (sampled only)", cells(o => [yes(o, sampledAdmissible(o))])),
+    row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
+    row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
+    ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [shown(o[key]), o[key], key]))),
+    row("multipliers", cells(o => [o.exists ? o.multipliers.map(
+      ([re, im]) => im ? `${shown(re, 4)} ${im < 0 ? "−" : "+"} ${shown(Math.abs(im), 4)}i` : shown(re, 4))
+      .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
+  );
+  $("error-definition").textContent = question.physical
+    ? "(q − q_SD)/q_SD of a model's value q, relative to the contact's q_SD, as in the command design"
+    : "(q_SD − q)/q of the contact's value q_SD, relative to the model's q, as in Eqs. 37 and 38";
+  $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
+    [found.errors[key], found.corrected[key]].map((value, k) =>
+      [`${signed(value, question.tolerance)}${Math.abs(value) <= question.tolerance ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
+        value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
+}
+
+// Lengths, times and forces of the physical tab: words, value, unit, and the name in the JSON of `design`.
+function physical(found, state, {mass, time, length, stiffness, damping}) {
+  const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
+  const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
+  const {depth, force} = loadsOf(orbit);
+  return [
+    ["frequency ratio ϖ", omega, "", "frequency_ratio"], ["damping ratio ζ", zeta, "", "damping_ratio"],
+    ["stiffness k", stiffness, "N/m", "stiffness"], ["damping c", damping, "N s/m", "damping"],
+    ["natural frequency ω", omega / time, "rad/s"],
+    ["restitution of a free impact", found.own, "", "measured_restitution"],
+    ["amplitude of the table", state.acc * length, "m"],
+    ["contact time, free", start, "s", "contact_time"],
+    ["largest time step, a fiftieth of it", start / 50, "s", "largest"],
+    ["static deflection", weight / stiffness, "m", "static_deflection"],
+    ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
+    ["greatest height", orbit.max_height * length, "m", "max_height"],
+    ["duration of contact", orbit.contact_duration * time, "s", "contact_duration"],
+    ["impact speed", -orbit.relative_impact_velocity * GRAVITY * time, "m/s", "impact_speed"],
+    ["greatest compression (sampled)", depth * length, "m", "greatest_compression"],
+    ["peak force (sampled)", force * weight, "N", "peak_force"],
+    ["peak force over weight (sampled)", force, "", "peak_force_over_weight"],
+    ["corrected model: delay t_c", found.signature.delay * time, "s", "delay"],
+    ["corrected model: restitution r", found.signature.r, "", "restitution"],
+    ["corrected model: load σ", found.signature.load * time, "s", "load"],
+  ];
+}
+
+// Greatest compression and force of a contact, sampled.
+function loadsOf(orbit) {
+  let depth = orbit.exists ? 0 : NaN, force = depth;
+  for (let k = 0; orbit.exists && k <= 2000; k++) {
+    const at = orbit.state(k * orbit.contact_duration / 2000);
+    [depth, force] = [Math.max(depth, -at.gap), Math.max(force, at.force)];
+  }
+  return {depth, force};
+}
+
+// What the reader should know of the contact besides, in the words of the command `design`.
+function notesOf(found, {n}) {
+  const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
+  const admissible = sampledAdmissible(orbit);
+  return [
+    ...!orbit.exists ? [`at this Λ the contact has no ${name}`]
+      : orbit.is_stable && admissible ? [] : [`the ${name} is `
+        + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
+    ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
+    ...release === "displacement" && zeta > 0
+      ? ["before its release at δ = 0 the contact pulls the ball; a contact that cannot pull has the r of a release "
+        + "without force"] : []];
+}
+
+// ---- The animation: it waits until it is asked, and for those who want no motion stays so.
+let started = null, clock = 0;
+function frame(now) {
+  if (started === null) return;
+  clock = (now - started) / 1000 * 2 % motion.end;
+  motion.place(clock);
+  requestAnimationFrame(frame);
+}
+$("play").addEventListener("click", () => {
+  const on = started === null;
+  started = on ? performance.now() - clock * 500 : null;
+  $("play").textContent = on ? "Stop the motion" : "Play the motion";
+  $("play").setAttribute("aria-pressed", on);
+  if (on) requestAnimationFrame(frame);
+});

@@ -1,0 +1,156 @@
+// The page around the model: state in the address, controls, tables and drawings. Nothing is
+// fetched and nothing is stored; every view is a hash, which can be cited.
+"use strict";
+
+// Differences above this turn the badge red: a hundred times the largest that was seen.
+const BOUND = Number(document.body.dataset.bound);
+
+// ---- The page.
+const SELECTS = ["model", "pace", "view"];
+// What the answer in the shell has beyond that of the page, by its tab.
+const MORE_IN_SHELL = {
+  orbit: ", with every digit and certified", design: ", certified, and with --json with every digit", stage: "",
+};
+let current = DEFAULTS;
+// A state without an answer: why, and nothing of the answer before it.
+function refuse(text) {
+  clearTimeout(counting);
+  count = () => {};
+  $("refused").textContent = text;
+  document.body.toggleAttribute("data-refused", true);
+  for (const id of ["verdict", "starts", "command"]) $(id).textContent = "";
+  play(false);
+}
+
+// The balls with other starts are followed a moment, in ms, after the rest is shown.
+const PATIENCE = 200;
+let counting = 0, count = () => {};
+
+function show(hash, kept = DEFAULTS) {
+  clearTimeout(counting);
+  count = () => {};
+  const {state, refused} = parse(hash, kept), why = impossible(state);
+  current = state;
+  for (const [name, value] of Object.entries(state)) setControl(name, value);
+  for (const tab of CHOICES.tab) {
+    const on = tab === state.tab;
+    $(`tab-${tab}`).setAttribute("aria-selected", on);
+    $(`tab-${tab}`).tabIndex = on ? 0 : -1;
+    $(`panel-${tab}`).hidden = !on;
+  }
+  const onStage = state.tab === "stage";
+  $("starts").hidden = onStage;
+  $("sides").hidden = state.tab === "design";
+  $("design-answer").hidden = state.tab !== "design";
+  for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
+  $("slice-views").hidden = !onStage;
+  $("command-name").textContent = `The same in the shell${MORE_IN_SHELL[state.tab]}:`;
+  if (why) return refuse(why);
+  $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
+  document.body.toggleAttribute("data-refused", false);
+  $("command").textContent = commandOf(state);
+  if (onStage) {
+    const same = scene => hashOf({...DEFAULTS, tab: "stage", ...scene.state}) === hashOf(state);
+    $("look").textContent = Object.values(SCENES).find(same)?.look ?? "Balls on one table.";
+    return showStage(state);
+  }
+  play(false);
+  stage = null;
+  const question = asked(state), found = answer(question), verdict = verdictOf(found, question);
+  [$("verdict").dataset.good, $("verdict").textContent] = verdict;
+  $("starts").textContent = "Following balls with other starts …";
+  count = () => {
+    const ends = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
+    [$("verdict").dataset.good, $("verdict").textContent, $("starts").textContent] =
+      withStarts(verdict, ends, question.n);
+    $("starts").dataset.share = ends.share;
+    count = () => {};
+  };
+  // A slider that is dragged waits for no balls.
+  counting = setTimeout(() => count(), PATIENCE);
+  fillTables(found, question);
+  if (state.tab === "design") {
+    $("design-rows").replaceChildren(...physical(found, state, question.physical).map(
+      ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
+    $("notes").replaceChildren(...notesOf(found, question).map(note => {
+      const item = document.createElement("li");
+      item.textContent = `${note}.`;
+      return item;
+    }));
+  }
+  drawBranch(found, question);
+  drawMotion(found, question);
+  drawMultipliers(found);
+}
+
+function setControl(name, value) {
+  if (SELECTS.includes(name)) {
+    $(name).value = value;
+    return;
+  }
+  if (name in CHOICES) {
+    const chosen = document.querySelector(`input[name=${name}][value=${value}]`);
+    if (chosen) chosen.checked = true;
+    return;
+  }
+  document.querySelectorAll(`input[type=number][data-name=${name}]`).forEach(typed => {
+    if (document.activeElement !== typed) typed.value = value;
+    typed.removeAttribute("aria-invalid");
+  });
+  document.querySelectorAll(`input[type=range][data-name=${name}]`).forEach(slider => {
+    slider.value = name === "w" ? Math.log10(value) : value;
+    slider.setAttribute("aria-valuetext", `${name === "w" ? "ϖ = " : ""}${shown(value)}`);
+  });
+}
+
+function change(name, value) {
+  const next = name === "tab" ? onTab(current, value) : {...current, [name]: value}, hash = hashOf(next);
+  history.replaceState(null, "", hash);
+  show(hash, next);
+}
+
+document.querySelectorAll("input[type=number]").forEach(typed => typed.addEventListener("input", () => {
+  const {refused} = parse(`#tab=${current.tab}&${typed.dataset.name}=${encodeURIComponent(typed.value)}`);
+  if (refused.length) {
+    typed.setAttribute("aria-invalid", "true");
+    const [low, high] = rangeOf(typed.dataset.name, current.tab);
+    const whole = WHOLE.includes(typed.dataset.name) ? "whole " : "";
+    const label = document.querySelector(`label[for=${typed.id}]`).textContent;
+    refuse(`${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}.`);
+  } else change(typed.dataset.name, Number(typed.value));
+}));
+document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {
+  const {name} = slider.dataset, value = Number(slider.value);
+  change(name, name === "w" ? nearest(10 ** value, 4) : value);
+}));
+for (const name of SELECTS) $(name).addEventListener("change", () => change(name, $(name).value));
+document.querySelectorAll("input[type=radio]").forEach(choice => choice.addEventListener("change",
+  () => change(choice.name, choice.value)));
+CHOICES.tab.forEach((tab, k) => {
+  $(`tab-${tab}`).addEventListener("click", () => change("tab", tab));
+  $(`tab-${tab}`).addEventListener("keydown", event => {
+    const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
+    if (!step) return;
+    const other = CHOICES.tab[(k + step + CHOICES.tab.length) % CHOICES.tab.length];
+    change("tab", other);
+    $(`tab-${other}`).focus();
+  });
+});
+addEventListener("hashchange", () => show(location.hash));
+
+// ---- The badge: the page against Python.
+function check() {
+  const {commit, orbits, balls} = REFERENCES.references;
+  const parts = [compareRows(orbits, orbitAgain), compareRows(balls, ballAgain)];
+  const {worst, where} = parts.reduce((one, other) => other.worst <= one.worst ? one : other);
+  const good = worst <= BOUND;
+  $("badge").className = good ? "good" : "bad";
+  $("badge").textContent = `${good ? "Checked" : "WRONG"}: ${parts[0].count} orbits and ${parts[1].count} balls of the `
+    + `Python package, commit ${commit.slice(0, 10)}, computed again here: largest `
+    + `difference ${worst.toExponential(1)} (${where}), ${good ? "within" : "above"} ${BOUND.toExponential(0)}.`;
+  $("badge").dataset.worst = String(worst);
+}
+
+window.explorer = Object.freeze({show, parse, answer, check, count: () => count(), scenes: SCENES, stage: () => stage, place});
+show(location.hash);
+check();

@@ -1,0 +1,113 @@
+// Drawings: SVG elements with classes, whose colours are the style sheet's.
+"use strict";
+
+// ---- Numbers in words.
+// The nearest number of so many digits. Of two that are as near, it is the one whose last digit is
+// even, as in Python; toPrecision takes the larger one. A hundred more digits show all of a double.
+function nearest(x, digits) {
+  if (x === 0 || !Number.isFinite(x)) return x;
+  const [mantissa, power] = Math.abs(x).toExponential(100).split("e"), all = mantissa.replace(".", "");
+  const isTie = /^50*$/.test(all.slice(digits)), isEven = all[digits - 1] % 2 === 0;
+  return isTie && isEven ? Math.sign(x) * Number(`${all.slice(0, digits)}e${power - digits + 1}`)
+    : Number(x.toPrecision(digits));
+}
+const shown = (x, digits = 6) => Number.isFinite(x) ? String(nearest(x, digits)) : "none";
+// A share in two digits, and above 99.5 % as a whole number.
+const percent = x => !Number.isFinite(x) ? "none"
+  : x > 0 && x < 1e-5 ? "less than 0.001 %"
+    : `${nearest(100 * x, x < 0.995 ? 2 : String(Math.trunc(100 * x)).length)} %`;
+
+// An error with its sign, as in `bouncing-ball design`; next to the tolerance it has as many digits
+// as tell the two apart.
+function signed(x, tolerance) {
+  const size = percent(Math.abs(x));
+  if (!Number.isFinite(x) || x === 0 || size.startsWith("less")) return size;
+  const sign = x > 0 ? "+" : "-";
+  if (size === percent(tolerance))
+    for (let digits = 3; digits < 15; digits++) {
+      const found = nearest(100 * Math.abs(x), digits);
+      if (found !== nearest(100 * tolerance, digits)) return `${sign}${found} %`;
+    }
+  return sign + size;
+}
+// Two values that are compared, in as many digits as show that they differ.
+function inPlaceOf(predicted, exact, unit) {
+  const error = exact ? Math.abs(predicted / exact - 1) : 1;
+  const digits = error ? Math.min(12, Math.max(4, 2 - Math.floor(Math.log10(error)))) : 4;
+  const power = prefixPower(Math.max(Math.abs(predicted), Math.abs(exact)));
+  return [predicted, exact].map(x => unit ? prefixed(x, unit, digits, power) : shown(x, digits)).join(" in place of ");
+}
+
+const prefixPower = x => x === 0 ? 0
+  : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(nearest(x, 4))) / 3)));
+function prefixed(x, unit, digits = 4, power = prefixPower(x)) {
+  if (!Number.isFinite(x)) return "none";
+  const prefixes = {9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n"};
+  return `${shown(x / 10 ** power, digits)} ${prefixes[power]}${unit}`;
+}
+
+// ---- Axes, lines and marks.
+const SVG = "http://www.w3.org/2000/svg";
+function element(name, attributes, text) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+class Plot {
+  constructor(id, [x0, x1], [y0, y1], xName, yName, label, lines = true) {
+    this.svg = $(id);
+    this.svg.replaceChildren(element("title", {}, label));
+    const [, , width, height] = this.svg.getAttribute("viewBox").split(" ").map(Number);
+    this.box = {left: 60, right: width - 10, top: 10, bottom: height - 38};
+    const {left, right, top, bottom} = this.box;
+    this.x = v => left + (v - x0) / (x1 - x0) * (right - left);
+    this.y = v => bottom - (v - y0) / (y1 - y0) * (bottom - top);
+    this.limits = [x0, x1, y0, y1];
+    this.axes(xName, yName, lines);
+  }
+  axes(xName, yName, lines) {
+    const {left, right, top, bottom} = this.box, [x0, x1, y0, y1] = this.limits;
+    for (const v of lines ? ticks(x0, x1) : []) {
+      this.add("line", {class: "grid", x1: this.x(v), x2: this.x(v), y1: top, y2: bottom});
+      this.add("text", {class: "tick", x: this.x(v), y: bottom + 14, "text-anchor": "middle"}, shown(v, 4));
+    }
+    for (const v of ticks(y0, y1)) {
+      this.add("line", {class: "grid", x1: left, x2: right, y1: this.y(v), y2: this.y(v)});
+      this.add("text", {class: "tick", x: left - 5, y: this.y(v) + 4, "text-anchor": "end"}, shown(v, 4));
+    }
+    this.add("text", {class: "name", x: (left + right) / 2, y: bottom + 32, "text-anchor": "middle"}, xName);
+    const middle = (top + bottom) / 2;
+    this.add("text", {class: "name", x: 13, y: middle, "text-anchor": "middle",
+      transform: `rotate(-90 13 ${middle})`}, yName);
+  }
+  add(name, attributes, text) {
+    return this.svg.appendChild(element(name, attributes, text));
+  }
+  line(points, kind) {
+    const [x0, x1, y0, y1] = this.limits;
+    let path = "", pen = false;
+    for (const [x, y] of points) {
+      const inside = x >= x0 && x <= x1 && y >= y0 && y <= y1;
+      if (inside) path += `${pen ? "L" : "M"}${this.x(x).toFixed(2)} ${this.y(y).toFixed(2)}`;
+      pen = inside;
+    }
+    if (path) this.add("path", {class: kind, d: path});
+  }
+  mark(shape, x, y, kind, size = 4.5) {
+    const [x0, x1, y0, y1] = this.limits;
+    if (!(x >= x0 && x <= x1 && y >= y0 && y <= y1)) return null;
+    return shape === "square"
+      ? this.add("rect", {class: kind, x: this.x(x) - 4, y: this.y(y) - 4, width: 8, height: 8})
+      : this.add("circle", {class: kind, cx: this.x(x), cy: this.y(y), r: size});
+  }
+}
+
+function ticks(low, high) {
+  const raw = (high - low) / 5, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map(k => k * power).find(s => s >= raw);
+  const found = [];
+  for (let k = Math.ceil(low / step); k * step <= high + 1e-9 * step; k++) found.push(k * step);
+  return found;
+}

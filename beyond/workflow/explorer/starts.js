@@ -1,0 +1,50 @@
+// On which motions balls end that start from an even grid of impacts on the contact, and with which
+// shares. Each verdict has these shares beside it.
+"use strict";
+
+// Starts along each axis, impacts for which a ball is followed, and the share below which few balls
+// reach an orbit. A ball this near to a stable orbit ends there.
+const STARTS = 12, IMPACTS_OF_START = 300, FEW = 0.1, ON_ORBIT = 1e-4;
+
+// A relative speed above which every impact slows the ball: motions.basins.
+function fastest(contact, amplitude) {
+  const r = ownRestitution(contact);
+  return (1 + r) * Math.max(amplitude, 1) / Math.max(1 - r, 0.05);
+}
+
+// The motion of one end in words.
+function endInWords({kind, periods, impacts}) {
+  if (kind === "stays") return "at rest on the table";
+  if (kind === "sticks") return "on a locked motion";
+  if (kind === "goes on") return `in a motion that does not repeat within ${IMPACTS_OF_START} impacts`;
+  return impacts === 1 ? `on the ${periods}-T orbit` : `on a motion of ${counted(periods, impacts)}`;
+}
+
+// The shares of the starts by the words for their ends, the greatest first. `orbit` is the contact's
+// n-T orbit; balls are only said to end on it if it is stable and admissible.
+function endsOfStarts(contact, amplitude, orbit) {
+  const stays = orbit.exists && orbit.is_stable && sampledAdmissible(orbit);
+  const known = stays ? {at: orbit.phase, u: orbit.relative_impact_velocity, periods: orbit.n} : null;
+  const fast = fastest(contact, amplitude), counts = new Map();
+  for (let row = 0; row < STARTS; row++)
+    for (let column = 0; column < STARTS; column++) {
+      const phase = TURN * (column + 0.5) / STARTS - Math.PI, speed = fast * (row + 0.5) / STARTS;
+      const velocity = amplitude * Math.cos(phase) - speed;
+      const words = endInWords(followed({contact}, amplitude, phase, velocity, 0, IMPACTS_OF_START, known));
+      counts.set(words, (counts.get(words) ?? 0) + 1);
+    }
+  const all = STARTS * STARTS, on = stays ? counts.get(`on the ${orbit.n}-T orbit`) ?? 0 : 0;
+  const shares = [...counts].map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
+  const named = shares.slice(0, 3).map(([words, share], k) => `${percent(share)}${k ? "" : " end"} ${words}`);
+  const left = shares.slice(3).reduce((sum, [, share]) => sum + share, 0);
+  if (left) named.push(`${percent(left)} on others`);
+  return {stays, share: on / all, shares, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
+}
+
+// The verdict with the shares of starts: one on an orbit that few balls reach is not the headline.
+function withStarts([good, sentence], ends, n) {
+  if (!ends.stays || ends.share >= FEW) return [good, sentence, ends.sentence];
+  const few = ends.share ? `only ${percent(ends.share)} of the starts end` : "no start ends";
+  return [false, `Most balls end otherwise than on the stable ${n}-T orbit: ${few} on it.`,
+    `${ends.sentence} Of the orbit alone: ${sentence}`];
+}

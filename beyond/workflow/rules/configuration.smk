@@ -1,0 +1,44 @@
+# The configuration: that of this folder, then that of the folder of the run, then what the command
+# line gives. A mistake ends the run before any job, as in the replication, whose checks are used.
+
+import os
+from pathlib import Path
+
+import yaml
+
+
+include: "../../../workflow/rules/checks.smk"
+
+
+# This package, and the checkout of the replication around it. Runs in another folder (--directory),
+# or as a module of another workflow, read the configuration, code and reference of this package, and
+# write their results below the folder of the run.
+PACKAGE = Path(workflow.current_basedir).parents[1].resolve()
+REPLICATION = PACKAGE.parent
+
+
+configfile: os.path.relpath(PACKAGE / "config/config.yaml")
+
+
+# With --directory. A workflow that uses this one as a module may have its own file of this name.
+is_module = Path(workflow.basedir).resolve() != PACKAGE
+if not is_module and Path.cwd() != PACKAGE and os.path.exists("config/config.yaml"):
+
+    configfile: "config/config.yaml"
+
+
+def crossed(parameters, keys=()):
+    """A line for each mistake that a schema cannot know, in a section and those inside."""
+    for key, value in parameters.items():
+        if isinstance(value, dict):
+            yield from crossed(value, (*keys, key))
+    yield from unordered(parameters, keys)
+    if "amplitude" in parameters:
+        yield from below_saddle_node(parameters["n"], parameters, keys)
+    for index, case in enumerate(parameters.get("further", [])):
+        yield from below_saddle_node(case["n"], case, (*keys, "further", index))
+
+
+schema = yaml.safe_load((PACKAGE / "config/schema.yaml").read_text("utf-8"))
+refuse(workflow.configfiles, config, schema, crossed)
+refuse_links(PACKAGE)

@@ -1,0 +1,34 @@
+# Tables and the article are written from the datasets.
+
+
+rule table:
+    """Writes a table as text"""
+    input:
+        data="results/figures/{table}.nc",
+        code=code("tables"),
+    output:
+        md="results/figures/{table}.md",
+        csv=report("results/figures/{table}.csv", category="Tables", labels={"table": "{table}"}),
+    log:
+        "results/logs/table_{table}.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/tables.py"
+
+
+rule article:
+    """The article and the list of figures"""
+    input:
+        data=expand("results/figures/{name}.nc", name=DATASETS),
+        templates=[package(f"workflow/templates/{name}.md.j2") for name in ("article", "figures")],
+        code=code("article"),
+    output:
+        article="results/article.md",
+        figures="results/figures/README.md",
+    log:
+        "results/logs/article.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/article.py"

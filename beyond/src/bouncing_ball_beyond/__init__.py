@@ -15,6 +15,11 @@ _MODULES = {
     "Rigid": "balls",
     "Signature": "balls",
     "SpringDamper": "balls",
+    "OrbitEquations": "equations",
+    "OrbitNotFound": "orbits",
+    "PeriodicOrbit": "orbits",
+    "orbit": "orbits",
+    "ParameterPath": "paths",
 }
 __all__ = sorted(_MODULES)
 

@@ -1,0 +1,517 @@
+"""The equations of periodic orbits with k impacts in m periods of the table, and Newton's method.
+
+The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T. Times
+grow along an orbit, so that a flight ends where the next impact starts, and nothing has to be
+searched for. An orbit is a row z: the unknowns of its k impacts one after the other, and after them
+the values of the parameters that may change. Functions take many rows at once, shape (rows, N).
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.balls import H, Ball
+from bouncing_ball_beyond.paths import AMPLITUDE, Path
+
+FAR = 10.0
+"""A clearance is at most this large: the value where a flight does not come back to the table."""
+
+DENSE = 16
+"""Systems of more legs are halved first: libraries of linear algebra start threads for large ones."""
+
+
+class Linear(NamedTuple):
+    """The legs of orbits and their derivatives.
+
+    ``legs`` has the shape (rows, k, q) for q unknowns of an impact. ``derivatives`` has the shape
+    (rows, k, q, q + 2 + p): by the unknowns of the impact, by τ and u of the next one, and by the p
+    parameters.
+    """
+
+    legs: NDArray
+    derivatives: NDArray
+
+
+class Ends(NamedTuple):
+    """The ends of contacts and the flights after them, each of the shape (rows, k).
+
+    ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, and ``flight`` is
+    the time to the next impact.
+    """
+
+    leaves: NDArray
+    gap: NDArray
+    speed: NDArray
+    flight: NDArray
+
+
+@dataclass(frozen=True)
+class OrbitEquations:
+    """Equations of orbits of one ball, or of a row of balls that differ in their parameters.
+
+    Parameters
+    ----------
+    ball : Ball
+        Its parameters are numbers, or arrays of the shape (rows,).
+    impacts : int
+        Their number k.
+    periods : int or ndarray, shape (rows,)
+        The number m of periods of the table after which the motion repeats.
+    amplitude : float or ndarray, shape (rows,)
+        Λ, where it is not what changes.
+    along : tuple of Path
+        What may change. Its values are the last entries of z.
+    """
+
+    ball: Ball
+    impacts: int
+    periods: int | NDArray
+    amplitude: float | NDArray = np.nan
+    along: tuple[Path, ...] = (AMPLITUDE,)
+
+    @cached_property
+    def unknowns(self) -> int:
+        """The number q of unknowns of an impact."""
+        return 3 if self.ball.lasts else 2
+
+    @cached_property
+    def size(self) -> int:
+        """The number kq of unknowns of all impacts."""
+        return self.impacts * self.unknowns
+
+    @cached_property
+    def length(self) -> int:
+        """The number N of entries of a row."""
+        return self.size + len(self.along)
+
+    def rows(self, which) -> "OrbitEquations":
+        """The equations of some of the rows, by an index, a slice or a mask of them."""
+        arrays = {name: each for name, each in self.ball.parameters.items() if np.ndim(each)}
+        return replace(
+            self,
+            ball=self.ball.at(**{name: each[which] for name, each in arrays.items()}),
+            periods=self.periods[which] if np.ndim(self.periods) else self.periods,
+            amplitude=self.amplitude[which] if np.ndim(self.amplitude) else self.amplitude,
+        )
+
+    @cached_property
+    def _beside_impacts(self) -> tuple[Ball, NDArray]:
+        """The ball and Λ as columns, which go beside arrays of the shape (rows, k)."""
+        arrays = {name: each for name, each in self.ball.parameters.items() if np.ndim(each)}
+        ball = self.ball.at(**{name: each[:, np.newaxis] for name, each in arrays.items()})
+        return ball, np.asarray(self.amplitude, float)[..., np.newaxis]
+
+    def at(self, values) -> tuple[Ball, NDArray]:
+        """The ball and Λ, beside impacts, at values of what changes, shape (..., p)."""
+        ball, amplitude = self._beside_impacts
+        for j, path in enumerate(self.along):
+            ball, amplitude = path.apply(ball, amplitude, values[..., j, np.newaxis])
+        return ball, amplitude
+
+    def split(self, z) -> tuple[NDArray, Ball, NDArray]:
+        """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
+        x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
+        return x, *self.at(z[:, self.size :])
+
+    def following(self, x) -> NDArray:
+        """For each impact the next one; after the last the first, m periods later."""
+        following = np.roll(x, -1, axis=-2)
+        following[..., -1, 0] += 2 * np.pi * np.asarray(self.periods)
+        return following
+
+    @cached_property
+    def _steps(self) -> tuple[NDArray, NDArray]:
+        """Complex steps of the unknowns of a leg and of the parameters, one each."""
+        inner, count = self.unknowns + 2, self.unknowns + 2 + len(self.along)
+        steps = 1j * H * np.eye(count)
+        return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
+
+    def linear(self, z) -> Linear:
+        """The legs and their derivatives.
+
+        A leg is a contact and the flight after it. Its equations are that the contact ends where
+        the release function is zero, and the flight at the gap and with the speed of the next
+        impact.
+        """
+        q = self.unknowns
+        x = z[:, : self.size].reshape(len(z), self.impacts, q)
+        of_legs, of_parameters = self._steps
+        y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
+        ball, amplitude = self.at(z[:, self.size :] + of_parameters)
+        impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude)
+        leaves = y[..., 0] + impact.duration
+        gap, rate = flight(y[..., q] - leaves, leaves, impact.gap, impact.speed, amplitude)
+        legs = np.empty((*y.shape[:-1], q), complex)
+        if self.ball.lasts:
+            legs[..., 0] = impact.release
+        legs[..., q - 2] = gap - ball.start(y[..., q + 1])
+        legs[..., q - 1] = rate + y[..., q + 1]
+        return Linear(legs[0].real, np.moveaxis(legs.imag, 0, -1) / H)
+
+    def residuals(self, z) -> tuple[NDArray, NDArray]:
+        """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
+        linear = self.linear(z)
+        legs = linear.legs.reshape(len(z), self.size)
+        return legs, dense(linear.derivatives).reshape(len(z), self.size, self.length)
+
+    def maps(self, linear: Linear) -> NDArray:
+        """Derivatives of each next (τ, u) by τ and u of an impact, shape (rows, k, 2, 2)."""
+        by_impact = linear.derivatives[..., :2]
+        by_others = linear.derivatives[..., 2 : self.unknowns + 2]
+        return -np.linalg.solve(by_others, by_impact)[..., -2:, :]
+
+    def trace_and_determinant(self, linear: Linear) -> tuple[NDArray, NDArray]:
+        """Those of the derivative of the return map, each of the shape (rows,).
+
+        The determinant is the product of those of the legs, which has all digits where that of
+        the product of the maps has none.
+        """
+        maps = self.maps(linear)
+        determinants = maps[..., 0, 0] * maps[..., 1, 1] - maps[..., 0, 1] * maps[..., 1, 0]
+        product = product_of(maps)
+        return product[:, 0, 0] + product[:, 1, 1], determinants.prod(axis=-1)
+
+    def turn(self, linear: Linear) -> NDArray:
+        """tr/(1 + det): 1 where a multiplier is 1, -1 where one is -1, between them if stable."""
+        trace, determinant = self.trace_and_determinant(linear)
+        return trace / (1 + determinant)
+
+    def ends(self, z) -> Ends:
+        """The ends of the contacts and the flights after them."""
+        x, ball, amplitude = self.split(z)
+        impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude)
+        leaves = x[..., 0] + impact.duration
+        return Ends(leaves, impact.gap, impact.speed, self.following(x)[..., 0] - leaves)
+
+    def clearance(self, z) -> NDArray:
+        """How far the ball stays above the table where a flight turns back from it: the least of all.
+
+        After a release by the force the ball is clear of the contact if it is above the line
+        δ + κδ′ = 0, on which a contact would resume.
+        """
+        _, ball, amplitude = self.split(z)
+        amplitude = np.broadcast_to(amplitude, (len(z), 1))[..., np.newaxis]
+        ends = self.ends(z)
+        start = [each[..., np.newaxis] for each in (ends.leaves, ends.gap, ends.speed)]
+        samples = _samples(ends.flight)
+
+        def gap(t):
+            return flight(t, *start, amplitude)[0]
+
+        def rate(t):
+            return flight(t, *start, amplitude)[1]
+
+        least = least_turn(rate, gap, ends.flight, samples)
+        if np.any(ball.kappa):
+            kappa = np.broadcast_to(ball.kappa, (len(z), 1))[..., np.newaxis]
+
+            def free(t):
+                return gap(t) + kappa * rate(t)
+
+            def free_rate(t):
+                return rate(t) + kappa * (amplitude * np.sin(start[0] + t) - 1)
+
+            def free_below(t):
+                return np.where(gap(t) < 0, free(t), FAR)
+
+            least = np.minimum(least, least_turn(free_rate, free_below, ends.flight, samples))
+        return least.min(axis=-1)
+
+    def contact_clearance(self, z) -> NDArray:
+        """How far release functions stay below zero where they turn back: the least of all contacts."""
+        if not self.ball.lasts:
+            return np.full(len(z), FAR)
+        x, ball, amplitude = self.split(z)
+        end = self._during(x, ball, amplitude)
+
+        def falls(t):
+            return -_derivative(lambda time: end(time).release, t)
+
+        def pressed(t):
+            return -end(t).release
+
+        return least_turn(falls, pressed, x[..., 2], _samples(x[..., 2])).min(axis=-1)
+
+    def max_height(self, z) -> NDArray:
+        """The greatest height of the ball, shape (rows,): at the summit of a flight or in a contact,
+        in which a table below a compliant contact may lift the ball higher than it flies.
+        """
+        x, ball, amplitude = self.split(z)
+        ends = self.ends(z)
+        bounce = ends.speed + amplitude * np.cos(ends.leaves)
+        rise = np.clip(bounce, 0, ends.flight)
+        height = ends.gap + amplitude * np.sin(ends.leaves) + (bounce - rise / 2) * rise
+        if not self.ball.lasts:
+            return height.max(axis=-1)
+        end = self._during(x, ball, amplitude)
+        amplitude = np.broadcast_to(amplitude, (len(z), 1))[..., np.newaxis]
+        tau = x[..., 0, np.newaxis]
+
+        def falls(t):
+            impact = end(t)
+            return -impact.speed - amplitude * np.cos(tau + impact.duration)
+
+        def depth(t):
+            impact = end(t)
+            return -impact.gap - amplitude * np.sin(tau + impact.duration)
+
+        in_contact = -least_turn(falls, depth, x[..., 2], _samples(x[..., 2]))
+        return np.maximum(height, in_contact).max(axis=-1)
+
+    def _during(self, x, ball, amplitude):
+        """The contacts as functions of T, shape (rows, k, times)."""
+        arrays = {name: each for name, each in ball.parameters.items() if np.ndim(each)}
+        beside = ball.at(**{name: each[..., np.newaxis] for name, each in arrays.items()})
+        amplitude = np.asarray(amplitude)[..., np.newaxis]
+        return lambda t: beside.contact(x[..., 0, np.newaxis], x[..., 1, np.newaxis], t, amplitude)
+
+    def least_speed(self, z) -> NDArray:
+        """The closing speed next to zero, negative if an odd number of impacts have u < 0."""
+        speeds = self.split(z)[0][..., 1]
+        return np.abs(speeds).min(axis=-1) * np.sign(speeds).prod(axis=-1)
+
+    def least_release(self, linear: Linear, z) -> NDArray:
+        """The least speed with which a release function passes zero, or with which a ball leaves."""
+        if self.ball.lasts:
+            return linear.derivatives[..., 0, 2].min(axis=-1)
+        return self.ends(z).speed.min(axis=-1)
+
+    def halving(self, z) -> NDArray:
+        """Difference of the speeds at impacts half an orbit apart; 1 for an odd number of impacts."""
+        speeds = self.split(z)[0][..., 1]
+        half = self.impacts // 2
+        return speeds[:, 0] - speeds[:, half] if self.impacts % 2 == 0 else np.ones(len(z))
+
+    def admissible(self, z) -> NDArray:
+        """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
+        x, ball, _ = self.split(z)
+        ends = self.ends(z)
+        landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
+        leaving = self.least_release(self.linear(z), z) > 0
+        lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
+        clear = (self.clearance(z) > 0) & (self.contact_clearance(z) > 0)
+        return clear & leaving & (landing & lasting).all(axis=-1)
+
+
+def _samples(ends) -> int:
+    """The number of samples of functions up to the largest of some times: 32 in a time of 2π."""
+    return int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
+
+
+def _derivative(function, t):
+    """The derivative of an analytic function, also at complex steps, whose derivatives it has."""
+    if not np.iscomplexobj(t):
+        return function(t + 1j * H).imag / H
+    # Two derivatives: a difference of complex steps serves Newton's method.
+    step = 1e-6
+    slopes = [function(t.real + shift + 1j * H).imag / H for shift in (-step, 0.0, step)]
+    return slopes[1] + 1j * H * (slopes[2] - slopes[0]) / (2 * step)
+
+
+def flight(s, leaves, gap, speed, amplitude):
+    """Gap δ and its derivative δ′ a time s after a ball left at the time `leaves` with δ′ = speed.
+
+    Λ sin τ is the table and 1 is gravity, so that δ″ = -1 + Λ sin τ.
+    """
+    ends = leaves + s
+    rate = speed + amplitude * np.cos(leaves)
+    table = amplitude * (np.sin(leaves) - np.sin(ends))
+    return gap + (rate - s / 2) * s + table, rate - s - amplitude * np.cos(ends)
+
+
+def least_turn(slope, value, ends, samples: int) -> NDArray:
+    """The least value at a local minimum of functions of the time within (0, ends).
+
+    Parameters
+    ----------
+    slope, value : callable
+        The function's derivative, or a positive multiple of it, and the function, of times of the
+        shape (..., n); the slope is analytic.
+    ends : ndarray
+    samples : int
+        Minima are found if the slope changes its sign between two of so many samples.
+
+    Returns
+    -------
+    ndarray
+        Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
+    """
+    times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
+    slopes = slope(times)
+    turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
+    if not turns.any():
+        return np.full(ends.shape, FAR)
+    values = np.where(turns, value(times)[..., 1:], np.inf)
+    which = values.argmin(axis=-1)[..., np.newaxis]
+    low = np.take_along_axis(times, which, axis=-1)
+    high = np.take_along_axis(times, which + 1, axis=-1)
+    middle = (low + high) / 2
+    for _ in range(6):
+        here = slope(middle + 1j * H)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            middle = middle - here.real * H / here.imag
+        middle = np.clip(np.where(np.isnan(middle), low, middle), low, high)
+    least = np.where(turns.any(axis=-1), value(middle)[..., 0], FAR)
+    return np.minimum(least, FAR)
+
+
+def product_of(maps: NDArray) -> NDArray:
+    """The product of the maps of the legs, the last one at the left, shape (rows, 2, 2)."""
+    while maps.shape[1] > 1:
+        even = maps.shape[1] // 2 * 2
+        pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
+        maps = np.concatenate([pairs, maps[:, even:]], axis=1)
+    return maps[:, 0]
+
+
+def dense(derivatives: NDArray) -> NDArray:
+    """The Jacobian (rows, k, q, N) from the derivatives of legs."""
+    rows, k, q, columns = derivatives.shape
+    matrix = np.zeros((rows, k, q, k * q + columns - q - 2))
+    for i in range(k):
+        after = (i + 1) % k * q
+        matrix[:, i, :, i * q : (i + 1) * q] += derivatives[:, i, :, :q]
+        matrix[:, i, :, after : after + 2] += derivatives[:, i, :, q : q + 2]
+    matrix[..., k * q :] = derivatives[..., q + 2 :]
+    return matrix
+
+
+def solve_bordered(derivatives, right, border, border_right) -> NDArray:
+    """Solve the linear equations of the legs together with p further ones.
+
+    Each pair of legs is turned by an orthogonal matrix, so that one half of its equations tells the
+    impact between the two and the other half is a leg from the first impact to the one after the
+    second. The number of legs is halved until one matrix is small. This is stable for
+    orbits of any instability, and its work is proportional to the number of legs.
+
+    Parameters
+    ----------
+    derivatives : ndarray, shape (rows, k, q, q + 2 + p)
+    right : ndarray, shape (rows, k, q, m)
+        Right sides of the legs.
+    border : ndarray, shape (rows, p, N)
+    border_right : ndarray, shape (rows, p, m)
+
+    Returns
+    -------
+    ndarray, shape (rows, N, m)
+    """
+    rows, k, q, columns = derivatives.shape
+    m = right.shape[-1]
+    if k <= DENSE:
+        matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)
+        values = np.concatenate([right.reshape(rows, k * q, m), border_right], axis=1)
+        return np.linalg.solve(matrix, values)
+    p, pairs = columns - q - 2, k // 2
+    first, second = derivatives[:, 0 : 2 * pairs : 2], derivatives[:, 1 : 2 * pairs : 2]
+    between = np.zeros((rows, pairs, 2 * q, q))
+    between[:, :, :q, :2] = first[..., q : q + 2]
+    between[:, :, q:] = second[..., :q]
+    others = np.zeros((rows, pairs, 2 * q, columns + m))
+    others[:, :, :q, :q] = first[..., :q]
+    others[:, :, q:, q : q + 2] = second[..., q : q + 2]
+    others[:, :, :q, q + 2 : columns] = first[..., q + 2 :]
+    others[:, :, q:, q + 2 : columns] = second[..., q + 2 :]
+    others[:, :, :q, columns:] = right[:, 0 : 2 * pairs : 2]
+    others[:, :, q:, columns:] = right[:, 1 : 2 * pairs : 2]
+    orthogonal, triangle = np.linalg.qr(between, mode="complete")
+    others = orthogonal.swapaxes(-1, -2) @ others
+    eliminated = np.linalg.solve(triangle[..., :q, :], others[..., :q, :])
+    legs = np.concatenate([others[..., q:, :columns], derivatives[:, 2 * pairs :]], axis=1)
+    legs_right = np.concatenate([others[..., q:, columns:], right[:, 2 * pairs :]], axis=1)
+    # What the impacts between the pairs add to the border.
+    blocks = border[..., : k * q].reshape(rows, p, k, q).swapaxes(1, 2)
+    kept = blocks[:, ::2].copy()
+    added = blocks[:, 1 : 2 * pairs : 2] @ eliminated
+    after = np.arange(1, pairs + 1) % kept.shape[1]
+    kept[:, :pairs] -= added[..., :q]
+    kept[:, after, :, :2] -= added[..., q : q + 2]
+    total = added.sum(axis=1)
+    kept = kept.swapaxes(1, 2).reshape(rows, p, -1)
+    outer = np.concatenate([kept, border[..., k * q :] - total[..., q + 2 : columns]], axis=-1)
+    solution = solve_bordered(legs, legs_right, outer, border_right - total[..., columns:])
+    states = solution[:, :-p].reshape(rows, -1, q, m)
+    whole = np.empty((rows, k, q, m))
+    whole[:, ::2] = states
+    whole[:, 1 : 2 * pairs : 2] = (
+        eliminated[..., columns:]
+        - eliminated[..., :q] @ states[:, :pairs]
+        - eliminated[..., q : q + 2] @ states[:, after, :2]
+        - eliminated[..., q + 2 : columns] @ solution[:, np.newaxis, -p:]
+    )
+    return np.concatenate([whole.reshape(rows, k * q, m), solution[:, -p:]], axis=1)
+
+
+class Solution(NamedTuple):
+    """What Newton's method ends with, by rows.
+
+    ``z`` are the orbits, NaN where the equations are not finite; ``found`` says which of them are
+    solutions; ``tangent`` is the direction of the curve of orbits, with normal · tangent = 1;
+    ``linear`` are the legs and derivatives at z.
+    """
+
+    z: NDArray
+    found: NDArray
+    tangent: NDArray
+    linear: Linear
+
+
+@np.errstate(all="ignore")
+def newton(
+    equations: OrbitEquations,
+    z: NDArray,
+    normal: NDArray | None = None,
+    iterations: int = 12,
+    tolerance: float = 1e-11,
+) -> Solution:
+    """Orbits on the planes through z across a normal, by Newton's method, for one free parameter.
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+    z : ndarray, shape (rows, N)
+    normal : ndarray, shape (rows, N), optional
+        By default the parameter is fixed.
+    iterations : int
+    tolerance : float
+        The largest last step relative to 1 + |z|. Steps fall quadratically, so that the error after
+        one of 1e-11 is that of rounding.
+
+    Returns
+    -------
+    Solution
+    """
+    if normal is None:
+        normal = np.zeros_like(z)
+        normal[:, -1] = 1.0
+    border, border_right = normal[:, np.newaxis], np.array([[[0.0, 1.0]]])
+    border_right = np.broadcast_to(border_right, (len(z), 1, 2))
+    for _ in range(iterations):
+        linear = equations.linear(z)
+        right = np.zeros((*linear.legs.shape, 2))
+        right[..., 0] = -linear.legs
+        step, tangent = np.moveaxis(_solve(linear, right, border, border_right), -1, 0)
+        z = z + step
+        found = np.abs(step).max(axis=1) < tolerance * (1 + np.abs(z).max(axis=1))
+        if (found | np.isnan(z).any(axis=1)).all():
+            break
+    return Solution(z, found, tangent, linear)
+
+
+def _solve(linear: Linear, right, border, border_right) -> NDArray:
+    """`solve_bordered`, with NaN for rows whose matrix is singular or not finite."""
+    try:
+        return solve_bordered(linear.derivatives, right, border, border_right)
+    except np.linalg.LinAlgError:
+        if len(right) == 1:
+            return np.full((1, border.shape[-1], right.shape[-1]), np.nan)
+    # One row spoils the others: solve them one by one.
+    each = range(len(right))
+    parts = [
+        _solve(Linear(*(a[[i]] for a in linear)), right[[i]], border[[i]], border_right[[i]])
+        for i in each
+    ]
+    return np.concatenate(parts)

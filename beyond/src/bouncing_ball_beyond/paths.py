@@ -1,0 +1,202 @@
+"""Along what orbits change: a parameter, the frequency of a table, or a path of one's own.
+
+A path has one variable. At each of its values it gives a ball and the amplitude Λ of the table. The
+variable may be an array and complex: derivatives along a path are complex steps, as all others.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+
+from bouncing_ball_beyond.balls import H, Ball
+
+LIMITS = MappingProxyType(
+    {
+        "amplitude": (1e-12, 1e8),
+        "restitution": (0.0, 1.0),
+        "frequency_ratio": (0.0, 1e8),
+        "damping_ratio": (0.0, 1e4),
+    }
+)
+"""The least and the greatest value of parameters; of all others, they are 0 and infinite."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter: "amplitude" is Λ, all others are those of the ball."""
+
+    name: str
+
+    def apply(self, ball: Ball, amplitude, value):
+        """The ball and the amplitude with the value of this parameter."""
+        if self.name == "amplitude":
+            return ball, value
+        return ball.at(**{self.name: value}), amplitude
+
+    def place(self, ball: Ball, amplitude):
+        """The value of this parameter."""
+        return amplitude if self.name == "amplitude" else ball.parameters[self.name]
+
+    def limits(self, ball: Ball, amplitude):
+        """The least and the greatest value."""
+        return LIMITS.get(self.name, (0.0, np.inf))
+
+
+@dataclass(frozen=True)
+class Frequency:
+    """A table that changes its frequency Ω at a fixed stroke a, below the same ball and contact.
+
+    The variable is Ω/√(g/a) = √Λ. The parameters of the ball change by their own powers of Ω
+    (`Ball.frequency_powers`): ϖ is proportional to 1/Ω.
+    """
+
+    name: str = "frequency"
+
+    def apply(self, ball: Ball, amplitude, value):
+        """The ball and the amplitude at √Λ = value, from those at another frequency."""
+        times = value / np.sqrt(amplitude)
+        old = ball.parameters
+        powers = ball.frequency_powers.items()
+        return ball.at(**{name: old[name] * times**power for name, power in powers}), value**2
+
+    def place(self, ball: Ball, amplitude):
+        """√Λ."""
+        return np.sqrt(amplitude)
+
+    def limits(self, ball: Ball, amplitude):
+        """The frequencies at which Λ and the parameters of the ball are within their limits."""
+        here = np.sqrt(amplitude)
+        low, high = np.sqrt(LIMITS["amplitude"])
+        for name, power in ball.frequency_powers.items():
+            with np.errstate(divide="ignore", invalid="ignore"):
+                ratios = np.divide(LIMITS.get(name, (0.0, np.inf)), ball.parameters[name])
+                ends = np.sort(here * ratios ** (1 / power))
+            low, high = np.fmax(low, ends[0]), np.fmin(high, ends[1])
+        return low, high
+
+
+@dataclass(frozen=True, init=False)
+class ParameterPath:
+    """Parameters as functions of one variable, along which orbits are followed.
+
+    Parameters
+    ----------
+    name : str
+        The name of the variable.
+    low, high : float
+        The range of the variable.
+    **functions : callable
+        For each parameter that changes, such as ``amplitude`` or ``frequency_ratio``, an analytic
+        function of the variable that takes arrays, also complex ones. The first one must rise or
+        fall throughout, because it tells where on the path an orbit is.
+
+    Raises
+    ------
+    ValueError
+        If the range is none, or if a function is missing, not analytic or not monotonic.
+
+    Examples
+    --------
+    A contact of 500 Hz on a shaker with a stroke of 0.5 mm, in hertz:
+
+    >>> path = ParameterPath(
+    ...     "hertz",
+    ...     low=15.0,
+    ...     high=30.0,
+    ...     amplitude=lambda f: 0.5e-3 * (2 * np.pi * f) ** 2 / 9.80665,
+    ...     frequency_ratio=lambda f: 500.0 / f,
+    ... )
+    """
+
+    name: str
+    low: float
+    high: float
+    functions: Mapping[str, Callable] = field(compare=False)
+
+    def __init__(self, name: str, *, low: float, high: float, **functions: Callable):
+        if not low < high:
+            raise ValueError(f"low = {low:g}, high = {high:g}: low must be below high")
+        if not functions:
+            raise ValueError(f"the path {name} needs a function for each parameter that changes")
+        samples = np.linspace(low, high, 33)
+        for parameter, function in functions.items():
+            _check_analytic(parameter, function, samples)
+        first, function = next(iter(functions.items()))
+        steps = np.diff(function(samples))
+        if not (np.all(steps > 0) or np.all(steps < 0)):
+            raise ValueError(f"{first} must rise or fall throughout the path {name}")
+        for key, value in {"name": name, "low": low, "high": high, "functions": functions}.items():
+            object.__setattr__(self, key, value)
+
+    def apply(self, ball: Ball, amplitude, value):
+        """The ball and the amplitude at a value of the variable."""
+        values = {name: function(value) for name, function in self.functions.items()}
+        amplitude = values.pop("amplitude", amplitude)
+        return (ball.at(**values) if values else ball), amplitude
+
+    def place(self, ball: Ball, amplitude):
+        """The value of the variable, by bisection of the first function.
+
+        Raises
+        ------
+        ValueError
+            If the parameters of the ball are not those of the path.
+        """
+        here = {**ball.parameters, "amplitude": amplitude}
+        name, function = next(iter(self.functions.items()))
+        wanted = np.asarray(here[name], float)
+        low, high = np.full(wanted.shape, self.low), np.full(wanted.shape, self.high)
+        rises = function(self.high) > function(self.low)
+        for _ in range(60):
+            middle = (low + high) / 2
+            above = (function(middle) > wanted) == rises
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        for name, function in self.functions.items():
+            on_path = function(high)
+            if not np.allclose(on_path, here[name], rtol=1e-9, atol=0):
+                raise ValueError(
+                    f"the orbit is not on the path {self.name}: its {name} is {here[name]:.10g},"
+                    f" and {on_path:.10g} where the path is nearest"
+                )
+        return high[()]
+
+    def limits(self, ball: Ball, amplitude):
+        """The range of the variable."""
+        return self.low, self.high
+
+
+Path = Parameter | Frequency | ParameterPath
+
+AMPLITUDE = Parameter("amplitude")
+
+
+def path_of(along: str | Path, ball: Ball) -> Path:
+    """The path that is meant by a name, or a path itself.
+
+    Raises
+    ------
+    ValueError
+        If the ball has no such parameter.
+    """
+    if not isinstance(along, str):
+        return along
+    allowed = ["amplitude", "frequency", *ball.parameters]
+    if along not in allowed:
+        raise ValueError(f"along = {along!r}: must be one of {', '.join(allowed)} or a path")
+    return Frequency() if along == "frequency" else Parameter(along)
+
+
+def _check_analytic(name, function, samples):
+    """Raise ValueError unless a complex step gives the derivative that a difference gives."""
+    try:
+        exact = np.broadcast_to(np.imag(function(samples + 1j * H)) / H, samples.shape)
+        values = np.broadcast_to(np.asarray(function(samples), float), samples.shape)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: the function must take arrays, also complex ones") from error
+    # The differences err by the square of the step and by the cube root of the rounding errors.
+    by_difference = np.gradient(values, samples, edge_order=2)
+    size = np.ptp(values) / np.ptp(samples) + np.abs(exact).max()
+    if not np.all(np.abs(exact - by_difference) <= 0.1 * size):
+        raise ValueError(f"{name}: the function must be analytic, without abs, real or max")

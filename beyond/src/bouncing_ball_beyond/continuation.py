@@ -1,0 +1,859 @@
+"""Orbits along a parameter, their special orbits, and cascades of period doublings.
+
+A branch is followed by pseudo-arclength continuation: the predictor goes along the tangent, and the
+corrector is Newton's method on the plane across it. Many branches, rows, are followed side by side.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
+from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit, single
+from bouncing_ball_beyond.paths import Path, path_of
+
+FIRST_STEP = 0.1
+LONGEST_STEP = 0.4
+SHORTEST_STEP = 1e-9
+"""Lengths of steps: changes of the unknowns, root mean square over the impacts, and relative ones of
+the parameter."""
+
+STRAIGHT = 0.95
+"""The least cosine of the angle between the tangents at the ends of a step."""
+
+TURN = 0.3
+"""The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
+
+
+class Kind(NamedTuple):
+    """A kind of special orbit: what is zero there, and why a branch ends there, or "" if it goes on."""
+
+    test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
+    end: str
+
+
+KINDS = {
+    "saddle-node": Kind(lambda equations, z, linear: 1 - equations.turn(linear), ""),
+    "period doubling": Kind(lambda equations, z, linear: 1 + equations.turn(linear), ""),
+    "grazing of a flight": Kind(lambda equations, z, linear: equations.clearance(z), ""),
+    "grazing of a release": Kind(lambda equations, z, linear: equations.contact_clearance(z), ""),
+    "period halving": Kind(
+        lambda equations, z, linear: equations.halving(z),
+        "the orbit merges with one of half its period",
+    ),
+    "grazing of an impact": Kind(
+        lambda equations, z, linear: equations.least_speed(z),
+        "an impact vanishes, because the ball lands with the speed of the table",
+    ),
+    "lost release": Kind(
+        lambda equations, z, linear: equations.least_release(linear, z),
+        "a release is lost, because the ball no longer leaves the table there",
+    ),
+}
+"""The kinds of special orbits of a branch, by name."""
+
+SEEN_ON_THE_WAY = ("period doubling", "period halving", "grazing of an impact", "lost release")
+"""The kinds at which a branch may end: their tests are computed at each step."""
+
+
+def kind_named(name: str) -> str:
+    """The name of a kind that is written with spaces or hyphens.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    plain = {kind.replace("-", " "): kind for kind in KINDS}
+    found = plain.get(str(name).replace("-", " ").lower())
+    if found is None:
+        raise ValueError(f"kind = {name!r}: must be one of {', '.join(KINDS)}")
+    return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FollowedBranch:
+    """Orbits along a parameter, in order.
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+    z : ndarray, shape (points, N)
+        The orbits, as rows of the equations.
+    special : tuple of PeriodicOrbit
+        The special orbits in their order, without that at which the branch starts.
+    start, end : str
+        Where the branch starts, and why it ends.
+    """
+
+    equations: OrbitEquations
+    z: NDArray
+    special: tuple[PeriodicOrbit, ...]
+    start: str
+    end: str
+
+    def __repr__(self):
+        first, last = self.values[[0, -1]]
+        kinds = ", ".join(f"{each.kind} at {each.z[-1]:.8g}" for each in self.special)
+        rows = {
+            "orbits": len(self),
+            "impacts": self.impacts,
+            "periods": self.periods,
+            "along": f"{self.along}, {first:.6g} to {last:.6g}",
+            "special orbits": kinds or "none",
+            "start": self.start,
+            "end": self.end,
+        }
+        return "\n".join(["FollowedBranch", *(f"  {name:16}{row}" for name, row in rows.items())])
+
+    def __len__(self):
+        return len(self.z)
+
+    @property
+    def impacts(self) -> int:
+        """The number k of impacts of the orbits."""
+        return self.equations.impacts
+
+    @property
+    def periods(self) -> int:
+        """The number m of periods of the table in one period of the orbits."""
+        return int(self.equations.periods)
+
+    @property
+    def along(self) -> str:
+        """The name of what changes."""
+        return self.equations.along[-1].name
+
+    @property
+    def values(self) -> NDArray:
+        """The values of what changes, shape (points,)."""
+        return self.z[:, -1]
+
+    @cached_property
+    def orbits(self) -> tuple[PeriodicOrbit, ...]:
+        """The orbits one by one."""
+        return tuple(PeriodicOrbit(self.equations, row) for row in self.z)
+
+    @cached_property
+    def stable(self) -> NDArray:
+        """Whether the orbits are stable, shape (points,)."""
+        trace, determinant = self.equations.trace_and_determinant(self.equations.linear(self.z))
+        return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
+
+    @cached_property
+    def admissible(self) -> NDArray:
+        """Whether a ball follows the orbits, shape (points,)."""
+        return self.equations.admissible(self.z)
+
+    def first(self, kind: str) -> PeriodicOrbit:
+        """The first special orbit of a kind.
+
+        Raises
+        ------
+        OrbitNotFound
+            If the branch has none.
+        """
+        name = kind_named(kind)
+        for each in self.special:
+            if each.kind == name:
+                return each
+        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
+        raise OrbitNotFound(f"no {name} on this branch; its special orbits are: {others}")
+
+
+class _Start(NamedTuple):
+    """Where branches start, by rows.
+
+    The orbits z and the directions from there, the first steps and the values at which the
+    branches end; the special orbits before z, if there are any; and the reasons for no branch, "" if
+    there is one.
+    """
+
+    equations: OrbitEquations
+    z: NDArray
+    direction: NDArray
+    step: NDArray
+    goal: NDArray
+    origin: NDArray | None
+    reasons: NDArray
+
+
+def scales(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Units of the unknowns in which steps are measured, shape (rows, N)."""
+    units = np.full(z.shape, np.sqrt(equations.impacts))
+    units[:, equations.size :] = np.maximum(np.abs(z[:, equations.size :]), 1e-2)
+    return units
+
+
+def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Directions of the curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    normal = np.ones(z.shape)
+    for _ in range(2):
+        normal = newton(equations, z, normal, iterations=1).tangent
+        normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    return normal
+
+
+class _Steps(NamedTuple):
+    """The accepted points of one row: orbits, tangents, tests on the way, and why it stopped."""
+
+    z: NDArray
+    tangents: NDArray
+    tests: dict[str, NDArray]
+    end: str
+
+
+def _tests(equations, z, linear, names) -> dict[str, NDArray]:
+    """The tests of some kinds at orbits."""
+    return {name: KINDS[name].test(equations, z, linear) for name in names}
+
+
+def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
+    """Accepted steps of branches until their parameter is at `to`, or until they end.
+
+    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change too
+    much. It ends on the value `to` exactly if it would go beyond it.
+    """
+    rows = len(z)
+    units = scales(equations, z)
+    first, goal = z[:, -1].copy(), np.broadcast_to(to, rows).astype(float)
+    t = direction / units
+    t = t / np.linalg.norm(t, axis=1, keepdims=True)
+    tests = _tests(equations, z, equations.linear(z), SEEN_ON_THE_WAY)
+    history = [(np.ones(rows, bool), z, t, dict(tests))]
+    end = np.full(rows, "", object)
+    count = np.ones(rows, int)
+    active = np.arange(rows)
+    part = equations
+    z, t, step = z.copy(), t.copy(), step.copy()
+    while active.size:
+        unit, here, ahead = units[active], z[active], t[active]
+        rate = ahead[:, -1] * unit[:, -1]
+        forward = rate * (goal[active] - first[active]) > 0
+        target = np.where(forward, goal[active], 2 * first[active] - goal[active])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            whole = (target - here[:, -1]) / rate
+        last = (whole > 0) & (whole <= step[active])
+        length = np.where(last, whole, step[active])
+        guess = here + length[:, np.newaxis] * ahead * unit
+        normal = np.where(last[:, np.newaxis], 0.0, ahead / unit)
+        normal[last, -1] = np.sign(rate[last])
+        guess[last, -1] = target[last]
+        solution = newton(part, guess, normal, iterations=7)
+        new, following = solution.z, solution.tangent / unit
+        following = following / np.linalg.norm(following, axis=1, keepdims=True)
+        moved = np.linalg.norm((new - guess) / unit, axis=1)
+        with np.errstate(all="ignore"):
+            values = _tests(part, new, solution.linear, SEEN_ON_THE_WAY)
+            turn = np.arctan(values["period doubling"] - 1)
+            change = np.abs(turn - np.arctan(tests["period doubling"][active] - 1))
+            change = np.minimum(change, np.pi - change)
+            cosine = np.sum(following * ahead, axis=1)
+            good = solution.found & (cosine > STRAIGHT) & (moved < 0.4 * length)
+            good &= (change < TURN) | (length < 1e-6)
+        accepted, taken = active[good], good.nonzero()[0]
+        step[active[~good]] = length[~good] / 2
+        fast = good & (cosine > 0.99) & (change < TURN / 2)
+        step[active[fast]] = np.minimum(2 * step[active[fast]], LONGEST_STEP)
+        z[accepted], t[accepted] = new[taken], following[taken]
+        count[accepted] += 1
+        for j in taken[last[taken]]:
+            end[active[j]] = _reached(equations.along[-1].name, target[j], forward[j])
+        for name in SEEN_ON_THE_WAY:
+            before = tests[name][active]
+            crossed = good & (before * values[name] < 0)
+            if KINDS[name].end or name == until:
+                end[active[crossed]] = KINDS[name].end or f"the first {name} is found"
+            tests[name] = tests[name].copy()
+            tests[name][accepted] = values[name][taken]
+        end[accepted[(count[accepted] >= points) & (end[accepted] == "")]] = "all points are used"
+        end[active[step[active] < SHORTEST_STEP]] = "no further orbit is found"
+        mask = np.zeros(rows, bool)
+        mask[accepted] = True
+        history.append((mask, z.copy(), t.copy(), dict(tests)))
+        still = end[active] == ""
+        if not still.all():
+            active = active[still]
+            part = equations.rows(active)
+    return [_row_of(history, units, end, i) for i in range(rows)]
+
+
+def _row_of(history, units, end, i) -> _Steps:
+    """The accepted steps of one row."""
+    taken = [each for each in history if each[0][i]]
+    tests = {name: np.array([each[3][name][i] for each in taken]) for name in SEEN_ON_THE_WAY}
+    z = np.array([each[1][i] for each in taken])
+    t = np.array([each[2][i] * units[i] for each in taken])
+    return _Steps(z, t, tests, end[i])
+
+
+def _reached(name: str, value: float, forward: bool) -> str:
+    """Why a branch ends at a value of its parameter."""
+    if forward:
+        return f"{name} = {value:.10g} is reached"
+    return f"{name} = {value:.10g} is reached on the way back, as far from the start as asked for"
+
+
+class _Crossings(NamedTuple):
+    """Steps in which a test changes its sign: row, number of the step, kind, ends and their tests."""
+
+    row: NDArray
+    number: NDArray
+    kind: NDArray
+    ends: NDArray
+    slopes: NDArray
+    values: NDArray
+
+
+def _crossings(equations, steps: list[_Steps]) -> _Crossings:
+    """All steps of all rows in which a test changes its sign."""
+    row = np.repeat(np.arange(len(steps)), [len(each.z) for each in steps])
+    z, t = (
+        np.concatenate([each.z for each in steps]),
+        np.concatenate([each.tangents for each in steps]),
+    )
+    tests = {name: np.concatenate([each.tests[name] for each in steps]) for name in SEEN_ON_THE_WAY}
+    tests["saddle-node"] = 2 - tests["period doubling"]
+    all_rows = equations.rows(row)
+    tests["grazing of a flight"] = all_rows.clearance(z)
+    tests["grazing of a release"] = all_rows.contact_clearance(z)
+    names = np.array(list(tests))
+    values = np.array(list(tests.values()))
+    number = np.arange(len(z))
+    within = row[1:] == row[:-1]
+    which, at = np.nonzero((values[:, :-1] * values[:, 1:] < 0) & within)
+    return _Crossings(
+        row[at],
+        number[at],
+        names[which],
+        np.stack([z[at], z[at + 1]]),
+        np.stack([t[at], t[at + 1]]),
+        np.stack([values[which, at], values[which, at + 1]]),
+    )
+
+
+def _cubic(part, ends, slopes):
+    """Hermite's cubic between the ends of steps, whose slopes are per unit of the part of the step."""
+    x = part[:, np.newaxis]
+    chord = ends[1] - ends[0]
+    bend = slopes[0] + slopes[1] - 2 * chord
+    return ends[0] + x * (slopes[0] + x * (chord - slopes[0] - bend + x * bend))
+
+
+def _values_of_kinds(equations, kinds, solution) -> NDArray:
+    """The tests of orbits, each that of its kind."""
+    values = np.zeros(len(kinds))
+    for name in np.unique(kinds):
+        these = kinds == name
+        linear = Linear(*(each[these] for each in solution.linear))
+        values[these] = KINDS[name].test(equations.rows(these), solution.z[these], linear)
+    return values
+
+
+@np.errstate(all="ignore")
+def _located(equations, crossings: _Crossings) -> tuple[NDArray, NDArray]:
+    """The orbits at which the tests are zero, and which of them were found.
+
+    The zero is bracketed along the chord of each step, by the rule of Anderson and Björck (BIT 13,
+    253, 1973); the orbits are on the planes across the chord.
+    """
+    equations = equations.rows(crossings.row)
+    ends, values = crossings.ends.copy(), crossings.values.copy()
+    units = scales(equations, ends[0])
+    chord = (ends[1] - ends[0]) / units
+    normal = chord / units / np.sum(chord**2, axis=1, keepdims=True)
+    place = np.array([np.zeros(len(chord)), np.ones(len(chord))])
+    slopes = crossings.slopes / np.sum(normal * crossings.slopes, axis=2, keepdims=True)
+    weights = values.copy()
+    found = np.ones(len(chord), bool)
+    each, latest = np.arange(len(chord)), np.full(len(chord), -1)
+    z = ends[0].copy()
+    for _ in range(60):
+        step = place[1] - place[0]
+        part = weights[0] / (weights[0] - weights[1])
+        solution = newton(equations, _cubic(part, ends, slopes * step[:, np.newaxis]), normal)
+        found &= solution.found
+        z = np.where(found[:, np.newaxis], solution.z, z)
+        value = _values_of_kinds(equations, crossings.kind, solution)
+        side = (value * values[1] > 0).astype(int)
+        again = side == latest
+        ratio = 1 - value / values[side, each]
+        weights[1 - side, each] *= np.where(again, np.where(ratio > 0, ratio, 0.5), 1.0)
+        moved = np.abs(place[0] + part * step - place[side, each])
+        place[side, each] = place[0] + part * step
+        values[side, each], weights[side, each] = value, value
+        ends[side, each], slopes[side, each] = solution.z, solution.tangent
+        latest = side
+        if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
+            break
+    smallest = np.abs(crossings.values).max(axis=0)
+    return z, found & (np.abs(value) < 1e-6 * np.maximum(smallest, 1e-3))
+
+
+def _followed(start: _Start, points, until, own) -> list[FollowedBranch]:
+    """Branches from their starts to a value of their parameter, with their special orbits.
+
+    ``own`` is the kind of the special orbits at the starts, which are not listed.
+    """
+    equations = start.equations
+    steps = _march(equations, start.z, start.direction, start.step, start.goal, points, until)
+    crossings = _crossings(equations, steps)
+    z, found = _located(equations, crossings) if len(crossings.row) else (np.empty((0, 0)), [])
+    first = np.cumsum([0, *(len(each.z) for each in steps)])
+    branches = []
+    for i, each in enumerate(steps):
+        alone = single(equations, i)
+        mine = np.flatnonzero(crossings.row == i)
+        path, end, special = each.z, each.end, []
+        name = alone.along[-1].name
+        placed = []
+        for j in mine:
+            kind, number = str(crossings.kind[j]), crossings.number[j] - first[i]
+            if number == 0 and kind == own:
+                continue
+            here = z[j]
+            if kind == "period halving":
+                here = _halved_at(alone, crossings.ends[:, j])
+            elif not found[j]:
+                here = None
+            if here is not None:
+                direction = crossings.slopes[0, j]
+                along = np.sum(direction * (here - crossings.ends[0, j]))
+                placed.append((number, along, kind, here))
+        for number, _, kind, here in sorted(placed, key=lambda entry: entry[:2]):
+            special.append(PeriodicOrbit(alone, here, kind))
+            if KINDS[kind].end or kind == until:
+                path = np.concatenate([path[: number + 1], here[np.newaxis]])
+                end = f"{kind} at {name} = {here[-1]:.10g}"
+                end += f": {KINDS[kind].end}" if KINDS[kind].end else ""
+                break
+        branches.append(FollowedBranch(alone, path, tuple(special), "", end))
+    return branches
+
+
+def test_with_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:
+    """The test of a kind of special orbit, shape (rows,), and its gradient, shape (rows, N).
+
+    The gradient is a central difference. Its errors, some 1e-10, slow Newton's method down a little
+    and do not move what it finds.
+    """
+    rows, length = z.shape
+    shift = 1e-6 * np.maximum(1.0, np.abs(z))
+    nudges = shift[:, np.newaxis] * np.eye(length)
+    nearby = np.concatenate([z[:, np.newaxis] + nudges, z[:, np.newaxis] - nudges], axis=1)
+    nearby = nearby.reshape(-1, length)
+    each = equations.rows(np.repeat(np.arange(rows), 2 * length))
+    values = KINDS[kind].test(each, nearby, each.linear(nearby)).reshape(rows, 2, length)
+    gradient = (values[:, 0] - values[:, 1]) / (2 * shift)
+    return KINDS[kind].test(equations, z, equations.linear(z)), gradient
+
+
+@np.errstate(all="ignore")
+def special_near(
+    equations: OrbitEquations, kind: str, z: NDArray, iterations: int = 20
+) -> tuple[NDArray, NDArray]:
+    """Special orbits of a kind near guesses, shape (rows, N), and which of them are found.
+
+    Newton's method for the equations of orbits together with the test of the kind.
+    """
+    found = np.zeros(len(z), bool)
+    for _ in range(iterations):
+        legs, jacobian = equations.residuals(z)
+        value, gradient = test_with_gradient(equations, kind, z)
+        matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
+        right = np.concatenate([legs, value[:, np.newaxis]], axis=1)
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+        matrix[~finite] = np.eye(z.shape[1])
+        step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+        z = np.where(finite[:, np.newaxis], z - step, np.nan)
+        found = finite & (np.abs(step).max(axis=1) < 1e-11 * (1 + np.abs(z).max(axis=1)))
+        if (found | ~finite).all():
+            break
+    return z, found
+
+
+def halves_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
+    """The equations of half the period, and the mean of the halves of orbits."""
+    k = equations.impacts // 2
+    half = replace(equations, impacts=k, periods=np.asarray(equations.periods) // 2)
+    x = z[:, : equations.size].reshape(len(z), 2 * k, -1).copy()
+    x[:, k:, 0] -= 2 * np.pi * np.reshape(half.periods, (-1, 1))
+    mean = ((x[:, :k] + x[:, k:]) / 2).reshape(len(z), -1)
+    return half, np.concatenate([mean, z[:, equations.size :]], axis=1)
+
+
+def doubled_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
+    """The equations of twice the period, and orbits taken twice."""
+    twice = replace(
+        equations, impacts=2 * equations.impacts, periods=2 * np.asarray(equations.periods)
+    )
+    x = z[:, : equations.size].reshape(len(z), equations.impacts, -1)
+    again = x.copy()
+    again[..., 0] += 2 * np.pi * np.reshape(equations.periods, (-1, 1))
+    both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
+    return twice, np.concatenate([both, z[:, equations.size :]], axis=1)
+
+
+def _halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
+    """Where orbits merge with those of half their period: the period doubling of these, taken twice.
+
+    The equations of the longer orbit are singular there, those of the shorter one are not.
+    """
+    half, near = halves_of(equations, ends)
+    z = near.mean(axis=0, keepdims=True)
+    solution, found = special_near(half, "period doubling", z)
+    if not found[0]:
+        return None
+    _, twice = doubled_of(half, solution)
+    x = twice[0].copy()
+    turns = 2 * np.pi * np.round((ends[0, 0] - x[0]) / (2 * np.pi))
+    x[: equations.size : equations.unknowns] += turns
+    units = scales(equations, ends[:1])[0]
+    reach = np.abs((ends[1] - ends[0]) / units).max()
+    return x if np.abs((x - ends[0]) / units).max() < 3 * reach else None
+
+
+def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Directions in which orbits of twice the period leave period doublings; shape (rows, 2kq + 1).
+
+    It is the null vector of the equations of an orbit whose first impact comes back with the other
+    sign, and after it this vector with the other sign.
+    """
+    linear = equations.linear(z)
+    rows, k, q, _ = linear.derivatives.shape
+    derivatives = linear.derivatives.copy()
+    derivatives[:, -1, :, q : q + 2] *= -1
+    # Any column and any row beside the singular matrix, if they are not special.
+    derivatives[..., q + 2 :] = np.cos(np.arange(k * q)).reshape(k, q, 1)
+    border = np.cos(np.sqrt(2) * np.arange(k * q + 1))
+    border[-1] = 0.0
+    border = np.broadcast_to(border, (rows, 1, k * q + 1))
+    zeros, one = np.zeros((rows, k, q, 1)), np.ones((rows, 1, 1))
+    null = solve_bordered(derivatives, zeros, border, one)[:, :-1, 0]
+    return np.concatenate([null, -null, np.zeros((rows, 1))], axis=1)
+
+
+def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500):
+    """The branch of a periodic orbit along a parameter, or the branches of many, side by side.
+
+    From an ordinary orbit and from the grazing of a release the branch through it is followed; from a
+    saddle-node the branch that is stable there; from a period doubling that of twice the period; from
+    a period halving that of half the period; from the grazing of a flight that with one impact
+    more. At other special orbits branches end.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
+    along : str or Path, optional
+        "amplitude", a parameter of the ball, "frequency" (that of a table with a fixed stroke,
+        Ω/√(g/a) = √Λ, along which the ball's parameters change as well), or a `ParameterPath`. By
+        default what changed on the branch of the orbit, and otherwise the amplitude.
+    to : float, array_like or tuple of two floats, optional
+        The value at which a branch ends; an array has one for each orbit. Behind a saddle-node the
+        parameter moves back, at most as far beyond its first value. With a tuple (low, high) the
+        branch is followed both ways. By default the parameter rises to the end of its
+        range, or to ten times its value and at least 10.
+    points : int
+        The largest number of orbits on a branch, of each direction.
+
+    Returns
+    -------
+    FollowedBranch, or a list of FollowedBranch and OrbitNotFound
+        A list for a sequence; in place of a branch it has the reason why there is none.
+
+    Raises
+    ------
+    OrbitNotFound
+        If there is no branch from a single orbit: for example, if `to` is on the side of a period
+        doubling on which there are no doubled orbits.
+    ValueError
+        If the parameter is unknown, or `to` out of its range.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, orbit
+    >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
+    >>> [(each.kind, round(each.amplitude, 6)) for each in branch.special]
+    [('period doubling', 1.526824)]
+    """
+    many = not isinstance(orbit, PeriodicOrbit)
+    found = _follow_all(list(orbit) if many else [orbit], along, to, points, None)
+    if not many and isinstance(found[0], OrbitNotFound):
+        raise found[0]
+    return found if many else found[0]
+
+
+def cascade(doubling, *, to, impacts: int = 64):
+    """The branches of a cascade of period doublings: each up to the doubling from which the next goes on.
+
+    Parameters
+    ----------
+    doubling : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
+        Period doublings.
+    to : float or array_like
+        A value of the parameter beyond which nothing is followed.
+    impacts : int
+        The largest number of impacts of an orbit.
+
+    Returns
+    -------
+    list of FollowedBranch, or a list of such lists
+        For a sequence; an OrbitNotFound in place of a doubling is one in its place.
+
+    Raises
+    ------
+    OrbitNotFound
+        If there is no doubled orbit towards `to`.
+    """
+    if isinstance(doubling, PeriodicOrbit):
+        branches = cascade([doubling], to=to, impacts=impacts)[0]
+        if isinstance(branches, OrbitNotFound):
+            raise branches
+        return branches
+    latest = list(doubling)
+    whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
+    to = np.broadcast_to(np.asarray(to, float), len(latest))
+    going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
+    while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
+        found = _follow_all([latest[i] for i in going], None, to[going], 500, "period doubling")
+        further = []
+        for i, branch in zip(going, found, strict=True):
+            if isinstance(branch, OrbitNotFound):
+                whole[i] = whole[i] or branch
+                continue
+            whole[i].append(branch)
+            if branch.special and branch.special[-1].kind == "period doubling":
+                latest[i] = branch.special[-1]
+                further.append(i)
+        going = further
+    return whole
+
+
+def _follow_all(orbits, along, to, points, until) -> list:
+    """Branches of orbits, or reasons, in order; orbits with the same kind of equations side by side."""
+    found, starts, groups = list(orbits), {}, []
+    both = isinstance(to, tuple)
+    for i, each in enumerate(orbits):
+        if not isinstance(each, PeriodicOrbit):
+            continue
+        path = each.equations.along[-1] if along is None else path_of(along, each.ball)
+        equations, z = along_path(each, path)
+        goal = to if both or np.ndim(to) == 0 else to[i]
+        ends = _goals(path, each, z[-1], goal)
+        starts[i] = equations, z, ends
+        key = (
+            each.kind,
+            path,
+            each.impacts,
+            each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0)),
+        )
+        same = next((rows for other, rows in groups if other == key), None)
+        if same is None:
+            groups.append((key, same := []))
+        same.append(i)
+    for (kind, *_), rows in groups:
+        equations = _stacked([starts[i][0] for i in rows])
+        z = np.array([starts[i][1] for i in rows])
+        ends = np.array([starts[i][2] for i in rows])
+        parts = [
+            _from_special(equations, z, ends, j, kind, points, until) for j in range(ends.shape[1])
+        ]
+        for place, i in enumerate(rows):
+            found[i] = _joined([part[place] for part in parts])
+    return found
+
+
+def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArray]:
+    """The equations of an orbit along a path, and the orbit there, shape (N,).
+
+    Raises
+    ------
+    ValueError
+        If the orbit is not on the path.
+    """
+    ball, amplitude = orbit.ball, orbit.amplitude
+    equations = OrbitEquations(ball, orbit.impacts, orbit.periods, amplitude, (path,))
+    value = float(path.place(ball, amplitude))
+    return equations, np.append(orbit.z[: orbit.equations.size], value)
+
+
+def _goals(path: Path, orbit: PeriodicOrbit, value: float, to) -> list[float]:
+    """The values at which a branch ends: one, or two for both ways."""
+    low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
+    if to is None:
+        return [high if high <= 10 else min(high, max(10.0, 10 * value))]
+    goals = np.atleast_1d(np.asarray(to, float)).tolist()
+    for goal in goals:
+        if not low <= goal <= high:
+            raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
+    if len(goals) == 2 and not goals[0] <= value <= goals[1]:
+        raise ValueError(f"to = {tuple(goals)}: must be around {path.name} = {value:.10g}")
+    return goals
+
+
+def _stacked(equations: list[OrbitEquations]) -> OrbitEquations:
+    """Equations of single balls as those of a row of balls."""
+    first = equations[0]
+    if len(equations) == 1:
+        return first
+    names = first.ball.parameters
+    values = {name: np.array([e.ball.parameters[name] for e in equations]) for name in names}
+    return replace(
+        first,
+        ball=first.ball.at(**values) if values else first.ball,
+        periods=np.array([each.periods for each in equations]),
+        amplitude=np.array([each.amplitude for each in equations]),
+    )
+
+
+def _from_special(equations, z, goals, way, kind, points, until) -> list:
+    """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
+    start = _STARTS.get(kind, _no_start)(equations, z, goals, way)
+    name = equations.along[-1].name
+    found = [OrbitNotFound(reason) for reason in start.reasons]
+    going = np.flatnonzero(start.reasons == "")
+    if going.size:
+        part = start._replace(
+            equations=start.equations.rows(going),
+            **{field: getattr(start, field)[going] for field in ("z", "direction", "step", "goal")},
+        )
+        for i, branch in zip(going, _followed(part, points, until, kind), strict=True):
+            path = branch.z if start.origin is None else np.vstack([start.origin[[i]], branch.z])
+            text = f"{kind or 'an orbit'} at {name} = {z[i, -1]:.10g}"
+            found[i] = replace(branch, z=path, start=text)
+    return found
+
+
+def _ordinary_start(equations, z, goals, way) -> _Start:
+    """The branch through orbits."""
+    goal = goals[:, way]
+    direction = tangents(equations, z)
+    direction = direction * np.sign((goal - z[:, -1]) * direction[:, -1])[:, np.newaxis]
+    step = np.full(len(z), FIRST_STEP)
+    return _Start(equations, z, direction, step, goal, None, np.full(len(z), "", object))
+
+
+def _fold_start(equations, z, goals, way) -> _Start:
+    """The branch that is stable next to a saddle-node; and the other one, if both ways are followed.
+
+    Both are on the same side of the parameter.
+    """
+    start = _ordinary_start(equations, z, goals, way)
+    units = scales(equations, z)
+    direction = start.direction / units
+    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    length, upwards = np.full((len(z), 1), 1e-2), np.zeros(len(z), bool)
+    for _ in range(8):
+        near = newton(equations, z + length * direction * units, direction / units)
+        turned = 1 - equations.turn(near.linear)
+        upwards = near.z[:, -1] > z[:, -1]
+        length = np.where(near.found[:, np.newaxis], length, length / 4)
+        if near.found.all():
+            break
+    stable = np.sign(turned)[:, np.newaxis] * direction * units
+    goal = np.where(upwards, goals.max(axis=1), goals.min(axis=1))
+    wrong = (goal > z[:, -1]) != upwards
+    for i in wrong.nonzero()[0]:
+        place = f"{equations.along[-1].name} = {z[i, -1]:.10g}"
+        side = "above" if upwards[i] else "below"
+        start.reasons[i] = f"the orbits of the saddle-node at {place} are {side} it"
+    other = goals.shape[1] == 2 and way == 0
+    return start._replace(direction=-stable if other else stable, goal=goal)
+
+
+def _halved_start(equations, z, goals, way) -> _Start:
+    """The branch of half the period."""
+    return _ordinary_start(*halves_of(equations, z), goals, way)
+
+
+def _no_start(equations, z, goals, way) -> _Start:
+    """No branch goes on from this kind of special orbit."""
+    reasons = np.full(len(z), "the branch ends at this special orbit", object)
+    return _Start(equations, z, z, z[:, 0], goals[:, way], None, reasons)
+
+
+def _doubled_start(equations, z, goals, way) -> _Start:
+    """The branch of twice the period.
+
+    The parameter and tr/(1 + det), which is 1 at the doubling, change there with the square of the
+    distance. The first step is halved until both fall by about four from it to half of it, and
+    until the latter has hardly changed: then no bifurcation is between the doubling and the step.
+    """
+    twice, origin = doubled_of(equations, z)
+    goal, rows = goals[:, way], len(z)
+    units = scales(twice, origin)
+    direction = _flip(equations, z) / units
+    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    length, good = np.full(rows, 0.02), np.zeros(rows, bool)
+    start = origin.copy()
+    pair = twice.rows(np.tile(np.arange(rows), 2))
+    for _ in range(40):
+        reach = np.concatenate([length, length / 2])[:, np.newaxis]
+        guess = np.tile(origin, (2, 1)) + reach * np.tile(direction * units, (2, 1))
+        solution = newton(pair, guess, np.tile(direction / units, (2, 1)))
+        with np.errstate(all="ignore"):
+            away = (solution.z[:, -1] - np.tile(origin[:, -1], 2)).reshape(2, rows)
+            lost = 1 - pair.turn(solution.linear).reshape(2, rows)
+            bend = np.linalg.norm((solution.z - guess)[:rows] / units, axis=1)
+            quadratic = _about_four(away) & _about_four(lost) & (bend < 0.2 * length)
+            new = ~good & solution.found.reshape(2, rows).all(axis=0) & quadratic
+            new &= np.abs(lost[0]) < 0.3
+        start[new] = solution.z[:rows][new]
+        good |= new
+        if good.all():
+            break
+        length[~good] /= 2
+    name = equations.along[-1].name
+    reasons = np.where(good, "", "the start of the orbits of twice the period is not found")
+    reasons = reasons.astype(object)
+    with np.errstate(all="ignore"):
+        share = (goal - origin[:, -1]) / (start[:, -1] - origin[:, -1])
+    for i in (good & ~(share > 0)).nonzero()[0]:
+        side = "above" if start[i, -1] > origin[i, -1] else "below"
+        place = f"{name} = {origin[i, -1]:.10g}"
+        reasons[i] = f"the orbits of twice the period are {side} the period doubling at {place}"
+    beyond = (reasons == "") & (share < 1.5)
+    if beyond.any():
+        # The whole branch is hardly longer than its start.
+        length = np.where(beyond, 0.3 * length * np.sqrt(np.abs(share)), length)
+        solution = newton(
+            twice, origin + length[:, np.newaxis] * direction * units, direction / units
+        )
+        start[beyond] = solution.z[beyond]
+        reasons[beyond & ~solution.found] = (
+            "the start of the orbits of twice the period is not found"
+        )
+    return _Start(twice, start, start - origin, length, goal, origin, reasons)
+
+
+def _about_four(pair: NDArray) -> NDArray:
+    """Whether the second row is about a quarter of the first."""
+    ratio = pair[0] / pair[1]
+    return (ratio > 3) & (ratio < 5.5)
+
+
+_STARTS = {
+    "": _ordinary_start,
+    "grazing of a release": _ordinary_start,
+    "saddle-node": _fold_start,
+    "period doubling": _doubled_start,
+    "period halving": _halved_start,
+}
+
+
+def _joined(parts: list):
+    """A branch that is followed both ways, or the one part that there is."""
+    branches = [each for each in parts if not isinstance(each, OrbitNotFound)]
+    if len(branches) < 2:
+        return branches[0] if branches else parts[0]
+    back, forth = branches
+    return replace(
+        forth,
+        z=np.concatenate([back.z[:0:-1], forth.z]),
+        special=(*back.special[::-1], *forth.special),
+        start=back.end,
+    )

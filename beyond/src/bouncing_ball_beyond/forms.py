@@ -1,0 +1,389 @@
+r"""Normal forms of saddle-nodes and period doublings, and what happens at a grazing flight.
+
+The legs of an orbit are a chain L_i(x_i, x_{i+1}) = 0, which is closed by x_k = x_0. Where a
+multiplier μ is 1 or -1, the chain has a vector v ≠ 0 with v_k = μ v_0 that its derivatives L′ take to
+zero, and a left vector w with w L′ = 0. On the centre manifold, along v, the return map is ::
+
+    saddle-node, μ = 1:        ξ → ξ + rate dλ + a ξ²,        a = w B(v, v)/2
+    period doubling, μ = -1:   ξ → -(1 + rate dλ) ξ + b ξ³,   b = w B(v, h) + w C(v, v, v)/6
+
+with the second and third derivatives B and C of the legs and the periodic h of L′h = -B(v, v)/2. Here
+|v_0| = 1, and w is scaled so that it is the left eigenvector p of the return map, with p v_0 = 1.
+
+The legs are explicit in the unknowns, and smooth far beyond an orbit, so that differences of their first
+derivatives, which have all digits, give B and C to some twelve digits.
+
+Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.3, 4.5 and 5.4; for
+chains, Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM J. Numer. Anal. 43, 1407
+(2005).
+"""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.balls import Corrected
+from bouncing_ball_beyond.equations import OrbitEquations, dense, flight, newton
+from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
+
+MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
+"""The multiplier that a kind of special orbit has."""
+
+NODES = np.arange(-4.0, 5.0)
+FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+"""Weights of the central differences of the first and the second derivative over the nodes, exact
+for polynomials up to the eighth degree."""
+
+SHARE = 0.1
+"""Step of the differences: the largest change of an unknown, relative to the least speed and to 1."""
+
+
+# Normal forms
+
+
+class Curvature(NamedTuple):
+    """Derivatives of the legs, and their first two derivatives in a direction v.
+
+    Each has the shape (k, q, q + 2 + p) of `equations.Linear`; contracted with v, ``first`` is
+    B(v, ·), and ``second`` is C(v, v, ·).
+    """
+
+    derivatives: NDArray
+    first: NDArray
+    second: NDArray
+
+
+def closed(derivatives: NDArray, multiplier: float) -> NDArray:
+    """The matrix (kq, kq) of a chain of legs whose end is `multiplier` times its start."""
+    q = derivatives.shape[-2]
+    turned = derivatives.copy()
+    turned[-1, :, q : q + 2] *= multiplier
+    return dense(turned[np.newaxis, ..., : q + 2])[0].reshape(-1, derivatives.shape[0] * q)
+
+
+def curvature(equations: OrbitEquations, z: NDArray, v: NDArray, multiplier, step) -> Curvature:
+    """Derivatives of the legs along a vector v of the impacts that comes back multiplied by ±1.
+
+    They are those of the first half of the orbit taken twice, along which v is periodic.
+    """
+    k, q, size = equations.impacts, equations.unknowns, equations.size
+    twice = replace(equations, impacts=2 * k, periods=2 * equations.periods)
+    later = z[:size].copy()
+    later[::q] += 2 * np.pi * equations.periods
+    row = np.concatenate([z[:size], later, z[size:]])
+    direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - size)])
+    rows = row + np.multiply.outer(step * NODES, direction)
+    derivatives = twice.linear(rows).derivatives[:, :k]
+    first = np.tensordot(FIRST, derivatives, axes=1) / step
+    second = np.tensordot(SECOND, derivatives, axes=1) / step**2
+    return Curvature(derivatives[len(NODES) // 2], first, second)
+
+
+def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> float:
+    """a for the multiplier 1, b for -1, with the scales of v and w."""
+    bend = closed(bent.first, multiplier) @ v
+    if multiplier == 1:
+        return float(w @ bend / 2)
+    h = np.linalg.solve(closed(bent.derivatives, 1), -bend / 2)
+    return float(w @ (closed(bent.first, 1) @ h + closed(bent.second, multiplier) @ v / 6))
+
+
+def null_vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
+    """v and w of length 1, which are those of the least singular value."""
+    left, _, right = np.linalg.svd(closed(derivatives, multiplier))
+    return right[-1], left[:, -1]
+
+
+def longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
+    """The step of differences along v."""
+    speeds = z[1 : equations.size : equations.unknowns]
+    return SHARE * min(1.0, np.abs(speeds).min()) / np.abs(v).max()
+
+
+@dataclass(frozen=True)
+class NormalForm:
+    """The normal form of a saddle-node or a period doubling, see the module and `normal_form`.
+
+    ``coefficient`` is a or b, and ``error`` its uncertainty; ``rate`` is that of the parameter
+    ``along``; ``direction`` is the unit vector in (τ, δ′) of the first impact along which ξ is
+    measured; ``other`` is the other multiplier.
+    """
+
+    kind: str
+    coefficient: float
+    error: float
+    rate: float
+    along: str
+    direction: tuple[float, float]
+    other: float
+
+    @property
+    def supercritical(self) -> bool:
+        """Whether a period doubling has b > 0: the orbits of twice the period are where the orbit is
+        unstable, and stable if the other multiplier is inside the unit circle.
+
+        Raises
+        ------
+        ValueError
+            For a saddle-node.
+        """
+        if self.kind != "period doubling":
+            raise ValueError("a saddle-node is neither supercritical nor subcritical")
+        return self.coefficient > 0
+
+    @property
+    def opens_upwards(self) -> bool:
+        """Whether the two orbits of a saddle-node, or those of twice the period, are at larger values
+        of the parameter.
+        """
+        return -MULTIPLIERS[self.kind] * self.rate * self.coefficient > 0
+
+
+def normal_form(orbit: PeriodicOrbit) -> NormalForm:
+    """The normal form of a saddle-node or a period doubling.
+
+    The doubled orbits are at ξ² = rate dλ/b for small dλ, and the two orbits of a saddle-node at
+    ξ² = -rate dλ/a.
+
+    Raises
+    ------
+    ValueError
+        If the orbit is neither of the two.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, follow, orbit
+    >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
+    >>> form = normal_form(branch.first("period doubling"))
+    >>> form.supercritical, form.opens_upwards, round(form.coefficient, 6)
+    (True, True, 1.54243)
+    """
+    if orbit.kind not in MULTIPLIERS:
+        raise ValueError(
+            f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
+            ' such as branch.first("period doubling")'
+        )
+    equations, z, multiplier = orbit.equations, orbit.z, MULTIPLIERS[orbit.kind]
+    q = equations.unknowns
+    derivatives = equations.linear(z[np.newaxis]).derivatives[0]
+    v, w = null_vectors(derivatives, multiplier)
+    signs = np.array([1.0, -1.0])
+    start = v[:2] * signs
+    v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
+    w = w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
+    step = longest_step(equations, z, v)
+    coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
+    value = coefficient(fine, v, w, multiplier)
+    by_parameter = derivatives[..., q + 2].ravel()
+    if multiplier == 1:
+        rate = w @ by_parameter
+    else:
+        moved = np.linalg.solve(closed(derivatives, 1), -by_parameter)
+        rate = -w @ (closed(fine.first, 1) @ moved + fine.first[..., q + 2].ravel())
+    return NormalForm(
+        orbit.kind,
+        value,
+        abs(value - coefficient(coarse, v, w, multiplier)),
+        float(rate),
+        equations.along[0].name,
+        tuple((v[:2] * signs).tolist()),
+        orbit.trace_and_determinant[1] / multiplier,
+    )
+
+
+# Grazing flights
+
+SAMPLES = 2001
+"""Samples of a flight among which its lowest point is searched."""
+
+TOUCHES = 1e-9
+"""A flight with its lowest point at this height touches the table. Grazings are located to 1e-12."""
+
+SLOW = 1e-3
+"""An added impact is slow if it lasts for this share of a free impact and of a radian."""
+
+
+class Touch(NamedTuple):
+    """The lowest turning point of the flights of an orbit.
+
+    ``leg`` is the number of the impact before it, ``time`` that of the point, ``acceleration`` is δ″,
+    and ``height`` is δ.
+    """
+
+    leg: int
+    time: float
+    acceleration: float
+    height: float
+
+
+def touch(equations: OrbitEquations, z: NDArray) -> Touch:
+    """The lowest point of an orbit's flights at which δ has a minimum.
+
+    Raises
+    ------
+    OrbitNotFound
+        If no flight turns back from the table.
+    """
+    amplitude = float(np.ravel(equations.split(z[np.newaxis])[2])[0])
+    leaves, gap, speed, last = (each[0] for each in equations.ends(z[np.newaxis]))
+    times = np.linspace(0, last, SAMPLES)
+    heights = flight(times, leaves, gap, speed, amplitude)[0]
+    least = (heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])
+    if not least.any():
+        raise OrbitNotFound("no flight of the orbit turns back from the table")
+    lowest = np.where(least, heights[1:-1], np.inf)
+    sample, leg = np.unravel_index(lowest.argmin(), lowest.shape)
+    time = times[sample + 1, leg]
+    for _ in range(8):
+        height, rate = flight(time, leaves[leg], gap[leg], speed[leg], amplitude)
+        acceleration = amplitude * np.sin(leaves[leg] + time) - 1
+        time = time - rate / acceleration
+    return Touch(int(leg), float(leaves[leg] + time), float(acceleration), float(height))
+
+
+def _grazing(equations: OrbitEquations, z: NDArray) -> Touch:
+    """Where a flight of an orbit touches the table.
+
+    Raises
+    ------
+    OrbitNotFound
+        If none does.
+    """
+    if isinstance(equations.ball, Corrected):
+        raise OrbitNotFound(
+            "an impact of the corrected model takes effect below the table: at a grazing flight"
+            " there are no orbits with one impact more"
+        )
+    found = touch(equations, z)
+    if not abs(found.height) < TOUCHES:
+        raise OrbitNotFound(
+            f"no flight of the orbit touches the table: the lowest turns back at δ = {found.height:.2g}"
+        )
+    return found
+
+
+def one_impact_more(
+    equations: OrbitEquations, z: NDArray
+) -> tuple[OrbitEquations, NDArray, NDArray]:
+    """The orbits with one impact more that branch off where a flight touches the table.
+
+    Their equations are smooth if the speed of the added impact is an unknown, although the return map
+    has a square root there. An instantaneous impact begins with the speed 0. A contact of finite
+    duration has no regular equation there, because it ends as it starts; it begins with a slow
+    impact, which lasts for 2u/a, as if there were no contact force.
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+        Those of one ball along one parameter.
+    z : ndarray, shape (N,)
+        The orbit with the grazing flight.
+
+    Returns
+    -------
+    OrbitEquations
+        Those of k + 1 impacts.
+    ndarray, shape (N + q,)
+        The first orbit.
+    ndarray, shape (N + q,)
+        The direction in which the added impact gets faster by 1.
+
+    Raises
+    ------
+    OrbitNotFound
+        If no flight touches the table, or the ball has no slow impacts.
+    """
+    at = _grazing(equations, z)
+    added = np.array([at.time, 0.0])
+    if equations.ball.lasts:
+        _, ball, amplitude = equations.split(z[np.newaxis])
+        free = float(np.ravel(ball.signature(SLOW).duration)[0])
+        u = SLOW * at.acceleration * np.fmin(1.0, free) / 2
+        start = at.time - u / at.acceleration
+        added = np.array([start, u, np.ravel(ball.first_release(start, u, amplitude))[0]])
+    place = (at.leg + 1) * equations.unknowns
+    more = replace(equations, impacts=equations.impacts + 1)
+    guess = np.insert(z, place, added)
+    normal = np.zeros((1, guess.size))
+    normal[0, place + 1] = 1.0
+    solution = newton(more, guess[np.newaxis], normal)
+    if not solution.found[0]:
+        raise OrbitNotFound(
+            f"no orbit with {more.impacts} impacts is found beside the grazing flight:"
+            " Newton's method does not converge"
+        )
+    return more, solution.z[0], solution.tangent[0]
+
+
+@dataclass(frozen=True)
+class GrazingForm:
+    """What happens at a grazing flight, see `grazing_form`.
+
+    ``leg`` is the number of the impact before the flight, counted from 0, ``phase`` the phase of
+    the table at the touch, and ``acceleration`` a = δ″ there; ``coefficient`` is S. ``slope`` is
+    the derivative of the parameter ``along`` by the speed of the added impact, and 0 for contacts of
+    finite duration. ``opens_upwards`` says whether the orbits with one impact more are at larger
+    values of the parameter, and ``persists`` whether they are where the flight would be below the
+    table; otherwise both orbits exist on one side and disappear together.
+    """
+
+    leg: int
+    phase: float
+    acceleration: float
+    coefficient: float
+    slope: float
+    along: str
+    opens_upwards: bool
+    persists: bool
+
+
+def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
+    """The square root of the return map at a grazing flight, and the orbits with one impact more.
+
+    If the least gap of a neighbouring flight is -d < 0, the ball lands there with δ′ = -√(2ad) and
+    leaves with r √(2ad), whereas a flight without the impact would have had -√(2ad). The impact
+    changes the velocity by S √d, with the coefficient ::
+
+        S = (1 + r) √(2a)
+
+    and r at the speed 0, so that the derivative of the return map is infinite. A contact of finite duration
+    has S = 0: a slow impact lasts for about 2√(2d/a), and in this time the spring and the damper
+    change the velocity by a multiple of d only.
+
+    Raises
+    ------
+    OrbitNotFound
+        If no flight of the orbit touches the table, or if the ball has no slow impacts.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, follow, orbit
+    >>> branch = follow(orbit(Rigid(0.5), amplitude=2.0, side="unstable"), to=3.0)
+    >>> form = grazing_form(branch.first("grazing of a flight"))
+    >>> round(form.coefficient, 6), form.persists
+    (2.507284, False)
+
+    Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
+    """
+    equations, z = orbit.equations, orbit.z
+    at = _grazing(equations, z)
+    _, _, direction = one_impact_more(equations, z)
+    opens_upwards = bool(direction[-1] > 0)
+    tangent = newton(equations, z[np.newaxis]).tangent[0]
+    # The least gap is a smooth function: a third of all digits is enough for the sign.
+    step = 1e-6 * max(1.0, abs(z[-1]))
+    below, above = (touch(equations, z + side * step * tangent).height for side in (-1, 1))
+    r = -1.0 if orbit.ball.lasts else float(orbit.ball.signature(0.0).restitution)
+    return GrazingForm(
+        at.leg,
+        float(np.pi - (np.pi - at.time) % (2 * np.pi)),
+        at.acceleration,
+        (1 + r) * float(np.sqrt(2 * at.acceleration)),
+        0.0 if orbit.ball.lasts else float(direction[-1]),
+        equations.along[-1].name,
+        opens_upwards,
+        opens_upwards == (above < below),
+    )

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import H, Ball
+from bouncing_ball_beyond.balls import H, Ball, Corrected
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton
 from bouncing_ball_beyond.paths import AMPLITUDE
 
@@ -302,7 +302,9 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
             load = np.where(known, loss * (1 - amplitude * np.sin(psi)), 0.0)
             u = (u + (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5))) / 2
             psi = side * np.arccos(np.clip((u - np.pi * periods) / amplitude, -1, 1))
-    columns = [psi - np.where(known, centroid, 0.0), u, amplitude]
+    # The impacts of a corrected ball are at the centroids themselves.
+    touch = psi if isinstance(ball, Corrected) else psi - np.where(known, centroid, 0.0)
+    columns = [touch, u, amplitude]
     if ball.lasts:
         free = ball.free(u)
         columns.insert(2, np.where(np.isfinite(free), free, np.pi))

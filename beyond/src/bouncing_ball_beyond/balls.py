@@ -7,6 +7,7 @@ gives derivatives with all digits: if x has the imaginary part H = 1e-30, then f
 imaginary part H f′(x).
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
@@ -164,15 +165,17 @@ def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     near = s * s * ((ratio - 1) * (ratio - 1) + zeta * zeta)
     critical = s * s * ratio * ratio * (1 - zeta * zeta)
     delicate = (np.abs(near) < 1) | (np.abs(critical) < 1)
+    given = s, tau, gap, u, amplitude, gravity, ratio, zeta
     if not np.any(delicate):
-        return _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta)
-    short = np.where(delicate, s, 0.0)
-    gap_near, rate_near = _by_doubling(short, tau, gap, u, amplitude, gravity, ratio, zeta)
+        return _closed_form(*given)
     if np.all(delicate):
-        return gap_near, rate_near
-    other_ratio, other_zeta = np.where(delicate, 2.0, ratio), np.where(delicate, 0.0, zeta)
-    gap_far, rate_far = _closed_form(s, tau, gap, u, amplitude, gravity, other_ratio, other_zeta)
-    return np.where(delicate, gap_near, gap_far), np.where(delicate, rate_near, rate_far)
+        return _by_doubling(*given)
+    given = np.broadcast_arrays(*given)
+    delicate = np.broadcast_to(delicate, given[0].shape)
+    with np.errstate(all="ignore"):  # of the closed form where it is not used
+        position, rate = (np.asarray(each) for each in _closed_form(*given))
+    position[delicate], rate[delicate] = _by_doubling(*(each[delicate] for each in given))
+    return position[()], rate[()]
 
 
 def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
@@ -371,63 +374,108 @@ class SpringDamper(Ball):
         array([3.282,   nan])
         """
         ratio, zeta, kappa = self.frequency_ratio, self.zeta, self.kappa
-        given = tau, self.start(u), u, amplitude, gravity, ratio, zeta, kappa
-        given = np.broadcast_arrays(*(np.asarray(each, float) for each in given))
-        shape = given[0].shape
-        rows = np.array(given).reshape(len(given), -1)
-        time, found = np.zeros(rows.shape[1]), np.full(rows.shape[1], np.nan)
-        left = np.arange(rows.shape[1])
-        while left.size:
-            now, row = time[left], rows[:, left]
-            gap, rate = in_contact(now, *row[:-1])
-            ahead = step_to_release(now, gap, rate, row[0], *row[3:])
-            released = (now > 0) & (ahead <= 2**-52 * now)
-            time[left] += ahead
-            found[left[released]] = time[left[released]]
-            over = released | stays(now, gap, rate, row[0], *row[3:]) | (now > PATIENCE)
-            left = left[~over]
-        return ratio * found.reshape(shape)
+        start = kappa * np.minimum(u, 0.0)
+        acceleration = amplitude * np.sin(tau) - gravity + 2 * zeta * ratio * u - ratio**2 * start
+        phase, strength = tau + np.arctan(kappa), amplitude * np.sqrt(1 + kappa**2)
+        f, slope = start - kappa * u, kappa * acceleration - u
+        early = self._certainly_in_contact(u, np.abs(amplitude) + np.abs(gravity))
+        given = phase, f, -slope, strength, gravity, ratio, zeta
+        shape = np.broadcast_shapes(*(np.shape(each) for each in (early, *given)))
+        rows = [np.broadcast_to(x, shape).ravel() if np.ndim(x) else x for x in given]
+        release = first_rise(np.broadcast_to(early, shape).ravel(), *rows)
+        return ratio * release.reshape(shape)
+
+    def _certainly_in_contact(self, u, strength):
+        """A time before which no contact ends if the load is at most ``strength``.
+
+        An impact of the speed u on a free contact has f = -uk(s), k = e^{-ζϖs} sin(ω(D - s))/ω, and a load adds at most
+        its strength times K = ∫k ds. K/k rises, because e^{-ζϖs} and the sine are log-concave.
+        The sum is thus negative before the time at which sin(ω(D - s)) = q.
+        """
+        zeta, ratio = self.zeta, self.frequency_ratio
+        omega = ratio * np.sqrt(np.maximum((1 - zeta) * (1 + zeta), 0.0))
+        r, duration, _, _ = self.signature(u)
+        q = strength * (1 + r) * omega / (ratio**2 * r * np.maximum(u, 1e-300))
+        bounces = (q < 1) & (zeta < 1)
+        arc = np.arcsin(np.where(bounces, q, 0.0)) / np.where(bounces, omega, 1.0)
+        return np.where(bounces, np.maximum(duration - arc, 0.0), 0.0)
 
 
-def step_to_release(s, gap, rate, tau, amplitude, gravity, ratio, zeta, kappa):
-    """A step from δ and δ′ at the time s of a contact that ends at the next release or before it.
+def first_rise(early, *given):
+    """The times of the first rises of oscillators through zero, NaN for those that do not rise.
 
-    The release function f = δ + κδ′ has |f″| ≤ M over a time of 1/ϖ, and the step is the first positive
-    zero of f + f′h + Mh²/2, but at most 1/ϖ. Near a release it becomes Newton's step. M follows from
-    the energy, because the spring and the damper do not raise e = √(δ′² + ϖ²δ²)::
+    Both releases of the contact with a spring and a damper are of this kind: f = δ + κδ′ solves
+    f″ + 2ζϖf′ + ϖ²f = -g + Λ√(1 + κ²) sin(τ + arctan κ + s).
 
-        e ≤ e₀ + (g + Λ)/ϖ,    |δ″| ≤ g + Λ + ϖ√(1 + 4ζ²) e,
-        f″ = (1 - 2ζϖκ) δ″ - κϖ²δ′ + κΛ cos(τ + s)
+    Parameters
+    ----------
+    early : array of shape (n,)
+        Times before which f certainly does not vanish.
+    given : numbers or arrays of shape (n,)
+        The phase of the forcing, f and -f′ at the start, then the amplitude of the forcing, g, ϖ and ζ.
+    """
+    time, found = np.array(early), np.full(early.shape, np.nan)
+    left = np.arange(early.size)
+    for count in itertools.count(1):
+        now = time[left]
+        row = [each[left] if np.ndim(each) else each for each in given]
+        f, slope = in_contact(now, *row)
+        step, last = safe_step(now, f, slope, row[0], *row[3:])
+        time[left] += step
+        found[left[last]] = time[left[last]]
+        over = last
+        if count % 8 == 0:
+            over = last | stays_negative(now, f, slope, row[0], *row[3:]) | (now > PATIENCE)
+        left = left[~over]
+        if not left.size:
+            return found
+
+
+def safe_step(s, f, slope, phase, strength, gravity, ratio, zeta):
+    """A step that ends before the next rise of an oscillator through zero, and whether it ends on it.
+
+    The spring and the damper do not raise e = √(f′² + ϖ²f²). Over a time of 1/ϖ it is therefore at most
+    e₀ + F/ϖ under a load of the strength F, so that f″ ≤ M and f‴ ≤ J. No zero lies before that of
+    f + f′h + Bh²/2, as far as f″ ≤ B: with B = M, or with f″ + Jh/3 up to h.
     """
     stiffness, loss = ratio * ratio, 2 * zeta * ratio
-    acceleration = amplitude * np.sin(tau + s) - gravity - loss * rate - stiffness * gap
-    value, slope = gap + kappa * rate, rate + kappa * acceleration
-    strength = np.abs(gravity) + np.abs(amplitude)
-    speed = np.sqrt(rate * rate + stiffness * gap * gap) + strength / ratio
-    bound = np.abs(1 - loss * kappa) * (strength + ratio * np.sqrt(1 + 4 * zeta * zeta) * speed)
-    bound = bound + kappa * (stiffness * speed + np.abs(amplitude))
-    root = np.sqrt(np.maximum(slope * slope - 2 * bound * value, 0.0))
-    # Each zero is the quotient without a difference of nearly equal numbers.
-    rising = np.maximum(slope + root, 1e-300)
-    step = np.where(slope < 0, (root - slope) / bound, -2 * value / rising)
-    return np.minimum(step, 1 / ratio)
+    second = strength * np.sin(phase + s) - gravity - loss * slope - stiffness * f
+    load = np.abs(gravity) + np.abs(strength)
+    speed = np.sqrt(slope * slope + stiffness * f * f) + load / ratio
+    bend = load + ratio * np.sqrt(1 + 4 * zeta * zeta) * speed
+    jerk = np.abs(strength) + loss * bend + stiffness * speed
+    step = _root_of_parabola(f, slope, bend)
+    reach = np.minimum(4 * step, 1 / ratio)
+    further = _root_of_parabola(f, slope, np.minimum(second + jerk * reach / 3, bend))
+    step = np.maximum(np.minimum(step, reach), np.minimum(further, reach))
+    newton = _root_of_parabola(f, slope, second)
+    last = (slope > 0) & (jerk * np.abs(newton) ** 3 < 2**-52 * slope * s)
+    return np.where(last, newton, step), last
 
 
-def stays(s, gap, rate, tau, amplitude, gravity, ratio, zeta, kappa):
-    """Whether a ball in contact with δ and δ′ at the time s is never released.
+def _root_of_parabola(f, slope, bend):
+    """The first root of f + f′h + Bh²/2 from f < 0 up, without a difference of nearly equal numbers."""
+    square = slope * slope - 2 * bend * f
+    root = np.sqrt(np.maximum(square, 0.0))
+    rising = np.where(square < 0, np.inf, -2 * f / np.maximum(slope + root, 1e-300))
+    sinking = np.where(bend > 0, (root - slope) / np.maximum(bend, 1e-300), np.inf)
+    return np.where(slope > 0, rising, sinking)
 
-    The steady response has f = δ + κδ′ ≤ -g/ϖ² + Λ√((1 + κ²)/γ), γ = (ϖ² - 1)² + (2ζϖ)². What is left of
-    the transient adds at most e√(1/ϖ² + κ²), where its e = √(δ′² + ϖ²δ²) never rises.
+
+def stays_negative(s, f, slope, phase, strength, gravity, ratio, zeta):
+    """Whether an oscillator with f and f′ at the time s never rises through zero.
+
+    The steady response is at most Λ/√γ - g/ϖ², γ = (ϖ² - 1)² + (2ζϖ)², and what is left of the transient at most
+    e/ϖ, where its e = √(f′² + ϖ²f²) never rises.
     """
     stiffness, loss = ratio * ratio, 2 * zeta * ratio
     gamma = np.maximum((stiffness - 1) * (stiffness - 1) + loss * loss, 1e-300)
-    a, b = amplitude * (stiffness - 1) / gamma, -amplitude * loss / gamma
-    sin, cos = np.sin(tau + s), np.cos(tau + s)
-    transient = gap + gravity / stiffness - a * sin - b * cos
-    transient_rate = rate - a * cos + b * sin
-    energy = transient_rate * transient_rate + stiffness * transient * transient
-    steady = np.abs(amplitude) * np.sqrt((1 + kappa * kappa) / gamma) - gravity / stiffness
-    return steady + np.sqrt(energy * (1 / stiffness + kappa * kappa)) < 0
+    a, b = strength * (stiffness - 1) / gamma, -strength * loss / gamma
+    sin, cos = np.sin(phase + s), np.cos(phase + s)
+    transient = f + gravity / stiffness - a * sin - b * cos
+    transient_slope = slope - a * cos + b * sin
+    speed = np.sqrt(transient_slope * transient_slope + stiffness * transient * transient)
+    return np.abs(strength) / np.sqrt(gamma) + speed / ratio < gravity / stiffness
 
 
 @dataclass(frozen=True)
@@ -455,7 +503,7 @@ class Corrected(Ball):
     def __post_init__(self):
         if not isinstance(self.of, Ball):
             raise ValueError(f"of = {self.of!r}: must be a ball")
-        if not np.isfinite(self.of.signature(1.0)).all():
+        if not all(np.isfinite(each).all() for each in self.of.signature(1.0)):
             raise ValueError(f"of = {self.of!r}: must have free impacts that end")
 
     @property

@@ -17,14 +17,17 @@ This holds from the saddle-node, where the height is wrong by √(2Cs)/H, to the
 The proof is in article.md, and docs/error-law.md says how good the law is.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import H, Ball
+from bouncing_ball_beyond.balls import H, Ball, Corrected, SpringDamper
+from bouncing_ball_beyond.continuation import special_near
+from bouncing_ball_beyond.equations import OrbitEquations, newton
+from bouncing_ball_beyond.orbits import guess_of_instants, rows_of
 
 QUANTITIES = (
     "max_height",
@@ -107,19 +110,21 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, n: int = 1) -> 
     half = n * np.pi
     line = impact.speed - half
     lift = _root(np.square(amplitude) - line**2)
+    anywhere = 0 * (line + np.asarray(amplitude))
     return {
         "max_height": lift + half**2 / 2,
         "bounce_velocity": half + 0 * lift,
         "phase": np.arctan2(lift, line),
         "apparent_restitution": impact.restitution + 0 * lift,
-        "saddle_node": line + 0 * lift,
-        "period_doubling": np.hypot(line, _doubling_lift(impact)) + 0 * lift,
+        "saddle_node": line + anywhere,
+        "period_doubling": np.hypot(line, _doubling_lift(impact)) + anywhere,
     }
 
 
 def _doubling_lift(impact: FreeImpact) -> NDArray:
     """Y_D, the Λ sin ψ at which the orbits of the restitution model double their period."""
-    r, b = impact.restitution, impact.slope
+    r = impact.restitution
+    b = impact.slope
     return 2 * (1 + r * b) / ((1 + r) * (1 + b))
 
 
@@ -155,8 +160,10 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     reference = restitution_values(impact, amplitude, n)
-    v, r, b = impact.speed, impact.restitution, impact.slope
-    duration, delay = impact.duration, impact.centroid
+    v = impact.speed
+    r = impact.restitution
+    b = impact.slope
+    delay = impact.centroid
     half = n * np.pi
     line = v - half
     shift = impact.load / (1 + b)
@@ -165,31 +172,39 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     with np.errstate(invalid="ignore", divide="ignore"):
         turn = np.arccos((line - shift) / amplitude) - np.arccos(line / amplitude)
         risen = turned - lift - shift * line - v * delay
-        loaded = impact.load - duration + (1 + r) * delay - (b - r) * shift
+        loaded = impact.load - impact.duration + (1 + r) * delay - (b - r) * shift
         return {
             "max_height": risen / reference["max_height"],
-            "bounce_velocity": -(duration - delay) / reference["bounce_velocity"],
+            "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
             "apparent_restitution": loaded * (1 - turned + shift * line) / (r * v),
             "saddle_node": -shift / reference["saddle_node"],
-            "period_doubling": _doubling_error(impact, half) + 0 * lift,
+            "period_doubling": _doubling_error(impact, half) + 0 * reference["period_doubling"],
         }
 
 
 def _doubling_error(impact: FreeImpact, half: float) -> NDArray:
-    """The relative error of the amplitude of the period doubling, from its shift (δX, δY)."""
-    v, b = impact.speed, impact.slope
-    line = v - half
+    """The relative error of the amplitude of the period doubling."""
+    line = impact.speed - half
+    lift = _doubling_lift(impact)
+    across, along = _doubling_shift(impact, half)
+    return (line * across + lift * along) / (line**2 + lift**2)
+
+
+def _doubling_shift(impact: FreeImpact, half: float) -> tuple[NDArray, NDArray]:
+    """The shift (δX, δY) of the period doubling from (C, Y_D), of first order."""
+    v = impact.speed
+    b = impact.slope
     lift = _doubling_lift(impact)
     across = impact.load / (1 + b) * (lift - 1)
     steeper = impact.load_slope * (1 - lift) + impact.curvature * across
     along = (
         (1 - b) * across
         + 2 * impact.centroid_slope * (lift - 1)
-        - half * impact.load * line
+        - half * impact.load * (v - half)
         + steeper * (half * (2 - lift) - v)
-    ) / (half * (1 + b))
-    return (line * across + lift * along) / (line**2 + lift**2)
+    )
+    return across, along / (half * (1 + b))
 
 
 def law_coefficients(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
@@ -212,7 +227,8 @@ def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     reference = restitution_values(impact, amplitude, n)
-    v, delay = impact.speed, impact.centroid
+    v = impact.speed
+    delay = impact.centroid
     half = n * np.pi
     line = v - half
     shift = np.abs(impact.load / (1 + impact.slope))
@@ -233,7 +249,7 @@ def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 
 
 
 def law_thresholds(
-    contacts: "SpringDamper | Callable",
+    contacts: SpringDamper | Callable,
     *,
     amplitude: ArrayLike,
     n: int = 1,
@@ -311,8 +327,233 @@ def _longest(impact, amplitude, n, tolerance, name, turn) -> NDArray:
     return np.where(error(end, amplitude, *impact) > -tolerance, end, found.x)
 
 
-def along_ratio(contacts: "SpringDamper | Callable") -> Callable:
+def along_ratio(contacts: SpringDamper | Callable) -> Callable:
     """The function from ϖ to the ball: that which is given, or that of a spring and a damper."""
     if isinstance(contacts, Ball):
         return lambda ratio: contacts.at(frequency_ratio=ratio)
     return contacts
+
+
+def contact_values(
+    ball: Ball,
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    quantities: Sequence[str] = QUANTITIES,
+) -> dict:
+    """Quantities of the n-T orbit of a ball and of its bifurcations, exactly.
+
+    Parameters
+    ----------
+    ball
+        Its parameters are numbers or arrays that broadcast with the amplitude.
+    amplitude
+        Λ, a number or an array.
+    quantities
+        Names from :data:`QUANTITIES`.
+
+    Returns
+    -------
+    dict
+        By these names: arrays, NaN where there is no orbit on the stable side of the saddle-node.
+        For a corrected ball, phase, velocity and apparent restitution are those of the contact
+        around its instant, which starts t_c before it and lasts D. Whether a ball follows an orbit
+        is not examined here, but by ``orbit``.
+    """
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
+    found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
+    for name in ("saddle_node", "period_doubling"):
+        if name in found:
+            found[name] = _bifurcation(row, periods, name)
+    of_orbits = [name for name in quantities if name not in ("saddle_node", "period_doubling")]
+    # Some thousands of orbits at once keep the memory small.
+    blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
+    for block in blocks if of_orbits else []:
+        equations = OrbitEquations(row, 1, periods).rows(block)
+        guess = guess_of_instants(equations.ball, periods[block], amplitudes[block])
+        solution = newton(equations, guess)
+        good = solution.found & (equations.turn(solution.linear) < 1)
+        if good.any():
+            of_block = _values(equations.rows(good), solution.z[good])
+            for name in of_orbits:
+                found[name][block[good]] = of_block[name]
+    return {name: values.reshape(shape) for name, values in found.items()}
+
+
+def _bifurcation(row: Ball, periods: NDArray, name: str) -> NDArray:
+    """The amplitudes of a bifurcation, by rows, from a guess by the error law."""
+    half = np.pi * periods
+    impact = free_impact(row, periods)
+    line = impact.speed - half
+    shift = impact.load / (1 + impact.slope)
+    if name == "saddle_node":
+        kind = "saddle-node"
+        x = line - shift
+        y = -shift * line
+    else:
+        kind = "period doubling"
+        across, along = _doubling_shift(impact, half)
+        x = line + across
+        y = _doubling_lift(impact) + along
+    # The impacts of a corrected ball are at the centroids, and all others start before them.
+    delay = 0.0 if isinstance(row, Corrected) else impact.centroid
+    guess = [np.arctan2(y, x) - delay, half + x - (1 - y) * delay, np.hypot(x, y)]
+    if row.lasts:
+        guess.insert(2, row.free(guess[1]))
+    guess = np.stack(np.broadcast_arrays(*guess), axis=-1)
+    z, good = special_near(OrbitEquations(row, 1, periods), kind, guess)
+    return np.where(good & (z[:, -1] > 0), z[:, -1], np.nan)
+
+
+def _values(equations: OrbitEquations, z: NDArray) -> dict:
+    """Height, velocity, phase and apparent restitution of orbits with one impact, by rows."""
+    impacts, ball, amplitudes = equations.split(z)
+    touch = impacts[:, 0, 0]
+    speed = impacts[:, 0, 1]
+    amplitude = amplitudes[:, 0]
+    ends = equations.ends(z)
+    leaves = ends.leaves[:, 0]
+    velocity = ends.speed[:, 0] + amplitude * np.cos(leaves)
+    if isinstance(ball, Corrected):
+        signature = equations.ball.signature(speed)
+        approach = amplitude * np.cos(touch) - speed + signature.centroid
+        after = signature.duration - signature.centroid
+        touch = touch - signature.centroid
+        leaves = leaves + after
+        velocity = velocity - after
+        speed = amplitude * np.cos(touch) - approach
+    return {
+        "max_height": equations.max_height(z),
+        "bounce_velocity": velocity,
+        "phase": touch,
+        "apparent_restitution": (velocity - amplitude * np.cos(leaves)) / speed,
+    }
+
+
+def exact_errors(
+    ball: Ball,
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    simple: Callable[[Ball], Ball] | None = None,
+    quantities: Sequence[str] = QUANTITIES,
+) -> dict:
+    """Relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
+
+    Parameters
+    ----------
+    ball, amplitude, n, quantities
+        As in :func:`contact_values`.
+    simple
+        A function from a ball to the ball in its place, such as ``Corrected``. By default this is
+        the restitution model with the r(v) of the ball.
+
+    Returns
+    -------
+    dict
+        Signed errors by the names of the quantities, NaN where a model has no orbit.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Corrected, SpringDamper
+    >>> ball = SpringDamper(20.0, restitution=0.65)
+    >>> errors = [
+    ...     exact_errors(ball, amplitude=1.0, simple=simple, quantities=["max_height"])
+    ...     for simple in (None, Corrected)
+    ... ]
+    >>> [round(float(error["max_height"]), 6) for error in errors]
+    [-0.04097, 0.000133]
+    """
+    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=quantities)
+    if simple is None:
+        reference = restitution_values(free_impact(ball, n), amplitude, n)
+    else:
+        other = simple(ball)
+        reference = contact_values(other, amplitude=amplitude, n=n, quantities=quantities)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return {name: exact[name] / reference[name] - 1 for name in quantities}
+
+
+class ErrorThreshold(NamedTuple):
+    """From which frequency ratio on an error is within a tolerance: arrays of one shape.
+
+    The status is "found"; "within" if the error is within the tolerance at all ratios; "outside" if
+    it is not so at the largest; and "no orbit" if it is within the tolerance at all ratios at which
+    the orbit is found. The ratio is NaN if it is not found.
+    """
+
+    ratio: NDArray
+    status: NDArray
+
+
+def error_thresholds(
+    contacts: SpringDamper | Callable,
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    tolerance: float = 0.01,
+    simple: Callable[[Ball], Ball] | None = None,
+    quantities: Sequence[str] = QUANTITIES,
+    low: float = 1.0,
+    high: float = 1e6,
+    samples: int = 49,
+) -> dict:
+    """The ϖ from which on a simple model is within a tolerance, exactly.
+
+    Parameters
+    ----------
+    contacts
+        A ball with a spring and a damper, whose ϖ is disregarded, or a function from an array x to
+        the ball, as in :func:`law_thresholds`; x then takes the place of ϖ.
+    amplitude, n, simple, quantities
+        As in :func:`exact_errors`.
+    tolerance
+        Largest modulus of the relative error.
+    low, high, samples
+        The range of ϖ and the number of samples in it, at equal ratios. Between the last one that
+        exceeds the tolerance and the next one a bracketing root finder locates the threshold. Two
+        crossings between two samples are not noticed.
+
+    Returns
+    -------
+    dict
+        An :class:`ErrorThreshold` for each quantity.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import SpringDamper
+    >>> ball = SpringDamper(1.0, restitution=0.65)
+    >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
+    >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
+    ['82.177 found', '132.569 found']
+    """
+    path = along_ratio(contacts)
+    known = {"amplitude": amplitude, "n": n, "simple": simple}
+    shape = rows_of(path(high), amplitude)[2]
+    grid = np.geomspace(low, high, samples)
+    ratios = grid.reshape(-1, *(1 for _ in shape))
+    errors = exact_errors(path(ratios), quantities=quantities, **known)
+    found = {}
+    for name, error in errors.items():
+
+        def excess(logarithm, row, name=name):
+            # The ratios of all rows, because a path may depend on the place in an array.
+            ratio = np.full(shape, high)
+            ratio.flat[row] = np.exp(logarithm)
+            there = exact_errors(path(ratio), quantities=[name], **known)[name]
+            return np.abs(there.flat[row]) - tolerance
+
+        scan = np.abs(error).reshape(samples, -1)
+        beyond = ~(scan <= tolerance)
+        last = samples - 1 - beyond[::-1].argmax(axis=0)
+        rows = np.arange(last.size)
+        status = np.where(np.isnan(scan[last, rows]), "no orbit", "found")
+        status[last == samples - 1] = "outside"
+        status[~beyond.any(axis=0)] = "within"
+        rows = rows[status == "found"]
+        ratio = np.full(last.size, np.nan)
+        if rows.size:
+            bracket = np.log(grid[last[rows]]), np.log(grid[last[rows] + 1])
+            ratio[rows] = np.exp(find_root(excess, bracket, args=(rows,)).x)
+        found[name] = ErrorThreshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
+    return found

@@ -1,1 +1,0 @@
-"""The figures of the results of beyond's calls."""

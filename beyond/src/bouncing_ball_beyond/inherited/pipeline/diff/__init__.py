@@ -1,1 +1,0 @@
-"""The comparison of results with the accepted record, and their acceptance."""

@@ -108,10 +108,13 @@ def repeated(node, keys=()):
             yield from repeated(value, (*keys, key.value))
 
 
+# That of libyaml is several times faster.
+Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 found = []
 for file in dict.fromkeys(workflow.configfiles):
-    found += [f"{file}: {line}" for line in repeated(yaml.compose(Path(file).read_text("utf-8")))]
-schema = yaml.safe_load((CHECKOUT / "config/schema.yaml").read_text("utf-8"))
+    node = yaml.compose(Path(file).read_text("utf-8"), Loader)
+    found += [f"{file}: {line}" for line in repeated(node)]
+schema = yaml.load((CHECKOUT / "config/schema.yaml").read_text("utf-8"), Loader)
 found = found or list(mistakes(config, schema)) or list(crossed(config))
 if found:
     # Snakemake would print its WorkflowError in three lines, with places in this file.

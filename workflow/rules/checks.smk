@@ -9,6 +9,13 @@ from pathlib import Path
 import yaml
 from jsonschema import Draft202012Validator, validators
 
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def yaml_of(file):
+    """What a YAML file says; libyaml reads it several times faster."""
+    return yaml.load(Path(file).read_text("utf-8"), LOADER)
+
 
 def is_whole(checker, value):
     return isinstance(value, int) and not isinstance(value, bool)
@@ -89,7 +96,7 @@ def refuse(files, config, schema, crossed, further=None):
     """
     found = []
     for file in dict.fromkeys(files):
-        node = yaml.compose(Path(file).read_text("utf-8"))
+        node = yaml.compose(Path(file).read_text("utf-8"), LOADER)
         found += [f"{file}: {line}" for line in repeated(node)]
     found = found or list(mistakes(config, schema, further)) or list(crossed(config))
     if found:

@@ -6,8 +6,6 @@ import os
 import re
 from pathlib import Path
 
-import yaml
-
 
 include: "checks.smk"
 
@@ -47,6 +45,6 @@ def crossed(parameters, keys=()):
         yield from below_saddle_node(n, case, inside)
 
 
-schema = yaml.safe_load((CHECKOUT / "config/schema.yaml").read_text("utf-8"))
+schema = yaml_of(CHECKOUT / "config/schema.yaml")
 refuse(workflow.configfiles, config, schema, crossed, FURTHER)
 refuse_links(CHECKOUT)

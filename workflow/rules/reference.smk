@@ -34,7 +34,7 @@ rule accept:
         reference=checkout("."),
         # The reference is that of the configuration in git.
         config=config,
-        accepted=yaml.safe_load((CHECKOUT / "config/config.yaml").read_text("utf-8")),
+        accepted=yaml_of(CHECKOUT / "config/config.yaml"),
     log:
         "results/logs/accept.log",
     conda:

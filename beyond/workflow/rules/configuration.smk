@@ -4,8 +4,6 @@
 import os
 from pathlib import Path
 
-import yaml
-
 
 include: "../../../workflow/rules/checks.smk"
 
@@ -39,6 +37,6 @@ def crossed(parameters, keys=()):
         yield from below_saddle_node(case["n"], case, (*keys, "further", index))
 
 
-schema = yaml.safe_load((PACKAGE / "config/schema.yaml").read_text("utf-8"))
+schema = yaml_of(PACKAGE / "config/schema.yaml")
 refuse(workflow.configfiles, config, schema, crossed)
 refuse_links(PACKAGE)

@@ -35,7 +35,7 @@ rule accept:
         reference=package("."),
         # The reference is that of the configuration in git.
         config=config,
-        accepted=yaml.safe_load((PACKAGE / "config/config.yaml").read_text("utf-8")),
+        accepted=yaml_of(PACKAGE / "config/config.yaml"),
     log:
         "results/logs/accept.log",
     conda:

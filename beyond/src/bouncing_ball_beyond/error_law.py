@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import H, Ball, Corrected, SpringDamper
+from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper
 from bouncing_ball_beyond.continuation import special_near
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.orbits import guess_of_instants, rows_of
@@ -360,6 +360,11 @@ def contact_values(
         around its instant, which starts t_c before it and lasts D. Whether a ball follows an orbit
         is not examined here, but by ``orbit``.
     """
+    unknown = set(quantities) - set(QUANTITIES)
+    if unknown:
+        raise ValueError(f"quantities: {min(unknown)!r} must be one of {', '.join(QUANTITIES)}")
+    if not np.all(np.asarray(amplitude) > 0):
+        raise ValueError(f"amplitude = {amplitude!r}: must be positive")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
@@ -462,7 +467,7 @@ def exact_errors(
     ...     for simple in (None, Corrected)
     ... ]
     >>> [round(float(error["max_height"]), 6) for error in errors]
-    [-0.04097, 0.000133]
+    [-0.041148, -0.000121]
     """
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=quantities)
     if simple is None:
@@ -527,6 +532,8 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
     """
+    if not 0 < tolerance < np.inf:
+        raise ValueError(f"tolerance = {tolerance!r}: must be positive")
     path = along_ratio(contacts)
     known = {"amplitude": amplitude, "n": n, "simple": simple}
     shape = rows_of(path(high), amplitude)[2]

@@ -1,0 +1,263 @@
+"""The error law against exact orbits, and error thresholds against the article and another code."""
+
+import numpy as np
+import pytest
+from bouncing_ball import errors as replication
+
+from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.error_law import (
+    QUANTITIES,
+    FreeImpact,
+    contact_values,
+    error_thresholds,
+    exact_errors,
+    free_impact,
+    law_coefficients,
+    law_errors,
+    law_remainders,
+    law_thresholds,
+    restitution_values,
+)
+from bouncing_ball_beyond.orbits import orbit
+
+ARTICLE = {
+    # Quantity: K, and ϖ for 1 % by the law, exactly, and of the corrected model (Table 1).
+    "max_height": (-0.821, 82.18, 82.18, 2.29),
+    "bounce_velocity": (-0.612, 61.17, 61.22, 1.581),
+    "phase": (-1.322, 132.3, 132.569, 6.868),
+    "apparent_restitution": (-0.046, 4.608, 4.775, 3.237),
+    "saddle_node": (-0.602, 60.16, 59.87, 5.167),
+    "period_doubling": (-0.158, 15.84, 13.75, 5.897),
+}
+BALL = SpringDamper(1.0, restitution=0.65)
+
+
+def random_orbits(rng, rows, lowest=0.0):
+    """r, n and Λ of orbits between the bifurcations of the restitution model."""
+    r = rng.uniform(0.2, 0.98, rows)
+    line = np.pi * (1 - r) / (1 + r)
+    doubling = np.hypot(line, 2 * (1 + r**2) / (1 + r) ** 2)
+    return r, line + (doubling - line) * rng.uniform(lowest, 1, rows)
+
+
+def test_table_of_the_article():
+    """Its printed digits: K, and the thresholds of 1 %."""
+    law = law_thresholds(BALL, amplitude=1.0)
+    coefficients = law_coefficients(BALL, amplitude=1.0)
+    exact = error_thresholds(BALL, amplitude=1.0)
+    corrected = error_thresholds(BALL, amplitude=1.0, simple=Corrected)
+    for name, (coefficient, by_law, ratio, of_corrected) in ARTICLE.items():
+        assert coefficients[name] == pytest.approx(coefficient, abs=5.1e-4)
+        assert law[name] == pytest.approx(by_law, rel=5e-4)
+        assert exact[name].ratio == pytest.approx(ratio, rel=5e-4)
+        assert corrected[name].ratio == pytest.approx(of_corrected, rel=5e-4)
+    assert exact["phase"].ratio == pytest.approx(132.569, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("n", "r", "amplitude", "release"),
+    [(1, 0.65, 1.0, "displacement"), (2, 0.4, 3.0, "displacement"), (1, 0.8, 0.7, "force")],
+)
+def test_thresholds_of_the_replication(n, r, amplitude, release):
+    """The root's package is another code for the same orbits, along ϖ by continuation."""
+    grid = np.geomspace(3, 1e5, 80)
+    ball = SpringDamper(1.0, damping_ratio=replication.damping_ratio(r), release=release)
+    errors = replication.errors(QUANTITIES, n, r, amplitude, grid, release)
+    signature = ball.signature(1.0)
+    if release == "force":
+        # The replication compares with r of Eq. 16, and here it is that of the contact itself.
+        def simple(contact):
+            return Rigid(r)
+    else:
+        assert signature.restitution == pytest.approx(r, rel=1e-14)
+        simple = None
+    known = {"amplitude": amplitude, "n": n, "low": 3, "high": 1e5}
+    found = error_thresholds(ball, simple=simple, **known)
+    for name in QUANTITIES:
+        other = replication.threshold(grid, errors[name], 0.01)
+        assert found[name].status == other.status
+        # Both root finders stop at rounding, which is 1e-16 of values whose errors are 0.01.
+        assert found[name].ratio == pytest.approx(other.ratio, rel=1e-11, nan_ok=True)
+
+
+def test_remainder_is_of_second_order():
+    """From ϖ = 1000 to 2000 what the law leaves falls to a quarter, up to terms of third order."""
+    r, amplitude = random_orbits(np.random.default_rng(1), 40, lowest=0.3)
+    remainders = []
+    for ratio in (1000.0, 2000.0):
+        ball = SpringDamper(ratio, restitution=r)
+        law = law_errors(ball, amplitude=amplitude)
+        exact = exact_errors(ball, amplitude=amplitude)
+        remainders.append({name: exact[name] - law[name] for name in QUANTITIES})
+    for name in QUANTITIES:
+        quotient = np.median(remainders[0][name] / remainders[1][name])
+        assert quotient == pytest.approx(4, abs=0.1), name
+
+
+def test_remainder_at_the_saddle_node_is_of_order_three_halves():
+    r = np.linspace(0.3, 0.9, 13)
+    impact = free_impact(SpringDamper(1.0, restitution=r))
+    line = impact.speed - np.pi
+    remainders = []
+    for ratio in (1e5, 2e5):
+        ball = SpringDamper(ratio, restitution=r)
+        law = law_errors(ball, amplitude=line)["max_height"]
+        exact = exact_errors(ball, amplitude=line, quantities=["max_height"])["max_height"]
+        remainders.append(exact - law)
+    quotients = remainders[0] / remainders[1]
+    np.testing.assert_allclose(quotients, 2**1.5, rtol=0.02)
+    # The error itself is √(2Cs)/H, up to terms that are smaller by √s.
+    height = np.sqrt(2 * line * impact.load / (1 + r) / 1e8) / (np.pi**2 / 2)
+    error = law_errors(SpringDamper(1e8, restitution=r), amplitude=line)["max_height"]
+    np.testing.assert_allclose(error, height, rtol=1e-2)
+
+
+def test_remainder_is_below_its_estimate():
+    """On random orbits, half of them next to the saddle-node, as docs/error-law.md says."""
+    rng = np.random.default_rng(2)
+    r, amplitude = random_orbits(rng, 600)
+    line = np.pi * (1 - r) / (1 + r)
+    amplitude[::2] = line[::2] * (1 + 10 ** rng.uniform(-6, -2, 300))
+    ball = SpringDamper(10 ** rng.uniform(1, 4, 600), restitution=r)
+    law = law_errors(ball, amplitude=amplitude)
+    exact = exact_errors(ball, amplitude=amplitude)
+    estimates = law_remainders(ball, amplitude=amplitude)
+    for name in QUANTITIES:
+        within = np.abs(exact[name] - law[name]) <= estimates[name]
+        assert within[np.isfinite(exact[name])].all(), name
+        assert np.isfinite(exact[name]).mean() > 0.95
+
+
+def test_corrected_model_is_of_second_order():
+    r, amplitude = random_orbits(np.random.default_rng(3), 20, lowest=0.3)
+    errors = [
+        exact_errors(SpringDamper(ratio, restitution=r), amplitude=amplitude, simple=Corrected)
+        for ratio in (1000.0, 2000.0)
+    ]
+    for name in ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling"):
+        assert np.median(errors[0][name] / errors[1][name]) == pytest.approx(4, abs=0.1), name
+
+
+def test_free_impact_of_a_restitution_that_falls_with_the_speed():
+    """r = e^{-v/10}: b = r(1 - v/10), and d²(rv)/dv² = r(v/100 - 1/5)."""
+    impact = free_impact(Rigid(lambda v: np.exp(-v / 10)), n=2)
+    r, v = impact.restitution, impact.speed
+    assert (1 + r) * v == pytest.approx(4 * np.pi, rel=1e-14)
+    assert impact.slope == pytest.approx(r * (1 - v / 10), rel=1e-14)
+    # A central difference with a relative step of 1e-4 errs by its square.
+    assert impact.curvature == pytest.approx(r * (v / 100 - 0.2), rel=1e-7)
+    assert impact.duration == impact.load == 0
+
+
+def test_doubling_of_a_restitution_that_falls_with_the_speed():
+    """The closed form with r(v) against the multiplier -1 of the exact orbits."""
+    ball = Rigid(lambda v: np.exp(-v / 20))
+    closed = restitution_values(free_impact(ball), 1.0)
+    exact = contact_values(ball, amplitude=1.0)
+    for name in QUANTITIES:
+        assert exact[name] == pytest.approx(closed[name], rel=1e-10), name
+
+
+def test_stretched_impact_is_that_of_another_ratio():
+    for release in ("displacement", "force"):
+        ball = SpringDamper(10.0, damping_ratio=0.2, release=release)
+        stretched = free_impact(ball).stretched(2.5)
+        softer = free_impact(ball.at(frequency_ratio=4.0))
+        np.testing.assert_allclose(stretched, softer, rtol=1e-12, atol=1e-9)
+
+
+def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
+    """Eq. R9, and that no error above the threshold exceeds the tolerance."""
+    r, amplitude = random_orbits(np.random.default_rng(4), 200)
+    unit = SpringDamper(1.0, restitution=r)
+    impact = free_impact(unit)
+    found = law_thresholds(unit, amplitude=amplitude, tolerance=0.01)
+    line = impact.speed - np.pi
+    shift = impact.load / (1 + r)
+    rise = np.sqrt(amplitude**2 - line**2)
+    height = rise + np.pi**2 / 2
+    deeper = shift * line + impact.speed * impact.centroid
+    u = 1 / found["max_height"]
+    defects = [
+        (deeper**2 + shift**2) * u**2
+        + 2 * (deeper * (rise + error * height) - line * shift) * u
+        + 2 * rise * error * height
+        + (error * height) ** 2
+        for error in (-0.01, 0.01)
+    ]
+    assert np.abs(defects).min(axis=0).max() < 1e-12
+    for factor in np.geomspace(1 + 1e-9, 1e5, 60):
+        for name in ("max_height", "phase"):
+            law = law_errors(
+                SpringDamper(found[name] * factor, restitution=r), amplitude=amplitude
+            )[name]
+            assert np.abs(law).max() <= 0.01
+
+
+def test_exact_values_are_those_of_the_orbit():
+    ball = SpringDamper(20.0, restitution=0.65)
+    one = orbit(ball, amplitude=1.0)
+    values = contact_values(ball, amplitude=1.0)
+    for name in QUANTITIES[:4]:
+        assert values[name] == pytest.approx(getattr(one, name), rel=1e-12)
+
+
+def test_arrays_are_numbers_side_by_side():
+    r, amplitude = np.array([0.3, 0.65, 0.9]), np.array([1.9, 1.0, 0.5])
+    several = error_thresholds(SpringDamper(1.0, restitution=r), amplitude=amplitude)
+    for i in range(3):
+        alone = error_thresholds(SpringDamper(1.0, restitution=r[i]), amplitude=amplitude[i])
+        for name in QUANTITIES:
+            assert several[name].status[i] == alone[name].status
+            assert several[name].ratio[i] == pytest.approx(
+                alone[name].ratio, rel=1e-11, nan_ok=True
+            )
+
+
+def test_a_path_is_given_by_a_function():
+    def contacts(ratio):
+        return SpringDamper(ratio, restitution=0.65)
+
+    known = {"amplitude": 1.0, "quantities": ["max_height"]}
+    by_function = error_thresholds(contacts, **known)["max_height"].ratio
+    assert by_function == pytest.approx(82.17735912, abs=1e-8)
+    law = law_thresholds(contacts, amplitude=1.0)["max_height"]
+    assert law == pytest.approx(82.17804393, abs=1e-8)
+
+
+def test_statuses():
+    """Too strict and too loose a tolerance, and an orbit that only stiff contacts have."""
+    known = {"amplitude": 1.0, "quantities": ["max_height"], "high": 1e3}
+    assert error_thresholds(BALL, tolerance=1e-6, **known)["max_height"].status == "outside"
+    assert error_thresholds(BALL, tolerance=1.0, **known)["max_height"].status == "within"
+    impact = free_impact(BALL)
+    node = float(impact.speed) - np.pi
+    below = {"amplitude": node, "quantities": ["phase"]}
+    found = error_thresholds(BALL, **below)["phase"]
+    assert found.status == "outside" and np.isnan(found.ratio)
+
+
+def test_no_orbit_is_nan():
+    law = law_errors(BALL, amplitude=0.5)
+    assert np.isnan(law["max_height"]) and np.isfinite(law["saddle_node"])
+    assert np.isnan(contact_values(BALL.at(frequency_ratio=50.0), amplitude=0.5)["max_height"])
+
+
+@pytest.mark.parametrize(
+    ("mistake", "named"),
+    [
+        ({"amplitude": -1.0}, "amplitude"),
+        ({"amplitude": 1.0, "tolerance": 0}, "tolerance"),
+        ({"amplitude": 1.0, "quantities": ["height"]}, "height"),
+    ],
+)
+def test_mistakes_are_one_line(mistake, named):
+    with pytest.raises(ValueError, match=named) as raised:
+        error_thresholds(BALL, **mistake)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_free_impact_may_be_given():
+    impact = free_impact(BALL)
+    assert isinstance(impact, FreeImpact)
+    assert law_errors(impact, amplitude=1.0) == law_errors(BALL, amplitude=1.0)

@@ -19,10 +19,19 @@ _MODULES = {
     "cascade": "continuation",
     "follow": "continuation",
     "OrbitEquations": "equations",
+    "contact_values": "error_law",
+    "error_thresholds": "error_law",
+    "exact_errors": "error_law",
+    "free_impact": "error_law",
+    "law_coefficients": "error_law",
+    "law_errors": "error_law",
+    "law_remainders": "error_law",
+    "law_thresholds": "error_law",
     "OrbitNotFound": "orbits",
     "PeriodicOrbit": "orbits",
     "orbit": "orbits",
     "ParameterPath": "paths",
+    "on_shaker": "shaker",
 }
 __all__ = sorted(_MODULES)
 

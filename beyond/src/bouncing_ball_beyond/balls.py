@@ -102,20 +102,31 @@ def _varies(value):
     return not (value is None or callable(value) or isinstance(value, str))
 
 
-def _check(name, value, low, high, *, low_allowed):
-    """Raise ValueError unless all values are finite numbers from low to high."""
+def _checked(name, value, low, high, *, low_allowed):
+    """The value as a number or an array; ValueError unless all are finite, from low to high."""
+    allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
-        values = np.asarray(value, float)
+        values = np.array(value, float)
     except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: must be a number or an array of numbers") from None
+        raise ValueError(f"{name} = {value!r}: must be a number or an array in {allowed}") from None
     above = values >= low if low_allowed else values > low
     good = np.isfinite(values) & above & (values <= high)
     if not good.all():
-        wrong = values[~good].flat[0]
-        end = f"{high:g}]" if np.isfinite(high) else "∞)"
-        raise ValueError(
-            f"{name} = {wrong:g}: must be in {'[' if low_allowed else '('}{low:g}, {end}"
-        )
+        raise ValueError(f"{name} = {values[~good].flat[0]:g}: must be in {allowed}")
+    return values[()]
+
+
+def _check_function(restitution):
+    """Raise ValueError unless complex steps give the derivative of r(u), as differences do."""
+    u, step = np.array([0.5, 1.0, 2.0]), 1e-5
+    try:
+        along = np.imag(restitution(u + 1j * H)) / H
+        across = (restitution(u + step) - restitution(u - step)) / (2 * step)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise ValueError(f"restitution: r(u) fails for an array of complex u ({reason})") from None
+    if not np.allclose(along, across, rtol=1e-4, atol=1e-6):
+        raise ValueError("restitution: r(u) must be analytic, without abs, real, sign or the like")
 
 
 @dataclass(frozen=True)
@@ -134,8 +145,11 @@ class Rigid(Ball):
     restitution: float | np.ndarray | Callable
 
     def __post_init__(self):
-        if not callable(self.restitution):
-            _check("restitution", self.restitution, 0, 1, low_allowed=True)
+        if callable(self.restitution):
+            _check_function(self.restitution)
+        else:
+            r = _checked("restitution", self.restitution, 0, 1, low_allowed=True)
+            object.__setattr__(self, "restitution", r)
 
     def _restitution(self, u):
         return self.restitution(u) if callable(self.restitution) else self.restitution
@@ -152,7 +166,7 @@ class Rigid(Ball):
 
 
 def damping_of(restitution):
-    """Damping ratio ζ for which a free contact that ends at δ = 0 has r: -ln r/√(π² + ln² r) (16)."""
+    """ζ = -ln r/√(π² + ln² r), with which free contacts that end at δ = 0 have r (Eq. 16)."""
     log = np.log(restitution)
     return -log / np.sqrt(np.pi**2 + log * log)
 
@@ -179,7 +193,7 @@ def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
 
 
 def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
-    """Eqs. 12 and 13: a decaying oscillation about the steady response a sin(τ + s) + b cos(τ + s)."""
+    """Eqs. 12 and 13: a decaying oscillation about a steady one, a sin(τ + s) + b cos(τ + s)."""
     stiffness, decay = ratio * ratio, zeta * ratio
     scale = amplitude / ((stiffness - 1) * (stiffness - 1) + 4 * decay * decay)
     a, b = scale * (stiffness - 1), -2 * scale * decay
@@ -281,8 +295,8 @@ class SpringDamper(Ball):
     impact whose closing speed u = -δ′ is negative, and which starts at the gap κu; a landing has
     u > 0 and starts at the gap 0.
 
-    A contact with ζ ≥ 1 and the displacement release ends only where the table retracts from the ball.
-    It has no free impacts: `free` and `signature` are NaN.
+    With ζ ≥ 1 and the displacement release a contact ends only where the table retracts from the
+    ball. There are no free impacts: `free` and `signature` are NaN.
 
     Examples
     --------
@@ -290,7 +304,7 @@ class SpringDamper(Ball):
     >>> round(float(ball.zeta), 5)
     0.05166
     >>> round(float(ball.free(1.0)), 5)
-    3.1458
+    3.14579
     """
 
     frequency_ratio: float | np.ndarray
@@ -301,15 +315,18 @@ class SpringDamper(Ball):
     lasts: ClassVar[bool] = True
 
     def __post_init__(self):
-        _check("frequency_ratio", self.frequency_ratio, 0, np.inf, low_allowed=False)
         if (self.restitution is None) == (self.damping_ratio is None):
             raise ValueError("restitution, damping_ratio: exactly one of them must be given")
-        if self.restitution is not None:
-            _check("restitution", self.restitution, 0, 1, low_allowed=False)
-        else:
-            _check("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
         if self.release not in ("displacement", "force"):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
+        ratio = _checked("frequency_ratio", self.frequency_ratio, 0, np.inf, low_allowed=False)
+        object.__setattr__(self, "frequency_ratio", ratio)
+        if self.damping_ratio is None:
+            r = _checked("restitution", self.restitution, 0, 1, low_allowed=False)
+            object.__setattr__(self, "restitution", r)
+        else:
+            zeta = _checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
+            object.__setattr__(self, "damping_ratio", zeta)
 
     def at(self, **values):
         """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""
@@ -365,13 +382,13 @@ class SpringDamper(Ball):
     def first_release(self, tau, u, amplitude, gravity=1.0):
         """T of the first release after impacts at the times τ with the speeds u; an array.
 
-        It is NaN for a ball that stays in contact: for ever, as `stays` shows, or for `PATIENCE`.
+        It is NaN for a ball that stays in contact: for ever (`stays_negative`), or for `PATIENCE`.
 
         Examples
         --------
         >>> ball = SpringDamper(10.0, restitution=0.5)
         >>> ball.first_release(0.0, np.array([1.0, 1e-3]), amplitude=0.9).round(3)
-        array([3.282,   nan])
+        array([3.478,   nan])
         """
         ratio, zeta, kappa = self.frequency_ratio, self.zeta, self.kappa
         start = kappa * np.minimum(u, 0.0)
@@ -388,9 +405,10 @@ class SpringDamper(Ball):
     def _certainly_in_contact(self, u, strength):
         """A time before which no contact ends if the load is at most ``strength``.
 
-        An impact of the speed u on a free contact has f = -uk(s), k = e^{-ζϖs} sin(ω(D - s))/ω, and a load adds at most
-        its strength times K = ∫k ds. K/k rises, because e^{-ζϖs} and the sine are log-concave.
-        The sum is thus negative before the time at which sin(ω(D - s)) = q.
+        A free impact of the speed u has f = -uk(s), k = e^{-ζϖs} sin(ω(D - s))/ω, and a load adds
+        at most its strength times K = ∫k ds ≤ (1 + r)/ϖ². K/k rises, because e^{-ζϖs} and the sine
+        are log-concave. The sum is thus negative before the time at which sin(ω(D - s)) = q, where
+        it is negative because k ≥ rq/ω there.
         """
         zeta, ratio = self.zeta, self.frequency_ratio
         omega = ratio * np.sqrt(np.maximum((1 - zeta) * (1 + zeta), 0.0))
@@ -412,7 +430,7 @@ def first_rise(early, *given):
     early : array of shape (n,)
         Times before which f certainly does not vanish.
     given : numbers or arrays of shape (n,)
-        The phase of the forcing, f and -f′ at the start, then the amplitude of the forcing, g, ϖ and ζ.
+        The phase of the forcing, f and -f′ at the start, the amplitude of the forcing, g, ϖ and ζ.
     """
     time, found = np.array(early), np.full(early.shape, np.nan)
     left = np.arange(early.size)
@@ -432,29 +450,41 @@ def first_rise(early, *given):
 
 
 def safe_step(s, f, slope, phase, strength, gravity, ratio, zeta):
-    """A step that ends before the next rise of an oscillator through zero, and whether it ends on it.
+    """A step that ends before the next rise of an oscillator through zero, or the last one, onto it.
 
-    The spring and the damper do not raise e = √(f′² + ϖ²f²). Over a time of 1/ϖ it is therefore at most
-    e₀ + F/ϖ under a load of the strength F, so that f″ ≤ M and f‴ ≤ J. No zero lies before that of
-    f + f′h + Bh²/2, as far as f″ ≤ B: with B = M, or with f″ + Jh/3 up to h.
+    The difference y of f from its quasi-static value q = (Λ sin(φ + s) - g)/ϖ² is an oscillator
+    under the load -q″ - 2ζϖq′ of the strength l = Λ√(1 + (2ζϖ)²)/ϖ². The spring and the damper do
+    not raise e = √(y′² + ϖ²y²), which is thus at most e₀ + 2l/ϖ over a time of 2/ϖ. This limits
+    |f″| ≤ M and |f‴| ≤ J. No zero lies before that of the parabola f + f′h + Bh²/2 with B = M, or,
+    up to a reach H, with B = f″ + JH/3.
+
+    Returns
+    -------
+    step, last : array
+        The step, and whether it is the last one.
     """
     stiffness, loss = ratio * ratio, 2 * zeta * ratio
-    second = strength * np.sin(phase + s) - gravity - loss * slope - stiffness * f
-    load = np.abs(gravity) + np.abs(strength)
-    speed = np.sqrt(slope * slope + stiffness * f * f) + load / ratio
-    bend = load + ratio * np.sqrt(1 + 4 * zeta * zeta) * speed
-    jerk = np.abs(strength) + loss * bend + stiffness * speed
+    static = strength / stiffness
+    sin, cos = np.sin(phase + s), np.cos(phase + s)
+    height, rate = f + gravity / stiffness - static * sin, slope - static * cos
+    second = -stiffness * height - loss * slope
+    load = np.abs(static) * np.sqrt(1 + loss * loss)
+    speed = np.sqrt(rate * rate + stiffness * height * height) + 2 * load / ratio
+    free_bend = load + ratio * np.sqrt(1 + 4 * zeta * zeta) * speed
+    bend = free_bend + np.abs(static)
+    jerk = load + loss * free_bend + stiffness * speed + np.abs(static)
     step = _root_of_parabola(f, slope, bend)
-    reach = np.minimum(4 * step, 1 / ratio)
+    reach = np.minimum(4 * step, 2 / ratio)
     further = _root_of_parabola(f, slope, np.minimum(second + jerk * reach / 3, bend))
-    step = np.maximum(np.minimum(step, reach), np.minimum(further, reach))
     newton = _root_of_parabola(f, slope, second)
+    # The parabola with f″ itself is wrong by Jh³/6, and its root by this over the slope.
     last = (slope > 0) & (jerk * np.abs(newton) ** 3 < 2**-52 * slope * s)
+    step = np.maximum(np.minimum(step, reach), np.minimum(further, reach))
     return np.where(last, newton, step), last
 
 
 def _root_of_parabola(f, slope, bend):
-    """The first root of f + f′h + Bh²/2 from f < 0 up, without a difference of nearly equal numbers."""
+    """The first root of f + f′h + Bh²/2 for f < 0; no difference of nearly equal numbers."""
     square = slope * slope - 2 * bend * f
     root = np.sqrt(np.maximum(square, 0.0))
     rising = np.where(square < 0, np.inf, -2 * f / np.maximum(slope + root, 1e-300))
@@ -465,8 +495,8 @@ def _root_of_parabola(f, slope, bend):
 def stays_negative(s, f, slope, phase, strength, gravity, ratio, zeta):
     """Whether an oscillator with f and f′ at the time s never rises through zero.
 
-    The steady response is at most Λ/√γ - g/ϖ², γ = (ϖ² - 1)² + (2ζϖ)², and what is left of the transient at most
-    e/ϖ, where its e = √(f′² + ϖ²f²) never rises.
+    The steady response is at most Λ/√γ - g/ϖ², γ = (ϖ² - 1)² + (2ζϖ)². What is left of the
+    transient is at most e/ϖ, where its e = √(f′² + ϖ²f²) never rises.
     """
     stiffness, loss = ratio * ratio, 2 * zeta * ratio
     gamma = np.maximum((stiffness - 1) * (stiffness - 1) + loss * loss, 1e-300)
@@ -482,14 +512,14 @@ def stays_negative(s, f, slope, phase, strength, gravity, ratio, zeta):
 class Corrected(Ball):
     """The corrected restitution model: the impacts of another ball as instants.
 
-    An impact of the closing speed v takes place at the gap -v t_c(v), in the flight that is continued
-    into the contact, and leaves the ball there with the relative speed w = r(v) v + σ(v) a, where
+    The flight is continued into the contact. An impact of the closing speed v takes place at the
+    gap -v t_c(v), and leaves the ball there with the relative speed w = r(v) v + σ(v) a, where
     a = g - Λ sin τ is the load.
 
     Parameters
     ----------
     of : Ball
-        The ball whose signature (r, t_c, σ) this one has. Its parameters are also those of this ball.
+        The ball whose signature (r, t_c, σ) and whose parameters this one has.
 
     Examples
     --------

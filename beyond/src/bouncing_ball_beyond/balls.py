@@ -171,6 +171,15 @@ def damping_of(restitution):
     return -log / np.sqrt(np.pi**2 + log * log)
 
 
+def _sin_cos(x):
+    """Sine and cosine, which numpy finds faster for many real numbers by the tangent of x/2."""
+    if np.iscomplexobj(x) or np.size(x) < 200:
+        return np.sin(x), np.cos(x)
+    half = np.tan(x / 2)
+    sin = 2 * half / (1 + half * half)
+    return sin, 1 - half * sin
+
+
 def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     """δ and δ′ a time s after an impact has started at the time τ, from δ = gap and δ′ = -u.
 
@@ -198,8 +207,8 @@ def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     scale = amplitude / ((stiffness - 1) * (stiffness - 1) + 4 * decay * decay)
     a, b = scale * (stiffness - 1), -2 * scale * decay
     rest = -gravity / stiffness
-    sin_start, cos_start = np.sin(tau), np.cos(tau)
-    sin_end, cos_end = np.sin(tau + s), np.cos(tau + s)
+    sin_start, cos_start = _sin_cos(tau)
+    sin_end, cos_end = _sin_cos(tau + s)
     c = gap - rest - a * sin_start - b * cos_start
     d = -u - a * cos_start + b * sin_start + decay * c
     cosine, sine = _decaying(s, ratio, zeta)
@@ -216,7 +225,8 @@ def _decaying(s, ratio, zeta):
     square = (1 - zeta) * (1 + zeta)
     omega = ratio * np.sqrt(np.where(over, 0.75, square))
     envelope = np.exp(-np.where(over, 0.5, zeta) * ratio * s)
-    cosine, sine = envelope * np.cos(omega * s), envelope * np.sin(omega * s) / omega
+    sin, cos = _sin_cos(omega * s)
+    cosine, sine = envelope * cos, envelope * sin / omega
     if not np.any(over):
         return cosine, sine
     root = np.sqrt(np.where(over, -square, 0.75))
@@ -450,7 +460,7 @@ def first_rise(early, *given):
 
 
 def safe_step(s, f, slope, phase, strength, gravity, ratio, zeta):
-    """A step that ends before the next rise of an oscillator through zero, or the last one, onto it.
+    """A step that ends before the next rise of an oscillator through zero, or on it.
 
     The difference y of f from its quasi-static value q = (Λ sin(φ + s) - g)/ϖ² is an oscillator
     under the load -q″ - 2ζϖq′ of the strength l = Λ√(1 + (2ζϖ)²)/ϖ². The spring and the damper do
@@ -461,11 +471,11 @@ def safe_step(s, f, slope, phase, strength, gravity, ratio, zeta):
     Returns
     -------
     step, last : array
-        The step, and whether it is the last one.
+        The step, and whether it ends on the zero.
     """
     stiffness, loss = ratio * ratio, 2 * zeta * ratio
     static = strength / stiffness
-    sin, cos = np.sin(phase + s), np.cos(phase + s)
+    sin, cos = _sin_cos(phase + s)
     height, rate = f + gravity / stiffness - static * sin, slope - static * cos
     second = -stiffness * height - loss * slope
     load = np.abs(static) * np.sqrt(1 + loss * loss)
@@ -501,7 +511,7 @@ def stays_negative(s, f, slope, phase, strength, gravity, ratio, zeta):
     stiffness, loss = ratio * ratio, 2 * zeta * ratio
     gamma = np.maximum((stiffness - 1) * (stiffness - 1) + loss * loss, 1e-300)
     a, b = strength * (stiffness - 1) / gamma, -strength * loss / gamma
-    sin, cos = np.sin(phase + s), np.cos(phase + s)
+    sin, cos = _sin_cos(phase + s)
     transient = f + gravity / stiffness - a * sin - b * cos
     transient_slope = slope - a * cos + b * sin
     speed = np.sqrt(transient_slope * transient_slope + stiffness * transient * transient)

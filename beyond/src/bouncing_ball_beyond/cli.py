@@ -1,0 +1,343 @@
+"""The command ``bouncing-ball``: orbits, branches, motions and errors from a terminal.
+
+Each command makes a ball, calls one public function with it, and prints the answer. The package is
+imported when a command runs, so that ``--help`` is fast.
+"""
+
+import re
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import click
+
+import bouncing_ball_beyond as bb
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+class Command(click.Command):
+    """A command that names its option where a function of the package finds a mistake."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except ValueError as error:
+            options = {parameter.name: parameter.opts[0] for parameter in self.params}
+            # Names of parameters, but not where a ball is written in parentheses.
+            text = re.sub(
+                r"\([^)]*\)|\w+", lambda word: options.get(word[0], word[0]), str(error)
+            )
+            raise click.ClickException(text) from error
+
+
+class Commands(click.Group):
+    """The group of all commands, in the order in which they are written."""
+
+    command_class = Command
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of commands."""
+        return list(self.commands)
+
+
+@click.group(cls=Commands)
+@click.version_option(package_name="bouncing-ball-beyond")
+def commands() -> None:
+    """A ball on a vibrating table.
+
+    Quantities are dimensionless but for the shaker: times Ωt, lengths Ω²y/g.
+    """
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run a command. A mistake is one line on the standard error, with the exit status 2."""
+    given = sys.argv[1:] if arguments is None else arguments
+    try:
+        status = commands.main(given or ["--help"], "bouncing-ball", standalone_mode=False)
+    except click.ClickException as error:
+        click.echo(f"bouncing-ball: {error.format_message()}", err=True)
+        sys.exit(2)
+    except click.Abort:
+        sys.exit(130)
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def with_options(*options: Callable) -> Callable:
+    """A decorator for several options, in their order."""
+
+    def decorate(function):
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return decorate
+
+
+def _known_suffix(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+    """The name of a file that can be written."""
+    if value is not None and Path(value).suffix not in (".nc", ".csv", *PICTURES):
+        allowed = ", ".join([".nc", ".csv", *PICTURES])
+        raise click.BadParameter(f"{value!r} must end with one of {allowed}")
+    return value
+
+
+AMPLITUDE = click.option("--amplitude", type=float, required=True, help="Amplitude Λ of the table.")
+N = click.option("--n", type=int, default=1, show_default=True, help="Periods of the n-T orbit.")
+OUTPUT = click.option(
+    "--output",
+    callback=_known_suffix,
+    metavar="FILE",
+    help="Also as a .nc, .csv, .png, .pdf or .svg.",
+)
+START = with_options(
+    click.option("--phase", type=float, help="Phase of the table at the first impact."),
+    click.option("--velocity", type=float, help="Absolute velocity of the ball before it."),
+)
+BALL = with_options(
+    click.option("--restitution", type=float, help="Restitution coefficient r."),
+    click.option("--frequency-ratio", type=float, help="ϖ; without it impacts are instants."),
+    click.option("--damping-ratio", type=float, help="ζ of the contact, in place of r."),
+    click.option(
+        "--release",
+        type=click.Choice(["displacement", "force"]),
+        default="displacement",
+        help="Contacts end at the level of the table, or where the force vanishes.",
+    ),
+    click.option("--law", metavar="NAME", help="Contact law, such as tsuji."),
+    click.option("--set", "settings", multiple=True, metavar="NAME=NUMBER", help="Of the law."),
+    click.option("--corrected", is_flag=True, help="Impacts as instants at the force's centroid."),
+)
+
+
+def with_ball(function: Callable) -> Callable:
+    """A command with the options of a ball, which gets the ball in their place."""
+
+    @wraps(function)
+    def command(
+        restitution, frequency_ratio, damping_ratio, release, law, settings, corrected, **others
+    ):
+        if law is not None:
+            ball = bb.named_law(law, **_settings(settings), restitution=restitution)
+        elif frequency_ratio is None and damping_ratio is None:
+            ball = bb.Rigid(restitution)
+        else:
+            ball = bb.SpringDamper(frequency_ratio, restitution, damping_ratio, release)
+        return function(bb.Corrected(ball) if corrected else ball, **others)
+
+    return BALL(command)
+
+
+def _settings(texts: tuple[str, ...]) -> dict[str, float]:
+    """The parameters of a law from texts such as "stiffness=1000"."""
+    values = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        try:
+            values[name] = float(value)
+        except ValueError:
+            raise click.ClickException(f"--set {text}: must be NAME=NUMBER") from None
+    return values
+
+
+def with_branch(function: Callable) -> Callable:
+    """A command that gets a branch, in place of the options of a ball, an orbit and a parameter."""
+
+    @wraps(function)
+    def command(ball, amplitude, n, phase, velocity, along, to, doublings, **others):
+        if phase is None and velocity is None:
+            start = bb.orbit(ball, amplitude=amplitude, n=n)
+        else:
+            start = bb.orbit_of_motion(ball, amplitude=amplitude, phase=phase, velocity=velocity)
+        branch = bb.follow(start, along=along, to=to)
+        for _ in range(doublings):
+            branch = bb.follow(branch.first("period doubling"), along=along, to=to)
+        return function(branch, **others)
+
+    decorate = with_options(
+        AMPLITUDE,
+        N,
+        START,
+        click.option("--along", default="amplitude", show_default=True, help="What changes."),
+        click.option("--to", type=float, required=True, help="Its value at which the branch ends."),
+        click.option("--doublings", type=int, default=0, help="Follow the orbits after so many."),
+    )
+    return with_ball(decorate(command))
+
+
+def show(found: Any, output: str | None) -> None:
+    """Print what was found and, if wanted, write it to a file."""
+    click.echo(found)
+    if output is None:
+        return
+    suffix = Path(output).suffix
+    if suffix in PICTURES:
+        bb.plot(found).savefig(output)
+        return
+    data = found if hasattr(found, "to_netcdf") else bb.to_dataset(found)
+    if suffix == ".nc":
+        data.to_netcdf(output)
+    else:
+        data.to_dataframe().to_csv(output)
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    """Columns of texts, the first one to the left."""
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    return "\n".join(
+        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])])
+        for row in [head, *rows]
+    )
+
+
+@commands.command()
+@with_ball
+@AMPLITUDE
+@N
+@click.option("--side", type=click.Choice(["stable", "unstable"]), default="stable")
+@OUTPUT
+def orbit(ball, amplitude, n, side, output):
+    """The n-T orbit, with one impact in n periods of the table."""
+    show(bb.orbit(ball, amplitude=amplitude, n=n, side=side), output)
+
+
+@commands.command()
+@with_ball
+@N
+@OUTPUT
+def limits(ball, n, output):
+    """The saddle-node and the period doubling of n-T orbits."""
+    for special in bb.limits(ball, n=n):
+        show(special, output)
+
+
+@commands.command()
+@with_branch
+@OUTPUT
+def follow(branch, output):
+    """A branch of orbits along a parameter, with its special orbits."""
+    show(branch, output)
+
+
+@commands.command()
+@with_branch
+@click.option("--kind", default="saddle-node", show_default=True, help="Kind of special orbit.")
+@click.option("--across", required=True, help="The second parameter.")
+@click.option(
+    "--range", "ranges", type=(str, float, float), multiple=True, help="NAME LOW HIGH of the curve."
+)
+@OUTPUT
+def curve(branch, kind, across, ranges, output):
+    """The curve in two parameters of the first special orbit of a kind on a branch."""
+    found = bb.special_curve(
+        branch.first(kind),
+        along=(branch.along, across),
+        ranges={name: (low, high) for name, low, high in ranges},
+    )
+    show(found, output)
+
+
+@commands.command()
+@with_ball
+@AMPLITUDE
+@START
+@click.option("--impacts", type=int, default=2000, show_default=True, help="Followed at most.")
+def motion(ball, amplitude, phase, velocity, impacts):
+    """The motion on which a ball ends."""
+    found = bb.motion_of(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
+    click.echo(found)
+
+
+@commands.command()
+@with_ball
+@click.option("--amplitude", type=(float, float), required=True, help="First and last Λ.")
+@click.option("--points", type=int, default=300, show_default=True, help="Number of amplitudes.")
+@OUTPUT
+def diagram(ball, amplitude, points, output):
+    """The motions on which balls end, over the amplitude."""
+    import numpy as np
+
+    show(bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points)), output)
+
+
+@commands.command()
+@with_ball
+@AMPLITUDE
+@START
+@click.option("--impacts", type=int, default=20, show_default=True, help="Their number.")
+@OUTPUT
+def simulate(ball, amplitude, phase, velocity, impacts, output):
+    """The impacts that follow a given one."""
+    found = bb.simulate(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
+    show(found, output)
+
+
+@commands.command()
+@with_ball
+@AMPLITUDE
+@N
+@click.option("--tolerance", type=float, default=0.01, show_default=True, help="Largest error.")
+def thresholds(ball, amplitude, n, tolerance):
+    """From which stiffness on simple models are good enough.
+
+    The answer is ϖ for a contact with a spring and a damper, also if only r is given. For
+    another law it is the factor by which its contact may be shorter.
+    """
+    contacts = ball if ball.lasts else bb.SpringDamper(1.0, restitution=ball.restitution)
+    known = {"amplitude": amplitude, "n": n, "tolerance": tolerance}
+    law = bb.law_thresholds(contacts, **known)
+    exact = bb.error_thresholds(contacts, **known)
+    corrected = bb.error_thresholds(contacts, simple=bb.Corrected, **known)
+    rows = [
+        [name.replace("_", " "), f"{law[name]:.6g}", _ratio(exact[name]), _ratio(corrected[name])]
+        for name in law
+    ]
+    click.echo(table(["", "error law", "exact", "corrected model"], rows))
+
+
+def _ratio(threshold: Any) -> str:
+    """A threshold, or its status where there is none."""
+    return f"{threshold.ratio:.6g}" if threshold.status == "found" else str(threshold.status)
+
+
+@commands.command("error-law")
+@with_ball
+@AMPLITUDE
+@N
+def error_law(ball, amplitude, n):
+    """Errors of the restitution model on a contact, by the error law and exactly."""
+    law = bb.law_errors(ball, amplitude=amplitude, n=n)
+    remainders = bb.law_remainders(ball, amplitude=amplitude, n=n)
+    exact = bb.exact_errors(ball, amplitude=amplitude, n=n)
+    corrected = bb.exact_errors(ball, amplitude=amplitude, n=n, simple=bb.Corrected)
+    rows = [
+        [name.replace("_", " ")]
+        + [f"{each[name]:.4g}" for each in (law, remainders, exact, corrected)]
+        for name in law
+    ]
+    click.echo(table(["", "error law", "right to", "exact", "corrected model"], rows))
+
+
+@commands.command()
+@click.option("--frequency", required=True, help='Of the table, such as "50 Hz".')
+@click.option("--restitution", type=float, required=True, help="Restitution coefficient r.")
+@click.option("--stroke", help='Amplitude of the table, half of peak to peak, such as "0.1 mm".')
+@click.option("--acceleration", help='Greatest acceleration, such as "0.8 g"; or the stroke.')
+@click.option("--mass", help='Of the ball, such as "20 g"; or its radius and density.')
+@click.option("--radius", help='Of the ball, such as "5 mm".')
+@click.option("--density", help='Of the ball, such as "7800 kg/m^3".')
+@click.option("--contact-duration", help='Such as "100 us".')
+@click.option("--stiffness", help='In place of the duration, such as "1e7 N/m".')
+@click.option("--youngs-modulus", help='Of the ball, in place of both, such as "210 GPa".')
+@click.option("--poissons-ratio", type=float, default=0.3, show_default=True)
+@click.option("--table-youngs-modulus", help="Without it the table is rigid.")
+@click.option("--table-poissons-ratio", type=float, default=0.3, show_default=True)
+@click.option("--gravity", default="9.80665 m/s^2", show_default=True)
+@N
+@click.option("--tolerance", default="1 %", show_default=True, help="Of the greatest height.")
+def shaker(**quantities):
+    """Whether a restitution coefficient is good enough for a ball on a shaker, with units."""
+    click.echo(bb.on_shaker(**quantities))

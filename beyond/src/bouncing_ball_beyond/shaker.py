@@ -1,0 +1,372 @@
+"""One question of an engineer: is a restitution coefficient good enough for this ball and shaker?
+
+It is if the ball bounces as often as the restitution model says, on a stable orbit, and as high.
+The answer compares the restitution model with the contact, exactly and by the error law.
+Units are read by pint. A plain number is in SI units.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pint
+from scipy.optimize import brentq
+
+from bouncing_ball_beyond.balls import Ball, SpringDamper
+from bouncing_ball_beyond.error_law import (
+    contact_values,
+    error_thresholds,
+    free_impact,
+    law_errors,
+    restitution_values,
+)
+
+# from bouncing_ball_beyond.laws import tsuji
+from bouncing_ball_beyond.paths import Frequency
+
+STANDARD_GRAVITY = 9.80665
+UNITS = pint.UnitRegistry()
+
+
+def in_si(name: str, value: float | str, unit: str) -> float:
+    """A positive quantity in SI units, from a number or from a text with a unit.
+
+    The unit "Hz" stands for cycles, of which the angular frequency in rad/s is returned. An
+    acceleration in "g" is a multiple of standard gravity.
+
+    Raises
+    ------
+    ValueError
+        If the text is no quantity with such a unit, or if the quantity is not positive.
+
+    Examples
+    --------
+    >>> in_si("stiffness", "2 kN/mm", "N/m"), in_si("acceleration", "2 g", "m/s^2")
+    (2000000.0, 19.6133)
+    >>> round(in_si("frequency", "3000 rpm", "Hz") / (2 * np.pi), 9)
+    50.0
+    """
+    try:
+        number = _quantity(str(value), unit).m_as("rad/s" if unit == "Hz" else unit)
+        if not 0 < number < np.inf:
+            raise ValueError("not positive")
+    # Pint raises errors of many kinds for a text that is no quantity.
+    except Exception as error:
+        raise ValueError(f"{name} = {value!r}: must be a positive quantity in {unit}") from error
+    return float(number)
+
+
+def _quantity(text: str, unit: str) -> pint.Quantity:
+    if "," in text:
+        raise ValueError("a comma may be a decimal point or separate thousands")
+    quantity = UNITS.Quantity(text)
+    if quantity.units == UNITS.dimensionless:
+        quantity = quantity.m * UNITS.Unit(unit)
+    if quantity.units == UNITS.Unit("1/s"):
+        raise ValueError("1/s may be Hz or rad/s")
+    if quantity.units == UNITS.gram and unit == "m/s^2":
+        return quantity.m * UNITS.standard_gravity
+    if "hertz" in str(quantity.units):
+        return quantity * UNITS.Quantity(2 * np.pi, "rad")
+    return quantity
+
+
+def in_words(value: float, unit: str) -> str:
+    """A quantity in SI units with four digits and a prefix: 0.0005589, "m" is "558.9 µm"."""
+    return "–" if np.isnan(value) else f"{UNITS.Quantity(value, unit).to_compact():.4g~P}"
+
+
+class Comparison(NamedTuple):
+    """A quantity by the restitution model, on the contact exactly, and there by the error law."""
+
+    by_restitution: float
+    exact: float
+    by_law: float
+
+
+@dataclass(frozen=True)
+class ShakerAnswer:
+    """Whether a restitution coefficient is good enough, and how far away each limit is.
+
+    ``str(answer)`` is a short table and the answer in sentences. What does not exist is NaN.
+    """
+
+    n: int
+    amplitude: float
+    """Λ, the acceleration of the table over gravity."""
+    ball: Ball
+    """The ball with its contact, dimensionless, for the other functions of the package."""
+    frequency: float
+    """Of the table, in Hz."""
+    contact_duration: float
+    """Of a free impact with the speed of the orbit, in s."""
+    tolerance: float
+    saddle_node: Comparison
+    """The Λ from which on the ball bounces."""
+    period_doubling: Comparison
+    """The Λ up to which the orbit is stable."""
+    max_height: Comparison
+    """The greatest height of the ball above the middle position of the table, in m."""
+    lowest_frequency: float
+    """In Hz: from here on the ball bounces on this contact, at the same stroke."""
+    highest_frequency: float
+    """In Hz: up to here the orbit on this contact is stable, at the same stroke."""
+    longest_contact: float
+    """In s: up to here the height is within the tolerance, at the same frequency."""
+
+    @property
+    def bounces(self) -> bool:
+        """Whether there is an orbit, in the restitution model and on the contact."""
+        return max(self.saddle_node[:2]) <= self.amplitude
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether the orbit is stable, in the restitution model and on the contact."""
+        return self.bounces and self.amplitude <= min(self.period_doubling[:2])
+
+    @property
+    def error(self) -> float:
+        """Relative error of the height, with the sign of the contact's height minus the other's."""
+        return self.max_height.exact / self.max_height.by_restitution - 1
+
+    @property
+    def is_good_enough(self) -> bool:
+        """Whether the ball bounces, on a stable orbit, as high as the restitution model says."""
+        return self.is_stable and abs(self.error) <= self.tolerance
+
+    def __str__(self) -> str:
+        rows = [
+            ("", ("restitution", "contact", "error law"), "on this contact, at this stroke"),
+            (
+                "bounces from Λ",
+                [f"{value:.4g}" for value in self.saddle_node],
+                f"from {self.lowest_frequency:.4g} Hz",
+            ),
+            (
+                "stable up to Λ",
+                [f"{value:.4g}" for value in self.period_doubling],
+                f"up to {self.highest_frequency:.4g} Hz",
+            ),
+            ("greatest height", [in_words(value, "m") for value in self.max_height], ""),
+        ]
+        lines = [
+            f"{name:<16}{''.join(f'{value:>13}' for value in values)}   {limit}".rstrip()
+            for name, values, limit in rows
+        ]
+        return "\n".join([*lines, "", *self._sentences()])
+
+    def _sentences(self) -> list[str]:
+        duration = in_words(self.contact_duration, "s")
+        share = self.contact_duration * self.frequency
+        begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
+        doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
+        periods = "each period" if self.n == 1 else f"{self.n} periods"
+        sentences = [
+            f"The acceleration of the table is Λ = {self.amplitude:.4g} times gravity."
+            f" A contact lasts {duration}, {share:.2%} of a period.",
+            f"The ball {BOUNCES[begun]} once in {periods} of the table.",
+        ]
+        if self.bounces:
+            sentences.append(f"This motion is {STABLE[doubled]}.")
+            lower = "lower" if self.error < 0 else "higher"
+            beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
+            by_law = self.max_height.by_law / self.max_height.by_restitution - 1
+            sentences.append(
+                f"Its greatest height is {abs(self.error):.2%} {lower} than with a restitution"
+                f" coefficient, {beyond} {self.tolerance:.3g}; the error law has {by_law:+.2%}."
+            )
+            if self.longest_contact > 0:
+                longest = in_words(self.longest_contact, "s")
+                sentences.append(f"Contacts of up to {longest} are within this tolerance.")
+        if self.amplitude < 1:
+            sentences.append("A ball that is laid on the table stays there.")
+        verdict = "is" if self.is_good_enough else "is not"
+        return [*sentences, f"A restitution coefficient {verdict} good enough."]
+
+
+BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
+"""By the number of models, restitution and contact, in which the ball bounces."""
+STABLE = ("stable", "stable in one of the two models only", "unstable, its period has doubled")
+"""By the number of models in which the period has doubled."""
+
+
+def on_shaker(
+    *,
+    frequency: float | str,
+    restitution: float,
+    stroke: float | str | None = None,
+    acceleration: float | str | None = None,
+    mass: float | str | None = None,
+    radius: float | str | None = None,
+    density: float | str | None = None,
+    contact_duration: float | str | None = None,
+    stiffness: float | str | None = None,
+    youngs_modulus: float | str | None = None,
+    poissons_ratio: float = 0.3,
+    table_youngs_modulus: float | str | None = None,
+    table_poissons_ratio: float = 0.3,
+    gravity: float | str = STANDARD_GRAVITY,
+    n: int = 1,
+    tolerance: float | str = 0.01,
+) -> ShakerAnswer:
+    """Whether a restitution coefficient is good enough for a ball on a shaker.
+
+    Parameters
+    ----------
+    frequency
+        Frequency of the table, such as "50 Hz", "314 rad/s" or "3000 rpm"; a number is in Hz.
+    restitution
+        Restitution coefficient r of a free impact, in (0, 1].
+    stroke, acceleration
+        One of both: the amplitude of the table's motion, which is half of the distance between its
+        lowest and its highest position, or its greatest acceleration, such as "0.8 g".
+    mass, radius, density
+        The mass of the ball, or its radius and density. A contact duration needs none of them.
+    contact_duration, stiffness, youngs_modulus
+        One of them. The first two are those of a contact with a spring and a damper. With Young's
+        modulus of the ball, the contact is that of Hertz with the damping of Tsuji, whose r is the
+        same at every speed, and the radius is needed.
+    poissons_ratio, table_youngs_modulus, table_poissons_ratio
+        For a contact of Hertz; without a modulus the table is rigid.
+    gravity
+        Acceleration of gravity.
+    n
+        The number of periods of the table in which the ball bounces once.
+    tolerance
+        Largest relative error of the greatest height.
+
+    Raises
+    ------
+    ValueError
+        With one line, if a quantity is missing, has a wrong unit or is out of range, or if the
+        contact is so compliant that its saddle-node or its period doubling is not found.
+
+    Examples
+    --------
+    >>> table = {"frequency": "50 Hz", "acceleration": "0.8 g"}
+    >>> answer = on_shaker(**table, mass="20 g", stiffness="1e7 N/m", restitution=0.85)
+    >>> answer.is_good_enough, round(answer.error, 4)
+    (False, -0.0121)
+    """
+    rate = in_si("frequency", frequency, "Hz")
+    fall = in_si("gravity", gravity, "m/s^2")
+    within = in_si("tolerance", tolerance, "dimensionless")
+    if _one_of(stroke=stroke, acceleration=acceleration) == "stroke":
+        amplitude = in_si("stroke", stroke, "m") * rate**2 / fall
+    else:
+        amplitude = in_si("acceleration", acceleration, "m/s^2") / fall
+    contact = _one_of(
+        contact_duration=contact_duration, stiffness=stiffness, youngs_modulus=youngs_modulus
+    )
+    # The ball, dimensionless, on a contact that lasts 1/times as long as that in question.
+    if contact == "youngs_modulus":
+        compliance = _compliance("youngs_modulus", youngs_modulus, poissons_ratio)
+        if table_youngs_modulus is not None:
+            compliance += _compliance(
+                "table_youngs_modulus", table_youngs_modulus, table_poissons_ratio
+            )
+        # The force of Hertz is 4/3 E* √R p^(3/2); lengths are in units of g/Ω², times in 1/Ω.
+        force = 4 / 3 * np.sqrt(in_si("radius", radius, "m")) / compliance
+        force *= np.sqrt(fall) / rate**3 / _mass(mass, radius, density)
+        # With any duration, because the damping depends on r alone.
+        hertz = tsuji(restitution=restitution, duration=0.1, speed=1.0)
+
+        def contacts(times):
+            return hertz.at(stiffness=force * times**2.5)
+
+    else:
+        spring = SpringDamper(1.0, restitution=restitution)
+        if contact == "stiffness":
+            square = in_si("stiffness", stiffness, "N/m") / _mass(mass, radius, density)
+            ratio = np.sqrt(square) / rate
+        else:
+            lasts = rate * in_si("contact_duration", contact_duration, "s")
+            ratio = float(spring.free(1.0)) / lasts
+
+        def contacts(times):
+            return spring.at(frequency_ratio=ratio * times)
+
+    return _answer(contacts, amplitude, n, within, rate, fall)
+
+
+def _one_of(**quantities: float | str | None) -> str:
+    """The name of the only quantity that is given."""
+    given = [name for name, value in quantities.items() if value is not None]
+    if len(given) != 1:
+        raise ValueError(f"exactly one of {', '.join(quantities)} must be given")
+    return given[0]
+
+
+def _mass(mass, radius, density) -> float:
+    if mass is not None:
+        return in_si("mass", mass, "kg")
+    if radius is None or density is None:
+        raise ValueError("the mass, or radius and density, must be given")
+    return 4 / 3 * np.pi * in_si("radius", radius, "m") ** 3 * in_si("density", density, "kg/m^3")
+
+
+def _compliance(name: str, modulus: float | str, poissons_ratio: float) -> float:
+    """(1 - ν²)/E of one of the bodies in contact."""
+    if not -1 < poissons_ratio <= 0.5:
+        raise ValueError(f"Poisson's ratio = {poissons_ratio!r}: must be above -1 and at most 0.5")
+    return (1 - poissons_ratio**2) / in_si(name, modulus, "Pa")
+
+
+def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
+    """The answer for the ball contacts(1) at Λ, with Ω in rad/s and gravity in m/s²."""
+    ball = contacts(1.0)
+    impact = free_impact(ball, n)
+    duration = float(impact.duration)
+    simple = restitution_values(impact, amplitude, n)
+    law = law_errors(impact, amplitude=amplitude, n=n)
+    names = ("saddle_node", "period_doubling", "max_height")
+    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names)
+    if np.isnan(exact["saddle_node"] + exact["period_doubling"]):
+        raise ValueError(
+            f"no saddle-node and period doubling are found: a contact lasts"
+            f" {duration / (2 * np.pi):.2g} periods of the table"
+        )
+    low = duration / np.pi
+    longest = error_thresholds(
+        contacts,
+        amplitude=amplitude,
+        n=n,
+        tolerance=tolerance,
+        quantities=["max_height"],
+        low=low,
+        high=1e6 * low,
+    )["max_height"]
+    unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
+    compared = {
+        name: Comparison(
+            float(simple[name]) * unit[name],
+            float(exact[name]) * unit[name],
+            float(simple[name] * (1 + law[name])) * unit[name],
+        )
+        for name in names
+    }
+    frequency = rate / (2 * np.pi)
+    return ShakerAnswer(
+        n=n,
+        amplitude=amplitude,
+        ball=ball,
+        frequency=frequency,
+        contact_duration=duration / rate,
+        tolerance=tolerance,
+        lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact),
+        highest_frequency=frequency * _times(ball, amplitude, n, "period_doubling", exact),
+        longest_contact=float(duration / longest.ratio) / rate,
+        **compared,
+    )
+
+
+def _times(ball, amplitude, n, name, exact) -> float:
+    """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke."""
+    path = Frequency()
+
+    def excess(times):
+        shaken, there = path.apply(ball, amplitude, times * np.sqrt(amplitude))
+        return contact_values(shaken, amplitude=there, n=n, quantities=[name])[name] - there
+
+    guess = np.sqrt(exact[name] / amplitude)
+    return brentq(excess, guess / 1.5, guess * 1.5, rtol=1e-6)

@@ -18,6 +18,7 @@ _MODULES = {
     "FollowedBranch": "continuation",
     "cascade": "continuation",
     "follow": "continuation",
+    "limits": "continuation",
     "OrbitEquations": "equations",
     "contact_values": "error_law",
     "error_thresholds": "error_law",
@@ -30,8 +31,13 @@ _MODULES = {
     "OrbitNotFound": "orbits",
     "PeriodicOrbit": "orbits",
     "orbit": "orbits",
+    "orbit_near": "orbits",
+    "orbits": "orbits",
     "ParameterPath": "paths",
     "on_shaker": "shaker",
+    "drop": "simulation",
+    "history": "simulation",
+    "simulate": "simulation",
 }
 __all__ = sorted(_MODULES)
 

@@ -4,7 +4,7 @@ A branch is followed by pseudo-arclength continuation: the predictor goes along 
 corrector is Newton's method on the plane across it. Many branches, rows, are followed side by side.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -12,8 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bouncing_ball_beyond.balls import Ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
-from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit, single
+from bouncing_ball_beyond.orbits import (
+    OrbitNotFound,
+    PeriodicOrbit,
+    near_instants,
+    rows_of,
+    shortest_contacts,
+    single,
+)
 from bouncing_ball_beyond.paths import Path, path_of
 
 FIRST_STEP = 0.1
@@ -30,7 +38,11 @@ TURN = 0.3
 
 
 class Kind(NamedTuple):
-    """A kind of special orbit: what is zero there, and why a branch ends there, or "" if it goes on."""
+    """A kind of special orbit.
+
+    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says why
+    branches end there, and is empty if they go on.
+    """
 
     test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
     end: str
@@ -51,13 +63,22 @@ KINDS = {
     ),
     "lost release": Kind(
         lambda equations, z, linear: equations.least_release(linear, z),
-        "a release is lost, because the ball no longer leaves the table there",
+        "the ball no longer leaves the table as a contact ends",
     ),
 }
 """The kinds of special orbits of a branch, by name."""
 
-SEEN_ON_THE_WAY = ("period doubling", "period halving", "grazing of an impact", "lost release")
-"""The kinds at which a branch may end: their tests are computed at each step."""
+
+def tests_on_the_way(equations: OrbitEquations, z: NDArray, linear: Linear) -> dict[str, NDArray]:
+    """The tests that cost little, or that end a branch, by kind."""
+    turn = equations.turn(linear)
+    return {
+        "saddle-node": 1 - turn,
+        "period doubling": 1 + turn,
+        "period halving": equations.halving(z),
+        "grazing of an impact": equations.least_speed(z),
+        "lost release": equations.least_release(linear, z),
+    }
 
 
 def kind_named(name: str) -> str:
@@ -207,11 +228,6 @@ class _Steps(NamedTuple):
     end: str
 
 
-def _tests(equations, z, linear, names) -> dict[str, NDArray]:
-    """The tests of some kinds at orbits."""
-    return {name: KINDS[name].test(equations, z, linear) for name in names}
-
-
 def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
     """Accepted steps of branches until their parameter is at `to`, or until they end.
 
@@ -223,7 +239,7 @@ def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
     first, goal = z[:, -1].copy(), np.broadcast_to(to, rows).astype(float)
     t = direction / units
     t = t / np.linalg.norm(t, axis=1, keepdims=True)
-    tests = _tests(equations, z, equations.linear(z), SEEN_ON_THE_WAY)
+    tests = tests_on_the_way(equations, z, equations.linear(z))
     history = [(np.ones(rows, bool), z, t, dict(tests))]
     end = np.full(rows, "", object)
     count = np.ones(rows, int)
@@ -248,7 +264,7 @@ def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
         following = following / np.linalg.norm(following, axis=1, keepdims=True)
         moved = np.linalg.norm((new - guess) / unit, axis=1)
         with np.errstate(all="ignore"):
-            values = _tests(part, new, solution.linear, SEEN_ON_THE_WAY)
+            values = tests_on_the_way(part, new, solution.linear)
             turn = np.arctan(values["period doubling"] - 1)
             change = np.abs(turn - np.arctan(tests["period doubling"][active] - 1))
             change = np.minimum(change, np.pi - change)
@@ -263,7 +279,7 @@ def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
         count[accepted] += 1
         for j in taken[last[taken]]:
             end[active[j]] = _reached(equations.along[-1].name, target[j], forward[j])
-        for name in SEEN_ON_THE_WAY:
+        for name in tests:
             before = tests[name][active]
             crossed = good & (before * values[name] < 0)
             if KINDS[name].end or name == until:
@@ -285,7 +301,7 @@ def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
 def _row_of(history, units, end, i) -> _Steps:
     """The accepted steps of one row."""
     taken = [each for each in history if each[0][i]]
-    tests = {name: np.array([each[3][name][i] for each in taken]) for name in SEEN_ON_THE_WAY}
+    tests = {name: np.array([each[3][name][i] for each in taken]) for name in taken[0][3]}
     z = np.array([each[1][i] for each in taken])
     t = np.array([each[2][i] * units[i] for each in taken])
     return _Steps(z, t, tests, end[i])
@@ -316,7 +332,7 @@ def _crossings(equations, steps: list[_Steps]) -> _Crossings:
         np.concatenate([each.z for each in steps]),
         np.concatenate([each.tangents for each in steps]),
     )
-    tests = {name: np.concatenate([each.tests[name] for each in steps]) for name in SEEN_ON_THE_WAY}
+    tests = {name: np.concatenate([each.tests[name] for each in steps]) for name in steps[0].tests}
     tests["saddle-node"] = 2 - tests["period doubling"]
     all_rows = equations.rows(row)
     tests["grazing of a flight"] = all_rows.clearance(z)
@@ -857,3 +873,68 @@ def _joined(parts: list):
         special=(*back.special[::-1], *forth.special),
         start=back.end,
     )
+
+
+class Limits(NamedTuple):
+    """The special orbits between which orbits with one impact are stable; None where there is none."""
+
+    saddle_node: PeriodicOrbit | None
+    period_doubling: PeriodicOrbit | None
+
+
+def limits(ball: Ball, *, n=1):
+    """The saddle-node and the period doubling of the n-T orbits of a ball.
+
+    An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0, and no
+    saddle-node.
+
+    Parameters
+    ----------
+    ball : Ball
+        Its parameters are numbers or arrays.
+    n : array_like of int
+
+    Returns
+    -------
+    Limits, or a list of Limits
+        A list if an argument is an array.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> round(limits(Rigid(0.5)).saddle_node.amplitude, 6)
+    1.047198
+    """
+    row, (periods,), shape = rows_of(ball, n)
+    between = _between_limits(OrbitEquations(row, 1, periods))
+    down = _follow_all(between, "amplitude", 1e-6, 500, "saddle-node")
+    up = _follow_all(between, "amplitude", None, 500, "period doubling")
+    found = []
+    for below, above in zip(down, up, strict=True):
+        special = () if isinstance(below, OrbitNotFound) else (*below.special[::-1], *above.special)
+        folds = (each for each in special if each.kind == "saddle-node")
+        doublings = (each for each in special if each.kind == "period doubling")
+        found.append(Limits(next(folds, None), next(doublings, None)))
+    return found if shape else found[0]
+
+
+def _between_limits(equations: OrbitEquations) -> list:
+    """An orbit with one impact for each row, between the limits of the restitution model if it can be."""
+    ball, n = equations.ball, np.asarray(equations.periods)
+    r = ball.signature(1.5 * np.pi * n).restitution
+    r = np.where(np.isfinite(r), r, 0.5)
+    fold = np.pi * n * (1 - r) / (1 + r)
+    found = [OrbitNotFound("no orbit with one impact is found")] * len(n)
+    for share in (0.5, 0.9, 0.2, 2.0, 4.0):
+        amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)
+        z, good, _ = near_instants(equations, amplitude, 1)
+        for i in range(len(n)):
+            if isinstance(found[i], PeriodicOrbit):
+                continue
+            alone = single(equations, i)
+            ones = [PeriodicOrbit(alone, z[i])] if good[i] else []
+            ones = ones or shortest_contacts(alone, float(amplitude[i]), 1)
+            found[i] = ones[0] if ones else found[i]
+        if all(isinstance(each, PeriodicOrbit) for each in found):
+            break
+    return found

@@ -140,16 +140,26 @@ class OrbitEquations:
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
         of_legs, of_parameters = self._steps
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
-        ball, amplitude = self.at(z[:, self.size :] + of_parameters)
+        legs = self._legs(y, *self.at(z[:, self.size :] + of_parameters))
+        return Linear(legs[0].real, np.moveaxis(legs.imag, 0, -1) / H)
+
+    def legs(self, z) -> NDArray:
+        """The legs alone, shape (rows, k, q)."""
+        x, ball, amplitude = self.split(z)
+        return self._legs(np.concatenate([x, self.following(x)[..., :2]], axis=-1), ball, amplitude)
+
+    def _legs(self, y, ball, amplitude) -> NDArray:
+        """Legs between impacts and the next ones: y has q unknowns of the former, then τ, u of the latter."""
+        q = self.unknowns
         impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude)
         leaves = y[..., 0] + impact.duration
         gap, rate = flight(y[..., q] - leaves, leaves, impact.gap, impact.speed, amplitude)
-        legs = np.empty((*y.shape[:-1], q), complex)
+        legs = np.empty((*y.shape[:-1], q), y.dtype)
         if self.ball.lasts:
             legs[..., 0] = impact.release
         legs[..., q - 2] = gap - ball.start(y[..., q + 1])
         legs[..., q - 1] = rate + y[..., q + 1]
-        return Linear(legs[0].real, np.moveaxis(legs.imag, 0, -1) / H)
+        return legs
 
     def residuals(self, z) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
@@ -498,6 +508,8 @@ def newton(
         found = np.abs(step).max(axis=1) < tolerance * (1 + np.abs(z).max(axis=1))
         if (found | np.isnan(z).any(axis=1)).all():
             break
+    # Far away, where times have no digits left, steps are small as well.
+    found &= np.abs(linear.legs).max(axis=(1, 2)) < 1e-7
     return Solution(z, found, tangent, linear)
 
 

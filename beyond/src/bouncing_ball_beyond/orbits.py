@@ -3,16 +3,14 @@
 An n-T orbit of the paper has one impact in n periods of the table.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import H, Ball, Corrected
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton
-from bouncing_ball_beyond.paths import AMPLITUDE
+from bouncing_ball_beyond.balls import Ball, Corrected, SpringDamper
+from bouncing_ball_beyond.equations import Linear, OrbitEquations, flight, newton
 
 
 class OrbitNotFound(ValueError):
@@ -358,26 +356,61 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
     equations = OrbitEquations(row, 1, periods)
     sign = 1 if side == "stable" else -1
-    guess = guess_of_instants(row, periods, amplitudes.astype(float), sign)
-    solution = newton(equations, guess, iterations=40)
-    on_side = sign * (1 - equations.turn(solution.linear)) > 0
-    good = solution.found & on_side
-    if good.any():
-        z = np.where(good[:, np.newaxis], solution.z, guess)
-        good &= equations.admissible(z)
+    z, good, admissible = near_instants(equations, amplitudes.astype(float), sign)
     found = []
-    z = _first_turn(equations, solution.z)
-    for i, amplitude in enumerate(amplitudes):
-        alone = single(equations, i)
-        if good[i]:
-            found.append(PeriodicOrbit(alone, z[i]))
-        else:
-            found.append(_searched_orbit(alone, float(amplitude), sign))
+    for i, alone in enumerate(single(equations, i) for i in range(len(z))):
+        one = PeriodicOrbit(alone, z[i]) if good[i] else None
+        found.append(one if admissible[i] else _searched(alone, float(amplitudes[i]), sign, one))
     if shape:
         return found
     if isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found[0]
+
+
+def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> tuple:
+    """Orbits with one impact near those of the corrected model, as rows.
+
+    Also which of them are found on a side of the saddle-node, and which of these are admissible.
+    """
+    guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign)
+    solution = newton(equations, guess, iterations=40)
+    good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
+    z = _first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
+    good &= (z[:, 1] > 0) & (equations.ends(z).flight[:, 0] > 0)
+    return z, good, good & equations.admissible(z)
+
+
+def _searched(equations: OrbitEquations, amplitude: float, sign: int, other: PeriodicOrbit | None):
+    """The orbit with one impact and the shortest contact on a side of the saddle-node, or a reason.
+
+    If a ball follows no such orbit, it is one that no ball follows, but not below the saddle-node.
+    """
+    # The module of branches imports this one.
+    from bouncing_ball_beyond.continuation import limits
+
+    found = shortest_contacts(equations, amplitude, sign)
+    if found and found[0].admissible:
+        return found[0]
+    ball, n = equations.ball, int(equations.periods)
+    lowest = limits(ball, n=n).saddle_node
+    where, why = f"{amplitude:.10g}", "none is found on this side of the saddle-node"
+    if lowest is not None and amplitude < lowest.amplitude:
+        where, limit = apart(amplitude, lowest.amplitude)
+        why = f"below the saddle-node at Λ = {limit}"
+    elif other or found:
+        return other or found[0]
+    return OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {_described(ball)}: {why}")
+
+
+def shortest_contacts(
+    equations: OrbitEquations, amplitude: float, sign: int
+) -> list[PeriodicOrbit]:
+    """Orbits with one impact on a side of the saddle-node: those that a ball follows, and of these
+    those with short contacts, come first."""
+    found = [PeriodicOrbit(equations, row) for row in _all_orbits(equations, amplitude)]
+    on_side = [each for each in found if sign * (1 - each.turn) > 0]
+    return sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration))
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
@@ -395,14 +428,249 @@ def _check_arguments(amplitude, n, side):
     """Raise ValueError with one line for a wrong argument."""
     for value in np.ravel(amplitude):
         if not (np.isreal(value) and 0 < value < np.inf):
-            raise ValueError(f"amplitude = {value!r}: must be a positive number")
+            raise ValueError(f"amplitude = {float(value):g}: must be a positive number")
     for value in np.ravel(n):
         if value != int(value) or not 1 <= value <= 1000:
-            raise ValueError(f"n = {value!r}: must be a whole number from 1 to 1000")
+            raise ValueError(f"n = {float(value):g}: must be a whole number from 1 to 1000")
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
 
 
-def _searched_orbit(equations: OrbitEquations, amplitude: float, sign: int):
-    """The orbit with the shortest contact on a side of the saddle-node, or the reason for none."""
-    return OrbitNotFound(f"no {int(equations.periods)}-T orbit is found at Λ = {amplitude:.10g}")
+def apart(first: float, second: float) -> tuple[str, str]:
+    """Two different numbers with as many digits as tell them apart, at least six."""
+    for digits in range(6, 18):
+        texts = f"{first:.{digits}g}", f"{second:.{digits}g}"
+        if texts[0] != texts[1]:
+            break
+    return texts
+
+
+def _described(ball: Ball) -> str:
+    """A ball in an error message: its model and its parameters."""
+    values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
+    return f"{type(ball).__name__}({values})"
+
+
+def orbits(
+    ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1
+) -> list[PeriodicOrbit]:
+    """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
+
+    With one impact, all orbits are found: for a spring and a damper Λ is a function of the duration
+    of the contact, in closed form; for others the speed at which a ball comes back is searched for at
+    192 phases. With several impacts this is a search: Newton's method closes the motions of
+    2592 first impacts. It finds some orbits of each kind, and perhaps not all.
+
+    Parameters
+    ----------
+    ball : Ball
+    amplitude : float
+        Λ.
+    impacts, periods : int
+
+    Returns
+    -------
+    list of PeriodicOrbit
+        In the order of the durations of their contacts, then of their first phases.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
+    >>> [(round(each.max_height, 3), each.stable) for each in found]
+    [(8.209, True), (8.007, False)]
+    """
+    _check_arguments(amplitude, periods, "stable")
+    _check_arguments(1.0, impacts, "stable")
+    equations = OrbitEquations(ball, impacts, periods)
+    z = _all_orbits(equations, float(amplitude))
+    found = [PeriodicOrbit(equations, row) for row in z[equations.admissible(z)]]
+    return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
+
+
+def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Solutions of the equations at an amplitude, shape (orbits, N), also those no ball follows."""
+    if equations.impacts > 1:
+        starts = _motions(equations, amplitude)
+    else:
+        starts = _along_phases(equations, amplitude)
+        if isinstance(equations.ball, SpringDamper):
+            starts = np.concatenate([_along_durations(equations, amplitude), starts])
+    starts = starts[np.isfinite(starts).all(axis=1)]
+    if not len(starts):
+        return starts
+    solution = newton(equations, starts, iterations=30)
+    return _distinct(equations, solution.z[solution.found])
+
+
+def _along_durations(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Starts near all orbits with one linear contact.
+
+    For a fixed T the equations are linear in Λ cos τ, Λ sin τ and u. Their solution gives Λ as a
+    function of T, whose values at a grid are compared with the one that is wanted.
+    """
+    ball, n = equations.ball, int(equations.periods)
+    T = _grid_of_durations(ball, n)
+    columns = np.zeros((4, len(T), 4))
+    columns[..., 2] = T
+    columns[1:3, :, 3] = 1.0
+    columns[2, :, 0] = np.pi / 2
+    columns[3, :, 1] = 1.0
+    legs = equations.legs(columns.reshape(-1, 4)).reshape(4, len(T), 3)
+    matrix = np.moveaxis(legs[1:] - legs[0], 0, -1)
+    with np.errstate(all="ignore"):
+        regular = np.abs(np.linalg.det(matrix)) > 0
+        matrix[~regular] = np.eye(3)
+        x, y, u = np.moveaxis(np.linalg.solve(matrix, -legs[0, ..., np.newaxis])[..., 0], -1, 0)
+        over = np.hypot(x, y) - amplitude
+    # Next to a minimum or a maximum there may be two orbits between two points of the grid.
+    crossed = (over[:-1] * over[1:] < 0) & regular[:-1]
+    turned = np.zeros(len(crossed), bool)
+    turned[1:] = np.diff(over[:-1]) * np.diff(over[1:]) < 0
+    near = np.flatnonzero(crossed | turned)
+    near = np.unique(np.concatenate([near, near + 1]))
+    z = np.stack([np.arctan2(y, x), u, T, np.full(len(T), amplitude)], axis=-1)[near]
+    return z[(u[near] > 0) & (np.hypot(x, y)[near] < 10 * amplitude)]
+
+
+def _grid_of_durations(ball: SpringDamper, n: int) -> NDArray:
+    """Values of T = ϖD up to 2πnϖ: dense within oscillations that are not yet damped, and about T of
+    a free contact, by which all short contacts of a stiff ball are."""
+    ratio, longest = float(ball.frequency_ratio), 2 * np.pi * n * float(ball.frequency_ratio)
+    # After this T oscillations have fallen by 10⁹; those of an elastic contact are seen up to 4000.
+    undamped = min(longest, 20 / max(float(ball.zeta), 5e-3))
+    free = float(ball.free(1.0))
+    pieces = [np.arange(0.01, undamped, 0.04), np.arange(undamped, longest, 0.01 * ratio)]
+    if np.isfinite(free):
+        shifts = np.geomspace(1e-4 / ratio, 1.0, 500)
+        pieces += [free - shifts, free + shifts]
+    T = np.unique(np.concatenate(pieces))
+    return T[(T > 0) & (T < longest)]
+
+
+def _along_phases(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Starts near all orbits with one impact: impacts whose speed comes back after n periods.
+
+    At each of 192 phases they are searched for on a grid of speeds.
+    """
+    ball, n = equations.ball, int(equations.periods)
+    phases = np.linspace(0, 2 * np.pi, 192, endpoint=False)
+    speeds = np.geomspace(1e-3, 2.2 * np.pi * n + amplitude, 64)
+    tau, u = np.meshgrid(phases, speeds, indexing="ij")
+
+    def row(tau, u):
+        columns = [tau, u, amplitude + 0 * u]
+        if ball.lasts:
+            columns.insert(2, ball.first_release(tau, u, amplitude))
+        return np.stack(columns, axis=-1)
+
+    def change(z):
+        return equations.legs(z)[:, 0, -1]
+
+    with np.errstate(all="ignore"):
+        changes = change(row(tau.ravel(), u.ravel())).reshape(tau.shape)
+        at, number = np.nonzero(changes[:, :-1] * changes[:, 1:] < 0)
+        low, high = changes[at, number], changes[at, number + 1]
+        u = speeds[number] + (speeds[number + 1] - speeds[number]) * low / (low - high)
+        return row(phases[at], u)
+
+
+def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Starts near orbits of k impacts: motions of 2592 first impacts that take about m periods."""
+    ball, k, m = equations.ball, equations.impacts, int(equations.periods)
+    phases = np.linspace(0, 2 * np.pi, 54, endpoint=False)
+    speeds = np.linspace(0.1, 1.1 * np.pi * m + amplitude, 48)
+    tau, u = (each.ravel() for each in np.meshgrid(phases, speeds))
+    columns, first = np.empty((len(tau), 0)), tau
+    with np.errstate(all="ignore"):
+        for _ in range(k):
+            T = ball.first_release(tau, u, amplitude)
+            new = [tau, u, T] if ball.lasts else [tau, u]
+            columns = np.column_stack([columns, *new])
+            impact = ball.contact(tau, u, T, amplitude)
+            tau, u = _landing(tau + impact.duration, impact.gap, impact.speed, amplitude)
+            going = np.isfinite(tau) & (tau < first + 2 * np.pi * (m + 1)) & (u > 0)
+            columns, first, tau, u = columns[going], first[going], tau[going], u[going]
+    closes = np.abs(tau - first - 2 * np.pi * m) < np.pi
+    return np.column_stack([columns, np.full(len(first), amplitude)])[closes]
+
+
+def _landing(leaves, gap, speed, amplitude, samples: int = 200):
+    """About when and with which speed flights first land, from samples of the gap; arrays."""
+    longest = 2 * (np.abs(speed + amplitude * np.cos(leaves)) + np.sqrt(2 * amplitude) + 1)
+    t = longest[:, np.newaxis] * np.linspace(0, 1, samples)
+    gaps, rates = flight(
+        t, leaves[:, np.newaxis], gap[:, np.newaxis], speed[:, np.newaxis], amplitude
+    )
+    lands = (gaps[:, 1:] <= 0) & (rates[:, 1:] < 0)
+    number = lands.argmax(axis=1)[:, np.newaxis]
+    before, after = (np.take_along_axis(gaps, number + j, axis=1)[:, 0] for j in (0, 1))
+    part = np.clip(before / (before - after), 0, 1)
+    time = t[np.arange(len(t)), number[:, 0]] + part * (t[:, 1] - t[:, 0])
+    rate = flight(time, leaves, gap, speed, amplitude)[1]
+    return np.where(lands.any(axis=1), leaves + time, np.nan), -rate
+
+
+def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """One row for each orbit: its first impact is the one of the greatest speed.
+
+    Orbits of a shorter period, taken several times, are left out.
+    """
+    k, q = equations.impacts, equations.unknowns
+    x = z[:, : equations.size].reshape(len(z), k, q)
+    kept = []
+    for row in x[(x[..., 1] > 0).all(axis=1)]:
+        later = row.copy()
+        later[:, 0] += 2 * np.pi * equations.periods
+        first = int(np.argmax(np.round(row[:, 1], 6)))
+        row = np.concatenate([row, later])[first : first + k]
+        row[:, 0] -= 2 * np.pi * np.floor(row[0, 0] / (2 * np.pi) + 1e-9)
+        repeats = [j for j in range(1, k) if k % j == 0]
+        if any(np.allclose(np.roll(row[:, 1:], j, axis=0), row[:, 1:], atol=1e-7) for j in repeats):
+            continue
+        if not any(np.allclose(row, other, atol=1e-7) for other in kept):
+            kept.append(row)
+    rows = np.array(kept).reshape(len(kept), k * q)
+    return np.concatenate([rows, np.full((len(rows), 1), z[0, -1] if len(z) else 0.0)], axis=1)
+
+
+def orbit_near(
+    ball: Ball, *, amplitude: float, phases: ArrayLike, velocities: ArrayLike
+) -> PeriodicOrbit:
+    """The periodic orbit near a guess: the phases and the velocities of the ball before its impacts.
+
+    The number of periods follows from the velocities, because a flight lasts as long as its velocity
+    falls by.
+
+    Parameters
+    ----------
+    ball : Ball
+    amplitude : float
+    phases, velocities : array_like, shape (impacts,)
+        Velocities are absolute.
+
+    Raises
+    ------
+    OrbitNotFound
+        If Newton's method does not converge.
+    """
+    _check_arguments(amplitude, 1, "stable")
+    phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
+    if phases.shape != velocities.shape or phases.ndim != 1:
+        raise ValueError("phases, velocities: must have one entry for each impact")
+    u = amplitude * np.cos(phases) - velocities
+    T = ball.first_release(phases, u, amplitude)
+    if not np.isfinite(T).all():
+        raise OrbitNotFound("an impact of the guess does not end: the ball stays on the table")
+    impact = ball.contact(phases, u, T, amplitude)
+    bounce = impact.speed + amplitude * np.cos(phases + impact.duration)
+    lengths = impact.duration + bounce - np.roll(velocities, -1)
+    turns = np.round((phases + lengths - np.roll(phases, -1)) / (2 * np.pi))
+    times = phases[0] + np.append(0.0, np.cumsum(np.roll(phases, -1) - phases + 2 * np.pi * turns))
+    periods = int(np.round((times[-1] - times[0]) / (2 * np.pi)))
+    if periods < 1:
+        raise OrbitNotFound("the guess takes no time: its velocities are not those of flights")
+    columns = [times[:-1], u, T] if ball.lasts else [times[:-1], u]
+    z = np.append(np.stack(columns, axis=-1).ravel(), amplitude)
+    what = f"an orbit with {len(u)} impacts in {periods} periods near this guess"
+    return solved(OrbitEquations(ball, len(u), periods), z, what)

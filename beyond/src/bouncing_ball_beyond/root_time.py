@@ -1,22 +1,22 @@
 """The motion of a ball in a contact of any force law, in a time in which it is analytic.
 
-The penetration p = -δ obeys p″ = a(p, p′, t) with a = 1 - Λ sin(τ + t) - f(p, p′). Forces such as
-p^{3/2} are not smooth at p = 0, where a contact begins and ends, but are analytic functions of
-the root q = p^{1/m}. In the *root time* s, with dt = λ ds and λ = m q^{m-1},
+The penetration p = -δ obeys p″ = a - f, with the load a = g - Λ sin(τ + t) and the force f(p, p′)
+per mass. Forces such as p^{3/2} are not smooth at p = 0, where a contact begins and ends, but are
+analytic functions of the root q = p^{1/m}. In the *root time* s, with dt = λ ds and λ = m q^{m-1},
 
-    dq/ds = v,    dv/ds = λ a,    dt/ds = λ,    v = p′,
+    dq/ds = v,    dv/ds = F = λ (a - f),    dt/ds = λ,    with v = p′,
 
-and the motion is analytic up to both ends of a contact. It is found on panels, on each of which
-v is a polynomial with the values v_j at Gauss nodes. They solve the collocation equations by
-repeated integration (Picard's sweeps, of which k leave an error of the order of (ωh)^{2k}/(2k)!)::
+and the motion is analytic up to both ends of a contact. It is followed from panel to panel. On a
+panel of the length h, F is a polynomial with the values F_j at the Gauss nodes, and Picard's sweeps
+find them: integrals of v give q, those of λ give t, and those of F give v. Each sweep adds two orders in
+ωh, ω being the frequency of the oscillation in s. If the last Legendre coefficients of v are ε, then
+the end of the panel is right to the order of ε². A panel ends where the force has a kink, so that
+the force is analytic on each.
 
-    q = q₀ + h ∫ v,    t = t₀ + h ∫ λ,    v = v₀ + h ∫ λ a
+The derivatives are those of the collocation: one linear system for each panel, for all directions.
 
-If the last Legendre coefficients of v are ε, the end of the panel is right to the order of ε². Where a force has a
-kink, a panel ends at the kink.
-
-All is analytic in the state, the length and the parameters, and complex steps pass through it. In
-this module a row of contacts is an array of shape (rows,), and node values are (rows, nodes).
+An array of contacts has the shape (rows,), one of values at nodes (nodes, rows). Derivatives are
+(rows, directions).
 """
 
 from collections.abc import Callable, Mapping
@@ -27,280 +27,321 @@ from numpy.polynomial import legendre
 
 from bouncing_ball_beyond.balls import H
 
-ORDER = 14
+ORDER = 20
 """Gauss nodes of a panel."""
 
 ROUGH = 1e-7
-"""The largest last Legendre coefficients of v over its greatest value; its square is a rounding error."""
+"""The largest last Legendre coefficients of v, over its greatest value. The square is a rounding error."""
 
-SMOOTH = 1e-13
-"""The same where the coefficients do not fall as those of an analytic function do."""
+FALLING, SMOOTH = 0.02, 1e-13
+"""The last coefficients over those in the middle, at most, if they fall as those of an analytic
+function do. After a jump of the slope the quotient is (1/2)² to (1/2)³, and the square of the last ones
+is no measure of the error: they must be as small as SMOOTH."""
 
-FALLING = 0.02
-"""The last coefficients over those in the middle, at most, of an analytic function; after a jump of
-the slope the quotient is (1/2)² to (1/2)³."""
+EARLY, SWEEPS, SETTLED, CONVERGED = 3, 20, 1e-11, 1e-12
+"""The largest number of sweeps of a panel. They stop where all panels have changed by less than
+CONVERGED in a sweep, and the panel is right if it has changed by less than SETTLED."""
 
-CONVERGED = 1e-14
-"""The change of v over its greatest value in the last sweep."""
-
-SWEEPS = 16
-"""The largest number of sweeps of a panel: with ωh = 2 the last one changes 2³²/32! = 2e-26."""
+STEPS, NEAR = 8, 1e-8
+"""Newton's steps to an event, and the last one over the length of the panel: the error is its square."""
 
 MOST_PANELS = 4000
-"""The largest number of panels of a contact; one oscillation takes some ten."""
+"""The largest number of panels of a contact: an oscillation takes about eight."""
 
-NEAR = 1e-8
-"""The last step to an event over the length of its panel; its square is the error."""
+ROWS = 500
+"""So many contacts are followed at a time: their nodes fit into a processor's cache."""
 
-NEWTON = 8
-"""The largest number of steps to an event."""
+LONGER = 2.0
+WANTED = 3e-2
 
 TINY = 1e-300
 
-ROWS = 1000
-"""So many contacts are followed at a time: their nodes fit into a processor's cache."""
-
 
 def _gauss(n):
-    """Nodes x on [0, 1], weights, integrals from 0 to the nodes, Legendre coefficients from values."""
-    x, w = legendre.leggauss(n)
-    to_coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
-    of_basis = legendre.legval(x, legendre.legint(to_coefficients, lbnd=-1))
-    return (x + 1) / 2, w / 2, of_basis / 2, to_coefficients.T
+    """Nodes on [0, 1], weights, integrals from 0 to the nodes, and Legendre coefficients from values."""
+    x, weights = legendre.leggauss(n)
+    coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
+    integrals = legendre.legval(x, legendre.legint(coefficients, lbnd=-1)).T
+    return (x + 1) / 2, weights / 2, integrals / 2, coefficients
 
 
-_NODES, _WEIGHTS, _INTEGRALS, _TO_COEFFICIENTS = _gauss(ORDER)
-# Of the last two coefficients, and of two in the middle.
-_LAST = _TO_COEFFICIENTS[:, [-2, -1, ORDER // 2, ORDER // 2 + 1]]
+_NODES, _WEIGHTS, _INTEGRALS, _COEFFICIENTS = _gauss(ORDER)
+_TWICE = _INTEGRALS @ _INTEGRALS
+_LAST, _MIDDLE = _COEFFICIENTS[-2:], _COEFFICIENTS[ORDER // 2 : ORDER // 2 + 2]
 
 
 class Motion(NamedTuple):
-    """The equation of motion in contact, and what ends a panel.
+    """The equation of motion of contacts, and where panels end.
 
     Parameters
     ----------
     root : int
         m: 1, or an even number.
-    acceleration : callable
-        p″ as a function of (p, v, t, given), which are numbers and arrays that broadcast.
+    force : callable
+        f(p, v, a, given).
     release : callable
-        The release function of (q, v, t, given). It is negative in a contact and zero at its end.
+        The release function of (q, v, a, given), negative in a contact and zero at its end.
     kinks : tuple of callables
-        Functions of (q, v, t, given) whose zeros are kinks or jumps of the acceleration.
+        Functions of (q, v, a, given) whose zeros are kinks of the force.
     given : mapping
-        Numbers, or columns of shape (rows, 1) with a value for each contact.
+        Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity" and what the force needs.
+    steps : mapping
+        Imaginary parts of what is given, arrays of the shape (rows, directions).
     """
 
     root: int
-    acceleration: Callable
+    force: Callable
     release: Callable
     kinks: tuple
     given: Mapping
+    steps: Mapping
 
     def of(self, rows):
         """The motion of some of the contacts."""
-        picked = {
-            name: value[rows] if np.ndim(value) else value for name, value in self.given.items()
-        }
-        return self._replace(given=picked)
+        given = {name: x[rows] if np.ndim(x) else x for name, x in self.given.items()}
+        return self._replace(given=given, steps={name: x[rows] for name, x in self.steps.items()})
+
+    def stepped(self):
+        """What is given beside (rows, directions), complex where it has a step."""
+        columns = {name: x[:, None] if np.ndim(x) else x for name, x in self.given.items()}
+        return columns | {name: columns[name] + 1j * step for name, step in self.steps.items()}
 
     def lever(self, q):
         """λ = m q^{m-1}."""
-        power = np.ones_like(q)
-        for _ in range(self.root - 1):
+        if self.root == 1:
+            return np.ones_like(q)
+        power = q
+        for _ in range(self.root - 2):
             power = power * q
         return self.root * power
 
-    def push(self, q, v, t):
-        """λ and λ a."""
-        lever = self.lever(q)
-        return lever, lever * self.acceleration(q * lever / self.root, v, t, self.given)
+
+def load(t, given):
+    """a = g - Λ sin(τ + t)."""
+    return given["gravity"] - given["amplitude"] * np.sin(given["tau"] + t)
+
+
+def rates(motion, state):
+    """dq/ds, dv/ds and dt/ds."""
+    q, v, t = state
+    lever = motion.lever(q)
+    a = load(t, motion.given)
+    return v, lever * (a - motion.force(q * lever / motion.root, v, a, motion.given)), lever
+
+
+def event_rate(motion, event, state):
+    """A function of an event and its derivative with respect to s along the motion."""
+    q, v, t = (y + 1j * H * rate for y, rate in zip(state, rates(motion, state), strict=True))
+    value = event(q, v, load(t, motion.given), motion.given)
+    return value.real, value.imag / H
 
 
 class Panel(NamedTuple):
-    """A solved panel: q, v and t at the nodes and at the end, and how well v has converged."""
+    """q, v, t at the nodes and at the end of panels, their lengths, and the changes in two sweeps.
+
+    ``early`` is that of the sweep EARLY and ``change`` that of the last one.
+    """
 
     nodes: tuple
     end: tuple
+    length: np.ndarray
+    early: np.ndarray
     change: np.ndarray
 
 
-def solve_panel(motion, start, h, v=None):
-    """The motion on panels of the lengths h from the states (q, v, t) at their starts.
+def solve_panel(motion, start, h, event=None):
+    """The motion on panels from (q, v, t) at their starts, of the lengths h or to an event.
 
-    ``v`` are first values at the nodes; by default the speed does not change.
+    In each sweep Newton's method moves the end of a panel towards the event.
     """
     q0, v0, t0 = start
-    v = v0 + 0 * h * _NODES if v is None else v
+    m, force, given = motion.root, motion.force, motion.given
+    v = np.broadcast_to(v0, (ORDER, v0.size))
+    moved = 0.0
     for sweep in range(SWEEPS):
-        q = q0 + h * (v @ _INTEGRALS)
+        q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
-        t = t0 + h * (lever @ _INTEGRALS)
-        push = lever * motion.acceleration(q * lever / motion.root, v, t, motion.given)
-        before, v = v, v0 + h * (push @ _INTEGRALS)
-        if sweep >= 3:
-            change = _greatest(v - before)
-            if np.all(change <= CONVERGED * _greatest(v)):
+        t = t0 + h * (_INTEGRALS @ lever)
+        a = load(t, given)
+        push = lever * (a - force(q * lever / m, v, a, given))
+        before, v = v, v0 + h * (_INTEGRALS @ push)
+        if sweep < EARLY:
+            continue
+        change = np.abs(v - before).max(0)
+        early = change if sweep == EARLY else early
+        if event:
+            end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
+            value, slope = event_rate(motion, event, end)
+            moved = -value / slope
+            if (np.abs(moved) <= NEAR * h).all() and (change <= CONVERGED * np.abs(v).max(0)).all():
                 break
-    sums = (nodes @ _WEIGHTS for nodes in (v, push, lever))
-    end = tuple(y + h * total[:, None] for y, total in zip(start, sums, strict=True))
-    return Panel((q, v, t), end, change)
+            moved = np.clip(moved, -0.5 * h, 0.5 * h)
+            h = h + moved
+        elif (change <= CONVERGED * np.abs(v).max(0)).all():
+            break
+    end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
+    if event:
+        end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
+        change = np.where(np.abs(moved) <= NEAR*h, change, np.inf)
+    return Panel((q, v, t), end, h + moved, early, change)
 
 
-def _greatest(x):
-    """The greatest absolute value in each row of the real and the imaginary parts, shape (parts, rows)."""
-    return np.abs(_parts(x)).max(-1)
+def carried(motion, nodes, by, h):
+    """Derivatives of (q, v, t) at the ends of panels, from those at their starts, (3, rows, directions).
 
-
-def _parts(x):
-    return np.stack([x.real, x.imag]) if np.iscomplexobj(x) else x[None]
+    They solve the linearised collocation δF = F_q δq + F_v δv + F_t δt + δF₀, where δF₀ has the
+    steps of what is given.
+    """
+    q, v, t = (x.T for x in nodes)
+    row = {name: x[:, None] if np.ndim(x) else x for name, x in motion.given.items()}
+    m, lever, a = motion.root, motion.lever(q), load(t, row)
+    p = q * lever / m
+    bend = m * (m - 1) * q ** (m - 2) if m > 1 else 0 * q
+    along = motion.force(p + 1j * H, v, a, row)
+    felt = lever * (1 - motion.force(p, v, a + 1j * H, row).imag / H)
+    f_q = bend * (a - along.real) - lever * lever * along.imag / H
+    f_v = -lever * motion.force(p, v + 1j * H, a, row).imag / H
+    f_t = -felt * row["amplitude"] * np.cos(row["tau"] + t)
+    q0, v0, t0 = by[:, :, None]
+    h = h[:, None, None]
+    q_alone = q0 + h * _NODES[:, None] * v0
+    once, twice = h * _INTEGRALS, h * h * _TWICE
+    bent = once * bend[:, None]
+    f_q, f_v, f_t = f_q[..., None], f_v[..., None], f_t[..., None]
+    known = f_q * q_alone + f_v * v0 + f_t * (t0 + bent @ q_alone)
+    if motion.steps:
+        stepped = {name: np.expand_dims(x, 1) if np.ndim(x) else x for name, x in motion.stepped().items()}
+        step = load(t[..., None], stepped)
+        known = known + lever[..., None] * (
+            step - motion.force(p[..., None], v[..., None], step, stepped)
+        ).imag
+    matrix = np.eye(ORDER) - f_q * twice - f_v * once - f_t * (bent @ twice)
+    force = np.linalg.solve(matrix, known)
+    rate = v0 + once @ force
+    root = q0 + once @ rate
+    sums = (h * (_WEIGHTS @ each)[:, None] for each in (rate, force, bend[..., None] * root))
+    return np.array([before + more for before, more in zip((q0, v0, t0), sums, strict=True)])[:, :, 0]
 
 
 def _resolved(panel, size):
-    """Whether v is right on a panel, and a factor for the length of the next one.
-
-    The Legendre coefficients of an analytic function fall geometrically, those of a function with a
-    kink as a power, and then the squared last one is no measure of the error. ``size`` has the
-    greatest values of v, shape (parts, rows).
-    """
-    size = np.maximum(size, _greatest(panel.nodes[1]))
-    coefficients = np.abs(_parts(panel.nodes[1]) @ _LAST)
-    last, middle = coefficients[..., :2].max(-1), coefficients[..., 2:].max(-1)
-    geometric = (last <= ROUGH * size) & (last <= FALLING * middle)
-    exact = last <= SMOOTH * size
-    settled = panel.change <= 100 * CONVERGED * size
-    good = ((geometric | exact) & settled).all(0)
-    ratio = (last / np.maximum(size, TINY)).max(0)
-    factor = 0.9 * (ROUGH / np.maximum(ratio, TINY)) ** (1 / ORDER)
-    factor = np.where(np.isfinite(factor), np.clip(factor, 0.25, 4.0), 0.25)
+    """Whether v is right on panels, and factors for the next lengths; ``size`` is the scale of v."""
+    v = panel.nodes[1]
+    last = np.abs(_LAST @ v).max(0) / size
+    falls = last <= FALLING * np.abs(_MIDDLE @ v).max(0) / size
+    good = (last <= ROUGH) & (falls | (last <= SMOOTH)) & (panel.change <= SETTLED * size)
+    by_tail = (ROUGH / np.maximum(last, TINY)) ** (1 / ORDER)
+    by_sweeps = (WANTED * size / np.maximum(panel.early, TINY)) ** (1 / (2 * EARLY + 2))
+    factor = 0.9 * np.minimum(by_tail, by_sweeps)
+    factor = np.where(np.isfinite(factor), np.clip(factor, 0.25, LONGER), 0.25)
     return good, np.where(good, factor, np.minimum(factor, 0.5))
 
 
-def _first_crossing(motion, events, side, start, panel):
-    """The first event of each panel, and its place on [0, 1]; infinity if there is none."""
-    place, which = np.full(side.shape[1], np.inf), np.zeros(side.shape[1], int)
-    x = np.concatenate([[0.0], _NODES, [1.0]])
-    columns = zip(start, panel.nodes, panel.end, strict=True)
-    states = [np.real(np.concatenate(column, axis=1)) for column in columns]
-    for k, event in enumerate(events):
-        values = np.real(event(*states, motion.given))
-        unknown = side[k] == 0
-        side[k, unknown] = np.sign(values[unknown, 1])
-        over = values * side[k][:, None] < 0
-        over[:, 0] = False
-        after = np.argmax(over, axis=1)[:, None]
-        low, high = (np.take_along_axis(values, i, 1) for i in (after - 1, after))
-        part = np.abs(low) / np.maximum(np.abs(low) + np.abs(high), TINY)
-        here = np.where(over.any(1), (x[after - 1] + part * (x[after] - x[after - 1]))[:, 0], np.inf)
-        earlier = here < place
-        place, which = np.where(earlier, here, place), np.where(earlier, k, which)
-    return place, which
+def _first_event(motion, events, side, start, panel):
+    """The first event of each panel and about its place on [0, 1]; -1 and infinity if there is none.
 
-
-def _distance(motion, events, which, state):
-    """The root time from a state to the zero of its event, by one step of Newton's method, and q′, v′, t′."""
-    lever, push = motion.push(*state)
-    rates = state[1], push, lever
-    beside = [np.real(y) + 1j * H * np.real(rate) for y, rate in zip(state, rates, strict=True)]
-    real = {name: np.real(value) for name, value in motion.given.items()}
-    distance = 0 * state[0]
-    for k, event in enumerate(events):
-        slope = np.imag(event(*beside, real)) / H
-        distance = np.where(
-            (which == k)[:, None], -event(*state, motion.given) / slope, distance
-        )
-    return distance, rates
-
-
-def _panel_to_event(motion, events, which, start, h):
-    """Panels that end at their events, from a first length, their lengths, and whether it was found."""
-    v = None
-    for _ in range(NEWTON):
-        panel = solve_panel(motion, start, h, v)
-        more, rates = _distance(motion, events, which, panel.end)
-        away = np.abs(np.real(more)) / h
-        if np.all(away <= NEAR):
-            break
-        v, h = panel.nodes[1], np.clip(h + np.real(more), 0.5 * h, 1.5 * h)
-    end = tuple(y + more * rate for y, rate in zip(panel.end, rates, strict=True))
-    return panel._replace(end=end), h + more, (away <= 100 * NEAR)[:, 0]
-
-
-def _next_panel(motion, events, side, start, h, size):
-    """Panels of at most the lengths h, which end at the first event.
-
-    Returns the panels, their lengths, the events at their ends (-1 if there is none), whether they are
-    right, and factors for the next lengths.
+    ``side`` has the signs of the functions before their events, and 0 where that is not known yet.
     """
-    panel = solve_panel(motion, start, h)
-    place, which = _first_crossing(motion, events, side, start, panel)
-    found = np.ones(which.size, bool)
-    here = np.flatnonzero(np.isfinite(place))
-    which = np.where(np.isfinite(place), which, -1)
-    if here.size:
-        begin, length = [y[here] for y in start], np.real(h[here]) * place[here, None]
-        part, more, found[here] = _panel_to_event(
-            motion.of(here), events, which[here], begin, length
-        )
-        for whole, new in zip((*panel.nodes, *panel.end), (*part.nodes, *part.end), strict=True):
-            whole[here] = new
-        panel.change[:, here] = part.change
-        h = h + 0 * more[:1]
-        h[here] = more
-    good, factor = _resolved(panel, size)
-    return panel, h, which, good & found, np.where(found, factor, 0.5)
+    q, v, t = (np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True))
+    a = load(t, motion.given)
+    which, place = np.full(q.shape[1], -1), np.full(q.shape[1], np.inf)
+    x = np.concatenate([[0.0], _NODES, [1.0]])
+    for k, event in enumerate(events):
+        values = event(q, v, a, motion.given)
+        side[k] = np.where(side[k] == 0, np.sign(values[1]), side[k])
+        over = values[1:] * side[k] < 0
+        crossed = np.flatnonzero(over.any(0))
+        after = 1 + over[:, crossed].argmax(0)
+        low, high = np.abs(values[after - 1, crossed]), np.abs(values[after, crossed])
+        here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
+        first = here < place[crossed]
+        place[crossed[first]], which[crossed[first]] = here[first], k
+    return which, place
+
+
+def _shift(motion, event, state, by):
+    """How much later in s an event is: derivatives (rows, directions), from those of the state."""
+    _, slope = event_rate(motion, event, state)
+    q, v, t = (y[:, None] + 1j * each for y, each in zip(state, by, strict=True))
+    given = motion.stepped()
+    return -event(q, v, load(t, given), given).imag / slope[:, None]
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, h, until=None):
-    """Contacts from their starts to their first releases, or to a root time.
+def follow(motion, q, v, by, h, until=None, by_until=0.0):
+    """Contacts from their starts to the first releases, or to root times.
 
     Parameters
     ----------
     motion : Motion
-        The equation of motion.
-    q, v, h : array, shape (rows, 1)
-        q and v at the start, and the length of the first panel, which is shortened where necessary.
-    until : array, shape (rows, 1), optional
-        Root times at which contacts are left.
+        The equation of motion, with a value of "tau" for each contact.
+    q, v, h : array, shape (rows,)
+        q and v at the start, and the length of the first panel.
+    by : array, shape (2, rows, directions)
+        Derivatives of q and v.
+    until, by_until : array, shapes (rows,) and (rows, directions), optional
+        Root times at which contacts are left, and their derivatives.
 
     Returns
     -------
-    s, q, v, t : array, shape (4, rows, 1)
-        Root time, q, v and time after the start; NaN for contacts that are not released.
+    ends, derivatives : array, shapes (4, rows) and (4, rows, directions)
+        Root time, q, v and the time after the start; NaN for contacts that are not released.
     """
+    rows, directions = by.shape[1:]
+    now, by = np.array([0 * v, q, v, 0 * v]), np.array([0 * by[0], *by, 0 * by[0]])
+    kinks, h, size = len(motion.kinks), h.copy(), np.abs(v)
     events = motion.kinks if until is not None else (*motion.kinks, motion.release)
-    now = np.array([0 * v, q + 0 * v, v, 0 * v])
-    ends = np.full_like(now, np.nan)
-    side = np.zeros((len(events), v.shape[0]))
-    side[len(motion.kinks) :] = -1.0
-    h, size = np.real(h).copy(), _greatest(v)
-    active = np.flatnonzero(np.isfinite(v[:, 0]))
+    side = np.zeros((len(events), rows))
+    side[kinks:] = -1.0
+    ended = ~np.isfinite(now[:, :]).all(0)
+    lost = ended.copy()
     for _ in range(MOST_PANELS):
-        over = [np.zeros(0, int)]
-        for here in np.array_split(active, -(-active.size // ROWS)) if active.size else ():
-            s, *start = now[:, here]
-            length, last = h[here], np.zeros(here.size, bool)
-            if until is not None:
-                left = until[here] - s
-                pieces = np.ceil(np.real(left) / length - 1e-9)
-                length, last = left / pieces, pieces[:, 0] <= 1
-            sides = side[:, here]
-            panel, length, which, good, factor = _next_panel(
-                motion.of(here), events, sides, start, length, size[:, here]
-            )
-            side[:, here] = sides
-            h[here] = np.where(which[:, None] < 0, np.real(length), h[here]) * factor[:, None]
-            kept = here[good]
-            now[:, kept] = np.array([s + length, *panel.end])[:, good]
-            size[:, kept] = np.maximum(size[:, kept], _greatest(panel.nodes[1])[:, good])
-            turned = good & (which >= 0)
-            side[which[turned], here[turned]] *= -1
-            released = turned & (which == len(motion.kinks)) | good & last & (which < 0)
-            over.append(here[released])
-        over = np.concatenate(over)
-        ends[:, over] = now[:, over]
-        active = np.setdiff1d(active, over)
+        active = np.flatnonzero(~ended)
         if not active.size:
             break
-    return ends
+        for here in np.array_split(active, -(-active.size // ROWS)):
+            part, (s, *start), length = motion.of(here), now[:, here], h[here]
+            last = np.zeros(here.size, bool)
+            if until is not None:
+                left = until[here] - s
+                pieces = np.ceil(left / length - 1e-9)
+                length, last = left / pieces, pieces <= 1
+            panel = solve_panel(part, start, length)
+            sides = side[:, here]
+            which, place = _first_event(part, events, sides, start, panel)
+            side[:, here] = sides
+            h[here] = length
+            for k in np.unique(which[which >= 0]):
+                at = np.flatnonzero(which == k)
+                begin = [y[at] for y in start]
+                new = solve_panel(part.of(at), begin, length[at] * place[at], events[k])
+                for whole, piece in zip((*panel.nodes, *panel.end), (*new.nodes, *new.end), strict=True):
+                    whole[..., at] = piece
+                length[at], panel.change[at] = new.length, new.change
+            size[here] = np.fmax(size[here], np.abs(panel.nodes[1]).max(0))
+            good, factor = _resolved(panel, size[here])
+            h[here] *= np.where(good & (which >= 0), 1.0, factor)
+            good = np.flatnonzero(good)
+            kept, part = here[good], part.of(good)
+            now[:, kept] = np.array([s + length, *panel.end])[:, good]
+            if directions:
+                nodes = [y[:, good] for y in panel.nodes]
+                by[1:, kept] = carried(part, nodes, by[1:, kept], length[good])
+            final = last[good] & (which[good] < 0)
+            for k in range(len(events)):
+                at = np.flatnonzero(which[good] == k)
+                if at.size and directions:
+                    turn = part.of(at)
+                    state = now[1:, kept[at]]
+                    shift = _shift(turn, events[k], state, by[1:, kept[at]])
+                    pace = np.array([np.ones(at.size), *rates(turn, state)])
+                    by[:, kept[at]] += pace[..., None] * shift
+                side[k, kept[at]] *= -1
+                final[at] |= k == kinks
+            ended[kept[final]] = True
+    if until is not None and directions:
+        state = now[1:]
+        pace = np.array([np.ones(rows), *rates(motion, state)])
+        by += pace[..., None] * (by_until - by[0])
+    lost |= ~ended
+    now[:, lost] = np.nan
+    return now, by

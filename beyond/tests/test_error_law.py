@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from bouncing_ball import errors as replication
 
+from bouncing_ball import errors as replication
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.error_law import (
     QUANTITIES,

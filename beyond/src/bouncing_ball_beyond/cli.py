@@ -28,9 +28,7 @@ class Command(click.Command):
         except ValueError as error:
             options = {parameter.name: parameter.opts[0] for parameter in self.params}
             # Names of parameters, but not where a ball is written in parentheses.
-            text = re.sub(
-                r"\([^)]*\)|\w+", lambda word: options.get(word[0], word[0]), str(error)
-            )
+            text = re.sub(r"\([^)]*\)|\w+", lambda word: options.get(word[0], word[0]), str(error))
             raise click.ClickException(text) from error
 
 
@@ -163,7 +161,9 @@ def with_branch(function: Callable) -> Callable:
         START,
         click.option("--along", default="amplitude", show_default=True, help="What changes."),
         click.option("--to", type=float, required=True, help="Its value at which the branch ends."),
-        click.option("--doublings", type=int, default=0, help="Follow the orbits after so many."),
+        click.option(
+            "--doublings", type=int, default=0, help="Follow the orbits after so many doublings."
+        ),
     )
     return with_ball(decorate(command))
 
@@ -197,7 +197,12 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 @with_ball
 @AMPLITUDE
 @N
-@click.option("--side", type=click.Choice(["stable", "unstable"]), default="stable")
+@click.option(
+    "--side",
+    type=click.Choice(["stable", "unstable"]),
+    default="stable",
+    help="Side of the saddle-node.",
+)
 @OUTPUT
 def orbit(ball, amplitude, n, side, output):
     """The n-T orbit, with one impact in n periods of the table."""
@@ -332,10 +337,10 @@ def error_law(ball, amplitude, n):
 @click.option("--contact-duration", help='Such as "100 us".')
 @click.option("--stiffness", help='In place of the duration, such as "1e7 N/m".')
 @click.option("--youngs-modulus", help='Of the ball, in place of both, such as "210 GPa".')
-@click.option("--poissons-ratio", type=float, default=0.3, show_default=True)
+@click.option("--poissons-ratio", type=float, default=0.3, help="Of the ball, by default 0.3.")
 @click.option("--table-youngs-modulus", help="Without it the table is rigid.")
-@click.option("--table-poissons-ratio", type=float, default=0.3, show_default=True)
-@click.option("--gravity", default="9.80665 m/s^2", show_default=True)
+@click.option("--table-poissons-ratio", type=float, default=0.3, help="By default 0.3.")
+@click.option("--gravity", default="9.80665 m/s^2", show_default=True, help="Its acceleration.")
 @N
 @click.option("--tolerance", default="1 %", show_default=True, help="Of the greatest height.")
 def shaker(**quantities):

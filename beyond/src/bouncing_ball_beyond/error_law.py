@@ -27,6 +27,7 @@ from scipy.optimize.elementwise import find_root
 from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper
 from bouncing_ball_beyond.continuation import special_near
 from bouncing_ball_beyond.equations import OrbitEquations, newton
+from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.orbits import guess_of_instants, rows_of
 
 QUANTITIES = (
@@ -70,6 +71,8 @@ class FreeImpact(NamedTuple):
 
 def free_impact(ball: Ball, n: int = 1) -> FreeImpact:
     """The free impact of a ball whose closing speed is a root of (1 + r(v)) v = 2nπ."""
+    if np.any(np.asarray(n) < 1):
+        raise ValueError(f"n = {n!r}: must be a whole number from 1")
     half = n * np.pi
     speed = np.asarray(1.5 * half)
     step = speed
@@ -249,7 +252,7 @@ def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 
 
 
 def law_thresholds(
-    contacts: SpringDamper | Callable,
+    contacts: SpringDamper | ForceLaw | Callable,
     *,
     amplitude: ArrayLike,
     n: int = 1,
@@ -260,8 +263,9 @@ def law_thresholds(
     Parameters
     ----------
     contacts
-        A ball with a spring and a damper, whose ϖ is disregarded, or a function from a number x to
-        the ball, whose contact has a duration in proportion to 1/x; x then takes the place of ϖ.
+        A ball with a spring and a damper, whose ϖ is disregarded. Or one with a contact law with
+        units, or a function from a number x to the ball: the contact then lasts 1/x as long as that
+        of the law or as that at x = 1, and x takes the place of ϖ.
     amplitude
         Λ, a number or an array that broadcasts with the parameters of the ball.
     tolerance
@@ -281,7 +285,7 @@ def law_thresholds(
     >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
     (82.18, 132.3)
     """
-    impact = free_impact(along_ratio(contacts)(1.0), n)
+    impact = free_impact(along_ratio(contacts, tolerance)(1.0), n)
     found = {
         name: np.abs(coefficient) / tolerance
         for name, coefficient in law_coefficients(impact, amplitude=amplitude, n=n).items()
@@ -327,10 +331,18 @@ def _longest(impact, amplitude, n, tolerance, name, turn) -> NDArray:
     return np.where(error(end, amplitude, *impact) > -tolerance, end, found.x)
 
 
-def along_ratio(contacts: SpringDamper | Callable) -> Callable:
-    """The function from ϖ to the ball: that which is given, or that of a spring and a damper."""
-    if isinstance(contacts, Ball):
+def along_ratio(contacts: SpringDamper | ForceLaw | Callable, tolerance: float) -> Callable:
+    """The function from ϖ, or from the number x in its place, to the ball."""
+    if not 0 < tolerance < np.inf:
+        raise ValueError(f"tolerance = {tolerance!r}: must be positive")
+    if isinstance(contacts, SpringDamper):
         return lambda ratio: contacts.at(frequency_ratio=ratio)
+    if isinstance(contacts, ForceLaw):
+        # With lengths and times that are all 1/x of what they were, f(p, p′) is x f(xp, p′).
+        powers = {name: -length - time for name, (_, length, time) in contacts.units.items()}
+        return lambda ratio: contacts.at(
+            **{name: contacts.parameters[name] * ratio**power for name, power in powers.items()}
+        )
     return contacts
 
 
@@ -378,6 +390,9 @@ def contact_values(
         guess = guess_of_instants(equations.ball, periods[block], amplitudes[block])
         solution = newton(equations, guess)
         good = solution.found & (equations.turn(solution.linear) < 1)
+        # On compliant contacts Newton's method may run to a solution that is no orbit.
+        leaves = equations.ends(solution.z).speed[:, 0] > 0
+        good &= leaves & (np.abs(solution.z - guess)[:, 0] < np.pi)
         if good.any():
             of_block = _values(equations.rows(good), solution.z[good])
             for name in of_orbits:
@@ -492,7 +507,7 @@ class ErrorThreshold(NamedTuple):
 
 
 def error_thresholds(
-    contacts: SpringDamper | Callable,
+    contacts: SpringDamper | ForceLaw | Callable,
     *,
     amplitude: ArrayLike,
     n: int = 1,
@@ -508,8 +523,7 @@ def error_thresholds(
     Parameters
     ----------
     contacts
-        A ball with a spring and a damper, whose ϖ is disregarded, or a function from an array x to
-        the ball, as in :func:`law_thresholds`; x then takes the place of ϖ.
+        A ball or a function from an array x to the ball, as in :func:`law_thresholds`.
     amplitude, n, simple, quantities
         As in :func:`exact_errors`.
     tolerance
@@ -532,9 +546,7 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
     """
-    if not 0 < tolerance < np.inf:
-        raise ValueError(f"tolerance = {tolerance!r}: must be positive")
-    path = along_ratio(contacts)
+    path = along_ratio(contacts, tolerance)
     known = {"amplitude": amplitude, "n": n, "simple": simple}
     shape = rows_of(path(high), amplitude)[2]
     grid = np.geomspace(low, high, samples)

@@ -260,11 +260,9 @@ def on_shaker(
     )
     # The ball, dimensionless, on a contact that lasts 1/times as long as that in question.
     if contact == "youngs_modulus":
-        compliance = _compliance("youngs_modulus", youngs_modulus, poissons_ratio)
+        compliance = _compliance(youngs_modulus, poissons_ratio, "")
         if table_youngs_modulus is not None:
-            compliance += _compliance(
-                "table_youngs_modulus", table_youngs_modulus, table_poissons_ratio
-            )
+            compliance += _compliance(table_youngs_modulus, table_poissons_ratio, "table_")
         # The force of Hertz is 4/3 E* √R p^(3/2); lengths are in units of g/Ω², times in 1/Ω.
         force = 4 / 3 * np.sqrt(in_si("radius", radius, "m")) / compliance
         force *= np.sqrt(fall) / rate**3 / _mass(mass, radius, density)
@@ -305,11 +303,11 @@ def _mass(mass, radius, density) -> float:
     return 4 / 3 * np.pi * in_si("radius", radius, "m") ** 3 * in_si("density", density, "kg/m^3")
 
 
-def _compliance(name: str, modulus: float | str, poissons_ratio: float) -> float:
-    """(1 - ν²)/E of one of the bodies in contact."""
-    if not -1 < poissons_ratio <= 0.5:
-        raise ValueError(f"Poisson's ratio = {poissons_ratio!r}: must be above -1 and at most 0.5")
-    return (1 - poissons_ratio**2) / in_si(name, modulus, "Pa")
+def _compliance(modulus: float | str, ratio: float, body: str) -> float:
+    """(1 - ν²)/E of a body in contact, with the beginning of the names of its quantities."""
+    if not -1 < ratio <= 0.5:
+        raise ValueError(f"{body}poissons_ratio = {ratio!r}: must be above -1 and at most 0.5")
+    return (1 - ratio**2) / in_si(f"{body}youngs_modulus", modulus, "Pa")
 
 
 def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:

@@ -1,0 +1,104 @@
+"""The command line: every command, its files, and mistakes in one line."""
+
+import csv
+import subprocess
+import sys
+
+import pytest
+import xarray as xr
+
+from bouncing_ball_beyond.cli import commands, main
+
+RIGID = "--restitution 0.65 --amplitude 1"
+SPRING = f"{RIGID} --frequency-ratio 80"
+ANSWERS = {
+    f"orbit {RIGID}": ["0.841428", "5.6804"],
+    f"orbit {SPRING} --side unstable": ["stable", "False"],
+    f"orbit {SPRING} --corrected": ["PeriodicOrbit"],
+    "limits --restitution 0.65": ["saddle-node", "0.666398", "period doubling", "1.2394"],
+    "follow --restitution 0.85 --amplitude 1 --to 1.3": ["period doubling at 1.0383042"],
+    "follow --restitution 0.85 --amplitude 1 --to 1.3 --doublings 1": ["1.3 is reached"],
+    "follow --restitution 0.5 --amplitude 1.6 --phase 1 --velocity -3 --to 1.61": ["impacts"],
+    "curve --restitution 0.5 --amplitude 1.4 --to 1.8 --kind period-doubling --across restitution"
+    " --range restitution 0.4 0.6": ["period doubling"],
+    f"simulate {RIGID} --impacts 4": ["impact_velocity"],
+    "motion --restitution 0.85 --amplitude 1.1": ["3"],
+    f"thresholds {RIGID}": ["82.178", "82.1774", "2.29014", "132.569"],
+    f"error-law {SPRING}": ["-0.01027"],
+    "shaker --mass 20g --frequency 50Hz --acceleration 0.8g --stiffness 1e7N/m --restitution 0.85": [
+        "558.9 µm",
+        "is not good enough",
+    ],
+}
+
+
+@pytest.mark.parametrize("line", ANSWERS)
+def test_answers(line, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(line.split())
+    output = capsys.readouterr()
+    assert (ended.value.code, output.err) == (0, "")
+    for text in ANSWERS[line]:
+        assert text in output.out
+
+
+MISTAKES = {
+    f"orbit {RIGID} --frequency-ratio -1": "--frequency-ratio = -1",
+    f"orbit {RIGID} --frequency-ratio x": "--frequency-ratio",
+    "orbit --restitution 0.65": "Missing option '--amplitude'",
+    "orbit --amplitude 1": "--restitution",
+    "orbit --restitution 0.65 --amplitude 0.3": "below the saddle-node at Λ = 0.666398",
+    f"orbit {RIGID} --output orbit.txt": "--output",
+    f"orbit {RIGID} --law hooke": "--law",
+    f"orbit {RIGID} --law tsuji --set stiffness": "--set",
+    f"follow {RIGID} --to 2 --along hardness": "--along = 'hardness'",
+    f"thresholds {RIGID} --tolerance 0": "--tolerance",
+    "shaker --frequency 50m --acceleration 1g --restitution 0.8 --stiffness 1 --mass 1": "--frequency",
+    "fly": "fly",
+}
+
+
+@pytest.mark.parametrize("line", MISTAKES)
+def test_mistakes_are_one_line(line, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(line.split())
+    output = capsys.readouterr()
+    assert ended.value.code == 2 and output.out == ""
+    assert output.err.startswith("bouncing-ball: ") and output.err.count("\n") == 1
+    assert MISTAKES[line] in output.err
+
+
+def test_files(tmp_path, capsys):
+    line = "follow --restitution 0.85 --amplitude 1 --to 1.3 --output"
+    for name in ("branch.nc", "branch.csv", "branch.png"):
+        with pytest.raises(SystemExit) as ended:
+            main([*line.split(), str(tmp_path / name)])
+        assert ended.value.code == 0
+    with xr.open_dataset(tmp_path / "branch.nc") as data:
+        assert "period doubling" in data.kind.values
+        points = data.sizes["point"]
+    with open(tmp_path / "branch.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["point"] for row in rows} == {str(i) for i in range(points)}
+    assert (tmp_path / "branch.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_help_names_every_command(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([])
+    output = capsys.readouterr().out
+    assert ended.value.code == 0
+    for name, command in commands.commands.items():
+        assert f"\n  {name} " in output
+        assert command.help.strip()
+        assert all(option.help for option in command.params)
+
+
+def test_help_imports_neither_numpy_nor_scipy():
+    code = (
+        "import sys, bouncing_ball_beyond.cli as cli\n"
+        "try:\n    cli.main([])\nexcept SystemExit:\n    pass\n"
+        "heavy = {'numpy', 'scipy', 'xarray', 'pint', 'matplotlib', 'numba'}\n"
+        "sys.exit(', '.join(heavy & sys.modules.keys()) or 0)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

@@ -1,0 +1,166 @@
+"""The question of an engineer with a shaker: units, limits and the answer."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball_beyond.error_law import contact_values
+from bouncing_ball_beyond.orbits import orbit
+from bouncing_ball_beyond.shaker import in_si, in_words, on_shaker
+
+TABLE = {"frequency": "50 Hz", "acceleration": "0.8 g", "restitution": 0.85}
+CONTACT = {"mass": "20 g", "stiffness": "1e7 N/m"}
+STEEL = {"radius": "5 mm", "mass": "4 g", "youngs_modulus": "210 GPa"}
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("2 kN/mm", "N/m", 2e6),
+        ("0.8 g", "m/s^2", 0.8 * 9.80665),
+        ("20 g", "kg", 0.02),
+        ("50 Hz", "Hz", 100 * np.pi),
+        ("0.05 kHz", "Hz", 100 * np.pi),
+        ("3000 rpm", "Hz", 100 * np.pi),
+        ("314 rad/s", "Hz", 314.0),
+        (50, "Hz", 100 * np.pi),
+        ("50", "Hz", 100 * np.pi),
+        ("1 %", "dimensionless", 0.01),
+    ],
+)
+def test_units(text, unit, value):
+    assert in_si("quantity", text, unit) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("50 1/s", "Hz"),  # cycles or radians
+        ("1,5 mm", "m"),  # which pint reads as 15 mm
+        ("20 g", "N/m"),
+        ("2 g", "m"),
+        ("-1 mm", "m"),
+        ("nan m", "m"),
+        ("much", "m"),
+        ("", "m"),
+        (None, "m"),
+    ],
+)
+def test_wrong_units_are_one_line(text, unit):
+    with pytest.raises(ValueError, match=r"^quantity = ") as raised:
+        in_si("quantity", text, unit)
+    assert "\n" not in str(raised.value)
+
+
+def test_quantities_in_words():
+    assert in_words(558.9e-6, "m") == "558.9 µm"
+    assert in_words(np.nan, "m") == "–"
+
+
+def test_answer_is_that_of_the_old_command_design():
+    """Its printed heights; its 86.86 for ϖ is relative to the contact, and here it is 86.0."""
+    answer = on_shaker(**TABLE, **CONTACT)
+    assert answer.max_height.by_restitution == pytest.approx(565.7e-6, abs=5e-8)
+    assert answer.max_height.exact == pytest.approx(558.9e-6, abs=5e-8)
+    assert answer.ball.frequency_ratio == pytest.approx(71.18, abs=5e-3)
+    assert answer.contact_duration == pytest.approx(140.7e-6, abs=5e-8)
+    assert not answer.is_good_enough and answer.is_stable and answer.bounces
+
+
+def test_orbit_confirms_the_answer():
+    answer = on_shaker(**TABLE, **CONTACT)
+    one = orbit(answer.ball, amplitude=answer.amplitude)
+    length = 9.80665 / (100 * np.pi) ** 2
+    assert answer.max_height.exact == pytest.approx(one.max_height * length, rel=1e-12)
+    assert one.stable and one.admissible
+    # The law leaves a term of second order in 1/ϖ.
+    assert answer.max_height.by_law == pytest.approx(answer.max_height.exact, rel=5e-4)
+
+
+@pytest.mark.parametrize("contact", [CONTACT, STEEL])
+def test_limits_are_where_the_answer_changes(contact):
+    """At the limits of the frequency, at the same stroke, and of the duration of the contact."""
+    given = {**TABLE, **contact}
+    answer = on_shaker(**given)
+    stroke = answer.amplitude * 9.80665 / (2 * np.pi * answer.frequency) ** 2
+    del given["acceleration"]
+    for frequency, name in (
+        (answer.lowest_frequency, "saddle_node"),
+        (answer.highest_frequency, "period_doubling"),
+    ):
+        there = on_shaker(**{**given, "frequency": frequency}, stroke=stroke)
+        # The frequency is found to 1e-6, and Λ is its square.
+        assert getattr(there, name).exact == pytest.approx(there.amplitude, rel=3e-6)
+
+
+def test_longest_contact_has_the_tolerance_as_its_error():
+    answer = on_shaker(**TABLE, **CONTACT, tolerance="2 %")
+    there = on_shaker(**TABLE, contact_duration=answer.longest_contact)
+    assert there.error == pytest.approx(-0.02, abs=1e-9)
+    assert answer.is_good_enough and not there.is_good_enough
+
+
+def test_stiffness_and_duration_are_one_contact():
+    by_stiffness = on_shaker(**TABLE, **CONTACT)
+    by_duration = on_shaker(**TABLE, contact_duration=by_stiffness.contact_duration)
+    assert by_duration.error == pytest.approx(by_stiffness.error, rel=1e-11)
+    assert by_duration.longest_contact == pytest.approx(by_stiffness.longest_contact, rel=1e-9)
+
+
+def test_duration_of_an_elastic_contact_of_hertz():
+    """2.9433 (5/4)^(2/5) (m²/(K² v))^(1/5) with K = 4/3 E* √R, a closed form of the textbooks."""
+    answer = on_shaker(**{**TABLE, "restitution": 1.0}, **STEEL)
+    stiffness = 4 / 3 * 210e9 / (1 - 0.3**2) * np.sqrt(5e-3)
+    speed = np.pi * 9.80665 / (100 * np.pi)  # v₀ = 2π/(1 + r)
+    lasts = 2.94327507 * (1.25 * 0.004 / stiffness * speed**2) ** 0.4 / speed
+    assert answer.contact_duration == pytest.approx(lasts, rel=1e-7)
+
+
+def test_radius_and_density_are_a_mass():
+    mass = 4 / 3 * np.pi * 5e-3**3 * 7800
+    by_mass = on_shaker(**TABLE, stiffness=1e7, mass=mass)
+    by_density = on_shaker(**TABLE, stiffness=1e7, radius="5 mm", density="7800 kg/m^3")
+    assert by_mass.error == pytest.approx(by_density.error, rel=1e-12)
+
+
+def test_answers_in_sentences():
+    good = str(on_shaker(**TABLE, contact_duration="100 us"))
+    assert "The ball bounces once in each period" in good
+    assert good.endswith("A restitution coefficient is good enough.")
+    doubled = str(on_shaker(**{**TABLE, "acceleration": "1.2 g"}, contact_duration="10 us"))
+    assert "unstable, its period has doubled" in doubled and "is not good enough" in doubled
+    resting = on_shaker(**{**TABLE, "acceleration": "0.2 g"}, contact_duration="10 us")
+    assert "does not bounce" in str(resting) and np.isnan(resting.error)
+    assert "2 periods" in str(on_shaker(**TABLE, contact_duration="10 us", n=2))
+
+
+def test_between_the_bifurcations_of_both_models():
+    """Where the contact has an orbit and the restitution model has none."""
+    answer = on_shaker(**{**TABLE, "acceleration": "0.254 g"}, **CONTACT)
+    assert "in one of the two models only" in str(answer)
+    assert not answer.bounces
+    values = contact_values(answer.ball, amplitude=answer.amplitude)
+    assert values["saddle_node"] < answer.amplitude < answer.saddle_node.by_restitution
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"acceleration": None}, "exactly one of stroke, acceleration"),
+        ({"stiffness": None}, "exactly one of contact_duration, stiffness, youngs_modulus"),
+        ({"mass": None}, "mass"),
+        ({"mass": "20 m"}, "mass"),
+        ({"restitution": 1.2}, "restitution"),
+        ({"frequency": "0 Hz"}, "frequency"),
+        ({"n": 0}, "n = 0"),
+        ({"stiffness": "1 N/m"}, "a contact lasts"),
+        ({"stiffness": None, "youngs_modulus": "1 GPa"}, "radius"),
+        (
+            {"stiffness": None, "youngs_modulus": "1 GPa", "radius": 0.1, "poissons_ratio": 2},
+            "poissons_ratio",
+        ),
+    ],
+)
+def test_mistakes_are_one_line(change, named):
+    with pytest.raises(ValueError, match=named) as raised:
+        on_shaker(**{**TABLE, **CONTACT, **change})
+    assert "\n" not in str(raised.value)

@@ -5,7 +5,7 @@ of g/Ω. A ball is an object of one of the classes of :mod:`.balls` or :mod:`.la
 functions take it as their first argument.
 """
 
-from importlib import import_module as _import_module  # noqa: TID251
+from importlib import import_module as _import_module
 
 # The module of each public name; a module is imported with the first use of one of its names.
 _MODULES = {

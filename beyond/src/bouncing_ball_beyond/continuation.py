@@ -75,7 +75,6 @@ def tests_on_the_way(equations: OrbitEquations, z: NDArray, linear: Linear) -> d
     return {
         "saddle-node": 1 - turn,
         "period doubling": 1 + turn,
-        "period halving": equations.halving(z),
         "grazing of an impact": equations.least_speed(z),
         "lost release": equations.least_release(linear, z),
     }
@@ -189,9 +188,9 @@ class FollowedBranch:
 class _Start(NamedTuple):
     """Where branches start, by rows.
 
-    The orbits z and the directions from there, the first steps and the values at which the
-    branches end; the special orbits before z, if there are any; and the reasons for no branch, "" if
-    there is one.
+    The orbits z and the directions from there; the first steps; the values of the parameter that are
+    to be reached, and windows in which it stays, shape (rows, 2); the special orbits before z, if
+    there are any; and the reasons for no branch, "" if there is one.
     """
 
     equations: OrbitEquations
@@ -199,6 +198,7 @@ class _Start(NamedTuple):
     direction: NDArray
     step: NDArray
     goal: NDArray
+    window: NDArray
     origin: NDArray | None
     reasons: NDArray
 
@@ -228,69 +228,67 @@ class _Steps(NamedTuple):
     end: str
 
 
-def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
-    """Accepted steps of branches until their parameter is at `to`, or until they end.
+def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
+    """Accepted steps of branches until their parameter leaves its window, or until they end.
 
     A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change too
-    much. It ends on the value `to` exactly if it would go beyond it.
+    much. A step that leads to an end of the window ends exactly there.
     """
-    rows = len(z)
-    units = scales(equations, z)
-    first, goal = z[:, -1].copy(), np.broadcast_to(to, rows).astype(float)
-    t = direction / units
-    t = t / np.linalg.norm(t, axis=1, keepdims=True)
-    tests = tests_on_the_way(equations, z, equations.linear(z))
-    history = [(np.ones(rows, bool), z, t, dict(tests))]
-    end = np.full(rows, "", object)
-    count = np.ones(rows, int)
-    active = np.arange(rows)
-    part = equations
-    z, t, step = z.copy(), t.copy(), step.copy()
+    rows, equations = len(start.z), start.equations
+    units = scales(equations, start.z)
+    z, t, step = start.z.copy(), _unit(start.direction / units), start.step.copy()
+    linear = equations.linear(z)
+    tests = tests_on_the_way(equations, z, linear)
+    halves = equations.halves(z)
+    tests["period halving"] = np.linalg.norm(halves, axis=1)
+    history = [_Visited(np.ones(rows, bool), z, t, tests)]
+    count, end = np.ones(rows, int), np.full(rows, "", object)
+    active, part = np.arange(rows), equations
     while active.size:
-        unit, here, ahead = units[active], z[active], t[active]
+        unit, here, ahead, before = units[active], z[active], t[active], step[active]
+        low, high = start.window[active].T
         rate = ahead[:, -1] * unit[:, -1]
-        forward = rate * (goal[active] - first[active]) > 0
-        target = np.where(forward, goal[active], 2 * first[active] - goal[active])
+        target = np.where(rate > 0, high, low)
         with np.errstate(divide="ignore", invalid="ignore"):
             whole = (target - here[:, -1]) / rate
-        last = (whole > 0) & (whole <= step[active])
-        length = np.where(last, whole, step[active])
-        guess = here + length[:, np.newaxis] * ahead * unit
-        normal = np.where(last[:, np.newaxis], 0.0, ahead / unit)
+        last = whole <= before
+        length = np.where(last, whole, before)
+        guess, normal = here + length[:, np.newaxis] * ahead * unit, ahead / unit
+        guess[last, -1], normal[last] = target[last], 0.0
         normal[last, -1] = np.sign(rate[last])
-        guess[last, -1] = target[last]
         solution = newton(part, guess, normal, iterations=7)
-        new, following = solution.z, solution.tangent / unit
-        following = following / np.linalg.norm(following, axis=1, keepdims=True)
-        moved = np.linalg.norm((new - guess) / unit, axis=1)
+        new, following = solution.z, _unit(solution.tangent / unit)
         with np.errstate(all="ignore"):
             values = tests_on_the_way(part, new, solution.linear)
-            turn = np.arctan(values["period doubling"] - 1)
-            change = np.abs(turn - np.arctan(tests["period doubling"][active] - 1))
-            change = np.minimum(change, np.pi - change)
+            change = _change_of_angle(values["period doubling"], tests["period doubling"][active])
             cosine = np.sum(following * ahead, axis=1)
-            good = solution.found & (cosine > STRAIGHT) & (moved < 0.4 * length)
+            moved = np.linalg.norm((new - guess) / unit, axis=1)
+            outside = (new[:, -1] < low) | (new[:, -1] > high)
+            good = solution.found & (cosine > STRAIGHT) & (moved < 0.4 * length) & ~outside
             good &= (change < TURN) | (length < 1e-6)
-        accepted, taken = active[good], good.nonzero()[0]
+            apart = part.halves(new)
+            merged = np.sum(apart * halves[active], axis=1) < 0
+        sign = np.where(merged, -1, 1) * np.sign(tests["period halving"][active])
+        values["period halving"] = sign * np.linalg.norm(apart, axis=1)
+        ends = _ends_on_the_way(tests, values, active, until)
+        ends[(ends == "") & last] = _AT_GOAL
+        taken = np.flatnonzero(good)
+        accepted = active[taken]
+        end[accepted] = ends[taken]
         step[active[~good]] = length[~good] / 2
-        fast = good & (cosine > 0.99) & (change < TURN / 2)
-        step[active[fast]] = np.minimum(2 * step[active[fast]], LONGEST_STEP)
-        z[accepted], t[accepted] = new[taken], following[taken]
+        easy = (cosine > 0.99) & (change < TURN / 2)
+        step[accepted] = np.minimum(np.where(easy, 2.0, 1.0)[taken] * before[taken], LONGEST_STEP)
+        z, t, halves = z.copy(), t.copy(), halves.copy()
+        z[accepted], t[accepted], halves[accepted] = new[taken], following[taken], apart[taken]
+        tests = {name: value.copy() for name, value in tests.items()}
+        for name, value in tests.items():
+            value[accepted] = values[name][taken]
         count[accepted] += 1
-        for j in taken[last[taken]]:
-            end[active[j]] = _reached(equations.along[-1].name, target[j], forward[j])
-        for name in tests:
-            before = tests[name][active]
-            crossed = good & (before * values[name] < 0)
-            if KINDS[name].end or name == until:
-                end[active[crossed]] = KINDS[name].end or f"the first {name} is found"
-            tests[name] = tests[name].copy()
-            tests[name][accepted] = values[name][taken]
-        end[accepted[(count[accepted] >= points) & (end[accepted] == "")]] = "all points are used"
-        end[active[step[active] < SHORTEST_STEP]] = "no further orbit is found"
-        mask = np.zeros(rows, bool)
-        mask[accepted] = True
-        history.append((mask, z.copy(), t.copy(), dict(tests)))
+        closed = (count > 5) & _back_at_start(start, z, t, units, step)
+        end[closed & (end == "")] = "the branch is closed: it is back at its start"
+        end[(count >= points) & (end == "")] = f"all {points} points are used"
+        end[(step < SHORTEST_STEP) & (end == "")] = "no further orbit is found"
+        history.append(_Visited(np.isin(np.arange(rows), accepted), z, t, tests))
         still = end[active] == ""
         if not still.all():
             active = active[still]
@@ -298,20 +296,55 @@ def _march(equations, z, direction, step, to, points, until) -> list[_Steps]:
     return [_row_of(history, units, end, i) for i in range(rows)]
 
 
-def _row_of(history, units, end, i) -> _Steps:
+_AT_GOAL = "the end of the window"
+
+
+class _Visited(NamedTuple):
+    """All rows after a step, and which of them have moved."""
+
+    moved: NDArray
+    z: NDArray
+    t: NDArray
+    tests: dict[str, NDArray]
+
+
+def _unit(vectors: NDArray) -> NDArray:
+    """Rows of the length 1."""
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _change_of_angle(new: NDArray, old: NDArray) -> NDArray:
+    """Changes of arctan(tr/(1 + det)), for tests of period doublings; a pole of it is no obstacle."""
+    change = np.abs(np.arctan(new - 1) - np.arctan(old - 1))
+    return np.minimum(change, np.pi - change)
+
+
+def _ends_on_the_way(tests, values, active, until) -> NDArray:
+    """Why the rows end in a step, "" where they go on."""
+    ends = np.full(len(active), "", object)
+    for name, value in values.items():
+        if KINDS[name].end or name == until:
+            ends[tests[name][active] * value < 0] = name
+    return ends
+
+
+def _back_at_start(start: _Start, z, t, units, step) -> NDArray:
+    """Whether branches are next to their starts, in the direction in which they left."""
+    away = z - start.z
+    q = start.equations.unknowns
+    turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
+    away[:, : start.equations.size : q] -= turns
+    same_way = np.sum(t * _unit(start.direction / units), axis=1) > STRAIGHT
+    return same_way & (np.linalg.norm(away / units, axis=1) < step / 2)
+
+
+def _row_of(history: list[_Visited], units, end, i) -> _Steps:
     """The accepted steps of one row."""
-    taken = [each for each in history if each[0][i]]
-    tests = {name: np.array([each[3][name][i] for each in taken]) for name in taken[0][3]}
-    z = np.array([each[1][i] for each in taken])
-    t = np.array([each[2][i] * units[i] for each in taken])
+    taken = [each for each in history if each.moved[i]]
+    tests = {name: np.array([each.tests[name][i] for each in taken]) for name in taken[0].tests}
+    z = np.array([each.z[i] for each in taken])
+    t = np.array([each.t[i] * units[i] for each in taken])
     return _Steps(z, t, tests, end[i])
-
-
-def _reached(name: str, value: float, forward: bool) -> str:
-    """Why a branch ends at a value of its parameter."""
-    if forward:
-        return f"{name} = {value:.10g} is reached"
-    return f"{name} = {value:.10g} is reached on the way back, as far from the start as asked for"
 
 
 class _Crossings(NamedTuple):
@@ -385,7 +418,8 @@ def _located(equations, crossings: _Crossings) -> tuple[NDArray, NDArray]:
     place = np.array([np.zeros(len(chord)), np.ones(len(chord))])
     slopes = crossings.slopes / np.sum(normal * crossings.slopes, axis=2, keepdims=True)
     weights = values.copy()
-    found = np.ones(len(chord), bool)
+    # The equations are singular at a period halving, which is found by those of half the period.
+    found = crossings.kind != "period halving"
     each, latest = np.arange(len(chord)), np.full(len(chord), -1)
     z = ends[0].copy()
     for _ in range(60):
@@ -416,39 +450,54 @@ def _followed(start: _Start, points, until, own) -> list[FollowedBranch]:
     ``own`` is the kind of the special orbits at the starts, which are not listed.
     """
     equations = start.equations
-    steps = _march(equations, start.z, start.direction, start.step, start.goal, points, until)
+    steps = _march(start, points, until)
     crossings = _crossings(equations, steps)
-    z, found = _located(equations, crossings) if len(crossings.row) else (np.empty((0, 0)), [])
+    z, found = _located(equations, crossings) if len(crossings.row) else (None, None)
     first = np.cumsum([0, *(len(each.z) for each in steps)])
     branches = []
     for i, each in enumerate(steps):
-        alone = single(equations, i)
-        mine = np.flatnonzero(crossings.row == i)
-        path, end, special = each.z, each.end, []
-        name = alone.along[-1].name
-        placed = []
-        for j in mine:
-            kind, number = str(crossings.kind[j]), crossings.number[j] - first[i]
-            if number == 0 and kind == own:
-                continue
-            here = z[j]
+        alone, passed = single(equations, i), []
+        for j in np.flatnonzero(crossings.row == i):
+            kind, number = str(crossings.kind[j]), int(crossings.number[j] - first[i])
+            here = z[j] if found[j] else None
             if kind == "period halving":
                 here = _halved_at(alone, crossings.ends[:, j])
-            elif not found[j]:
-                here = None
-            if here is not None:
-                direction = crossings.slopes[0, j]
-                along = np.sum(direction * (here - crossings.ends[0, j]))
-                placed.append((number, along, kind, here))
-        for number, _, kind, here in sorted(placed, key=lambda entry: entry[:2]):
-            special.append(PeriodicOrbit(alone, here, kind))
-            if KINDS[kind].end or kind == until:
-                path = np.concatenate([path[: number + 1], here[np.newaxis]])
-                end = f"{kind} at {name} = {here[-1]:.10g}"
-                end += f": {KINDS[kind].end}" if KINDS[kind].end else ""
-                break
+            if here is not None and not (number == 0 and kind == own):
+                place = np.sum(crossings.slopes[0, j] * (here - crossings.ends[0, j]))
+                passed.append((number, place, PeriodicOrbit(alone, here, kind)))
+        passed.sort(key=lambda entry: entry[:2])
+        ending = [n for n, entry in enumerate(passed) if _ends_at(entry[2].kind, until)]
+        special, path = [entry[2] for entry in passed], each.z
+        if ending:
+            number, _, last = passed[ending[0]]
+            special = special[: ending[0] + 1]
+            path = np.concatenate([path[: number + 1], last.z[np.newaxis]])
+        end = _end_in_words(each.end, alone, special, path, float(start.goal[i]), bool(ending))
         branches.append(FollowedBranch(alone, path, tuple(special), "", end))
     return branches
+
+
+def _ends_at(kind: str, until: str | None) -> bool:
+    """Whether a branch ends at a kind of special orbit."""
+    return kind == until or KINDS[kind].end != ""
+
+
+def _end_in_words(end, equations, special, path, goal, at_special) -> str:
+    """Why a branch ends."""
+    name, value = equations.along[-1].name, path[-1, -1]
+    here = f"{name} = {value:.10g}"
+    if at_special:
+        reason = KINDS[special[-1].kind].end
+        return f"{special[-1].kind} at {here}" + (f": {reason}" if reason else "")
+    if end in KINDS:
+        return f"{end} near {here}, which is not found"
+    if end != _AT_GOAL:
+        return f"{end}; the last one is at {here}"
+    if abs(value - goal) <= 1e-12 * abs(goal):
+        return f"{here} is reached"
+    folds = [each.z[-1] for each in special if each.kind == "saddle-node"]
+    turned = f"; the branch has turned back at the saddle-node at {folds[-1]:.10g}" if folds else ""
+    return f"{here} is reached behind the start, and not {goal:.10g}{turned}"
 
 
 def test_with_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:
@@ -651,36 +700,35 @@ def cascade(doubling, *, to, impacts: int = 64):
 
 def _follow_all(orbits, along, to, points, until) -> list:
     """Branches of orbits, or reasons, in order; orbits with the same kind of equations side by side."""
-    found, starts, groups = list(orbits), {}, []
-    both = isinstance(to, tuple)
+    found, tasks, groups = list(orbits), {}, []
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
         path = each.equations.along[-1] if along is None else path_of(along, each.ball)
-        equations, z = along_path(each, path)
-        goal = to if both or np.ndim(to) == 0 else to[i]
-        ends = _goals(path, each, z[-1], goal)
-        starts[i] = equations, z, ends
-        key = (
-            each.kind,
-            path,
-            each.impacts,
-            each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0)),
-        )
+        goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
+        tasks[i] = _task(each, path, goal)
+        same_ball = each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0))
+        key = each.kind, path, each.impacts, same_ball
         same = next((rows for other, rows in groups if other == key), None)
         if same is None:
             groups.append((key, same := []))
         same.append(i)
     for (kind, *_), rows in groups:
-        equations = _stacked([starts[i][0] for i in rows])
-        z = np.array([starts[i][1] for i in rows])
-        ends = np.array([starts[i][2] for i in rows])
-        parts = [
-            _from_special(equations, z, ends, j, kind, points, until) for j in range(ends.shape[1])
-        ]
+        together = _stacked([tasks[i] for i in rows])
+        ways = range(together.goals.shape[1])
+        parts = [_from_special(together, way, kind, points, until) for way in ways]
         for place, i in enumerate(rows):
             found[i] = _joined([part[place] for part in parts])
     return found
+
+
+class _Task(NamedTuple):
+    """Orbits to be followed, by rows: their goals, one or two, and the limits of the parameter."""
+
+    equations: OrbitEquations
+    z: NDArray
+    goals: NDArray
+    limits: NDArray
 
 
 def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArray]:
@@ -697,116 +745,135 @@ def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArra
     return equations, np.append(orbit.z[: orbit.equations.size], value)
 
 
-def _goals(path: Path, orbit: PeriodicOrbit, value: float, to) -> list[float]:
-    """The values at which a branch ends: one, or two for both ways."""
+def _task(orbit: PeriodicOrbit, path: Path, to) -> _Task:
+    """What is to be followed from one orbit, as one row.
+
+    Raises
+    ------
+    ValueError
+        If a goal is out of its range, or the orbit not on the path.
+    """
+    equations, z = along_path(orbit, path)
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
+    value = z[-1]
     if to is None:
-        return [high if high <= 10 else min(high, max(10.0, 10 * value))]
-    goals = np.atleast_1d(np.asarray(to, float)).tolist()
+        to = high if high <= 10 else min(high, max(10.0, 10 * value))
+    goals = np.atleast_1d(np.asarray(to, float))
     for goal in goals:
         if not low <= goal <= high:
             raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
     if len(goals) == 2 and not goals[0] <= value <= goals[1]:
-        raise ValueError(f"to = {tuple(goals)}: must be around {path.name} = {value:.10g}")
-    return goals
+        raise ValueError(f"to = {to}: {path.name} = {value:.10g} of the orbit must be between them")
+    return _Task(equations, z[np.newaxis], goals[np.newaxis], np.array([[low, high]]))
 
 
-def _stacked(equations: list[OrbitEquations]) -> OrbitEquations:
-    """Equations of single balls as those of a row of balls."""
-    first = equations[0]
-    if len(equations) == 1:
-        return first
-    names = first.ball.parameters
-    values = {name: np.array([e.ball.parameters[name] for e in equations]) for name in names}
-    return replace(
-        first,
-        ball=first.ball.at(**values) if values else first.ball,
-        periods=np.array([each.periods for each in equations]),
-        amplitude=np.array([each.amplitude for each in equations]),
+def _stacked(tasks: list[_Task]) -> _Task:
+    """Tasks of single orbits as rows of one."""
+    if len(tasks) == 1:
+        return tasks[0]
+    balls = [each.equations.ball for each in tasks]
+    values = {name: np.array([b.parameters[name] for b in balls]) for name in balls[0].parameters}
+    equations = replace(
+        tasks[0].equations,
+        ball=balls[0].at(**values) if values else balls[0],
+        periods=np.array([each.equations.periods for each in tasks]),
+        amplitude=np.array([each.equations.amplitude for each in tasks]),
     )
+    return _Task(equations, *(np.concatenate(rows) for rows in zip(*(t[1:] for t in tasks))))
 
 
-def _from_special(equations, z, goals, way, kind, points, until) -> list:
+def _windows(z, goal, limits) -> NDArray:
+    """The values between which the parameter stays: the goal, and as far behind z; shape (rows, 2)."""
+    behind = np.clip(2 * z[:, -1] - goal, *limits.T)
+    return np.sort(np.stack([goal, behind], axis=-1), axis=-1)
+
+
+def _from_special(task: _Task, way: int, kind, points, until) -> list:
     """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
-    start = _STARTS.get(kind, _no_start)(equations, z, goals, way)
-    name = equations.along[-1].name
+    start = _STARTS.get(kind, _no_start)(task, way)
+    name = task.equations.along[-1].name
     found = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
     if going.size:
+        arrays = {"z", "direction", "step", "goal", "window"}
         part = start._replace(
             equations=start.equations.rows(going),
-            **{field: getattr(start, field)[going] for field in ("z", "direction", "step", "goal")},
+            **{field: getattr(start, field)[going] for field in arrays},
         )
         for i, branch in zip(going, _followed(part, points, until, kind), strict=True):
             path = branch.z if start.origin is None else np.vstack([start.origin[[i]], branch.z])
-            text = f"{kind or 'an orbit'} at {name} = {z[i, -1]:.10g}"
+            text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
             found[i] = replace(branch, z=path, start=text)
     return found
 
 
-def _ordinary_start(equations, z, goals, way) -> _Start:
+def _ordinary_start(task: _Task, way: int) -> _Start:
     """The branch through orbits."""
+    equations, z, goals, limits = task
     goal = goals[:, way]
     direction = tangents(equations, z)
     direction = direction * np.sign((goal - z[:, -1]) * direction[:, -1])[:, np.newaxis]
-    step = np.full(len(z), FIRST_STEP)
-    return _Start(equations, z, direction, step, goal, None, np.full(len(z), "", object))
+    reasons = np.full(len(z), "", object)
+    for i in np.flatnonzero(goal == z[:, -1]):
+        reasons[i] = f"{equations.along[-1].name} = {goal[i]:.10g} is that of the orbit already"
+    step, window = np.full(len(z), FIRST_STEP), _windows(z, goal, limits)
+    return _Start(equations, z, direction, step, goal, window, None, reasons)
 
 
-def _fold_start(equations, z, goals, way) -> _Start:
+def _fold_start(task: _Task, way: int) -> _Start:
     """The branch that is stable next to a saddle-node; and the other one, if both ways are followed.
 
     Both are on the same side of the parameter.
     """
-    start = _ordinary_start(equations, z, goals, way)
-    units = scales(equations, z)
-    direction = start.direction / units
-    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    length, upwards = np.full((len(z), 1), 1e-2), np.zeros(len(z), bool)
+    equations, z, goals, limits = task
+    direction, units = tangents(equations, z), scales(equations, z)
+    direction = _unit(direction / units)
+    length = np.full((len(z), 1), 1e-2)
     for _ in range(8):
         near = newton(equations, z + length * direction * units, direction / units)
-        turned = 1 - equations.turn(near.linear)
-        upwards = near.z[:, -1] > z[:, -1]
         length = np.where(near.found[:, np.newaxis], length, length / 4)
         if near.found.all():
             break
-    stable = np.sign(turned)[:, np.newaxis] * direction * units
+    upwards = near.z[:, -1] > z[:, -1]
+    stable = np.sign(1 - equations.turn(near.linear))[:, np.newaxis] * direction * units
     goal = np.where(upwards, goals.max(axis=1), goals.min(axis=1))
-    wrong = (goal > z[:, -1]) != upwards
-    for i in wrong.nonzero()[0]:
+    reasons = np.full(len(z), "", object)
+    for i in np.flatnonzero((goal > z[:, -1]) != upwards):
         place = f"{equations.along[-1].name} = {z[i, -1]:.10g}"
         side = "above" if upwards[i] else "below"
-        start.reasons[i] = f"the orbits of the saddle-node at {place} are {side} it"
-    other = goals.shape[1] == 2 and way == 0
-    return start._replace(direction=-stable if other else stable, goal=goal)
+        reasons[i] = f"the orbits of the saddle-node at {place} are {side} it"
+    if goals.shape[1] == 2 and way == 0:
+        stable = -stable
+    step, window = np.full(len(z), FIRST_STEP), _windows(z, goal, limits)
+    return _Start(equations, z, stable, step, goal, window, None, reasons)
 
 
-def _halved_start(equations, z, goals, way) -> _Start:
+def _halved_start(task: _Task, way: int) -> _Start:
     """The branch of half the period."""
-    return _ordinary_start(*halves_of(equations, z), goals, way)
+    equations, z = halves_of(task.equations, task.z)
+    return _ordinary_start(task._replace(equations=equations, z=z), way)
 
 
-def _no_start(equations, z, goals, way) -> _Start:
+def _no_start(task: _Task, way: int) -> _Start:
     """No branch goes on from this kind of special orbit."""
-    reasons = np.full(len(z), "the branch ends at this special orbit", object)
-    return _Start(equations, z, z, z[:, 0], goals[:, way], None, reasons)
+    reasons = np.full(len(task.z), "branches end at a special orbit of this kind", object)
+    goal = task.goals[:, way]
+    return _Start(task.equations, task.z, task.z, goal, goal, task.limits, None, reasons)
 
 
-def _doubled_start(equations, z, goals, way) -> _Start:
+def _doubled_start(task: _Task, way: int) -> _Start:
     """The branch of twice the period.
 
     The parameter and tr/(1 + det), which is 1 at the doubling, change there with the square of the
     distance. The first step is halved until both fall by about four from it to half of it, and
     until the latter has hardly changed: then no bifurcation is between the doubling and the step.
     """
-    twice, origin = doubled_of(equations, z)
-    goal, rows = goals[:, way], len(z)
+    twice, origin = doubled_of(task.equations, task.z)
+    goal, rows, name = task.goals[:, way], len(origin), twice.along[-1].name
     units = scales(twice, origin)
-    direction = _flip(equations, z) / units
-    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    direction = _unit(_flip(task.equations, task.z) / units)
     length, good = np.full(rows, 0.02), np.zeros(rows, bool)
-    start = origin.copy()
-    pair = twice.rows(np.tile(np.arange(rows), 2))
+    start, pair = origin.copy(), twice.rows(np.tile(np.arange(rows), 2))
     for _ in range(40):
         reach = np.concatenate([length, length / 2])[:, np.newaxis]
         guess = np.tile(origin, (2, 1)) + reach * np.tile(direction * units, (2, 1))
@@ -823,27 +890,26 @@ def _doubled_start(equations, z, goals, way) -> _Start:
         if good.all():
             break
         length[~good] /= 2
-    name = equations.along[-1].name
-    reasons = np.where(good, "", "the start of the orbits of twice the period is not found")
-    reasons = reasons.astype(object)
+    reasons = np.full(rows, "", object)
+    reasons[~good] = "the start of the orbits of twice the period is not found"
     with np.errstate(all="ignore"):
         share = (goal - origin[:, -1]) / (start[:, -1] - origin[:, -1])
-    for i in (good & ~(share > 0)).nonzero()[0]:
+    for i in np.flatnonzero(good & ~(share > 0)):
         side = "above" if start[i, -1] > origin[i, -1] else "below"
         place = f"{name} = {origin[i, -1]:.10g}"
         reasons[i] = f"the orbits of twice the period are {side} the period doubling at {place}"
-    beyond = (reasons == "") & (share < 1.5)
-    if beyond.any():
-        # The whole branch is hardly longer than its start.
-        length = np.where(beyond, 0.3 * length * np.sqrt(np.abs(share)), length)
-        solution = newton(
-            twice, origin + length[:, np.newaxis] * direction * units, direction / units
-        )
-        start[beyond] = solution.z[beyond]
-        reasons[beyond & ~solution.found] = (
+    short = (reasons == "") & (share < 1.5)
+    if short.any():
+        # The whole branch is hardly longer than its start, or shorter.
+        length = np.where(short, 0.3 * length * np.sqrt(np.abs(share)), length)
+        guess = origin + length[:, np.newaxis] * direction * units
+        solution = newton(twice, guess, direction / units)
+        start[short] = solution.z[short]
+        reasons[short & ~solution.found] = (
             "the start of the orbits of twice the period is not found"
         )
-    return _Start(twice, start, start - origin, length, goal, origin, reasons)
+    window = _windows(origin, goal, task.limits)
+    return _Start(twice, start, start - origin, length, goal, window, origin, reasons)
 
 
 def _about_four(pair: NDArray) -> NDArray:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import H, Ball
+from bouncing_ball_beyond.balls import Ball, H
 from bouncing_ball_beyond.paths import AMPLITUDE, Path
 
 FAR = 10.0
@@ -289,11 +289,23 @@ class OrbitEquations:
             return linear.derivatives[..., 0, 2].min(axis=-1)
         return self.ends(z).speed.min(axis=-1)
 
-    def halving(self, z) -> NDArray:
-        """Difference of the speeds at impacts half an orbit apart; 1 for an odd number of impacts."""
-        speeds = self.split(z)[0][..., 1]
+    def halves(self, z) -> NDArray:
+        """Differences of the impacts half an orbit apart, shape (rows, kq/2): zero if the orbit is one
+        of half the period, taken twice; ones for an odd number of impacts."""
+        if self.impacts % 2:
+            return np.ones((len(z), 1))
+        x, _, _ = self.split(z)
         half = self.impacts // 2
-        return speeds[:, 0] - speeds[:, half] if self.impacts % 2 == 0 else np.ones(len(z))
+        apart = x[:, :half] - x[:, half:]
+        apart[..., 0] += np.pi * np.reshape(self.periods, (-1, 1))
+        return apart.reshape(len(z), -1)
+
+    def halving(self, z) -> NDArray:
+        """Difference of the speeds at two impacts half an orbit apart, shape (rows,).
+
+        It is zero at a period halving, and perhaps elsewhere; 1 for an odd number of impacts.
+        """
+        return self.halves(z)[:, 1 if self.impacts % 2 == 0 else 0]
 
     def admissible(self, z) -> NDArray:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""

@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from bouncing_ball_beyond.balls import H, Ball
+from bouncing_ball_beyond.balls import Ball, H
 
 LIMITS = MappingProxyType(
     {

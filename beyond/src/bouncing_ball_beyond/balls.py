@@ -126,7 +126,7 @@ def _check_function(restitution):
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(f"restitution: r(u) fails for an array of complex u ({reason})") from None
-    _checked("restitution of a function at u = 0.5, 1, 2", r, 0, 1, low_allowed=True)
+    _checked("restitution at u = 0.5, 1 or 2", r, 0, 1, low_allowed=True)
     # Differences are wrong by 1e-11 for rounding and by the third derivative of r times 1e-11.
     if not np.allclose(along, across, rtol=1e-4, atol=1e-6):
         raise ValueError("restitution: r(u) must be analytic, without abs, real, sign or the like")
@@ -461,7 +461,8 @@ def first_rise(early, *given):
         found[left[last]] = time[left[last]]
         going = ~last
         if count % 8 == 0:
-            going &= (now < PATIENCE) & ~stays_negative(now, f, slope, row[0], *row[3:])
+            stays = stays_negative(now, f, slope, row[0], *row[3:])
+            going &= np.isfinite(f) & (now < PATIENCE) & ~stays
         left = left[going]
         if not left.size:
             return found

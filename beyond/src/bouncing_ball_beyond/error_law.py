@@ -43,12 +43,13 @@ of the relative speeds of the n-T orbit at an amplitude, and the amplitudes of i
 
 
 class FreeImpact(NamedTuple):
-    """The free impact with the closing speed v₀ of the n-T orbits: its signature and derivatives.
+    """The free impact with the closing speed v₀ of n-T orbits: its signature and derivatives.
 
     ``slope`` is b = d(rv)/dv and ``curvature`` d²(rv)/dv²; ``centroid_slope`` is e = d(v t_c)/dv,
     and ``load_slope`` dσ/dv. Each is a number or an array with the shape of the ball's parameters.
     """
 
+    n: NDArray
     speed: NDArray
     restitution: NDArray
     slope: NDArray
@@ -65,16 +66,36 @@ class FreeImpact(NamedTuple):
         It lasts γ times as long, has the same restitution coefficient, and the contact with a
         spring and a damper becomes that with the frequency ratio ϖ/γ.
         """
-        lengths = {name: factor * getattr(self, name) for name in self._fields[4:]}
-        return self._replace(**lengths)
+        names = ("duration", "centroid", "centroid_slope", "load", "load_slope")
+        return self._replace(**{name: factor * getattr(self, name) for name in names})
+
+    @property
+    def half(self) -> NDArray:
+        """nπ, the velocity of the ball before and after the instant of an orbit."""
+        return self.n * np.pi
+
+    @property
+    def line(self) -> NDArray:
+        """C, the Λ cos ψ of the orbits of the restitution model, and the Λ of its saddle-node."""
+        return self.speed - self.half
+
+    @property
+    def shift(self) -> NDArray:
+        """s = σ/(1 + b), by which the line of the orbits on the contact lies nearer."""
+        return self.load / (1 + self.slope)
+
+    @property
+    def doubling(self) -> NDArray:
+        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the Λ sin ψ at which the restitution model doubles."""
+        return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
 
 
-def free_impact(ball: Ball, n: int = 1) -> FreeImpact:
+def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     """The free impact of a ball whose closing speed is a root of (1 + r(v)) v = 2nπ."""
     if np.any(np.asarray(n) < 1):
         raise ValueError(f"n = {n!r}: must be a whole number from 1")
-    half = n * np.pi
-    speed = np.asarray(1.5 * half)
+    half = np.pi * np.asarray(n)
+    speed = 1.5 * half
     step = speed
     # The error of Newton's method after a step is of the order of the square of the step.
     while np.any(np.abs(step) > 1e-8 * speed):
@@ -87,6 +108,7 @@ def free_impact(ball: Ball, n: int = 1) -> FreeImpact:
     aside = 1e-4 * speed
     slopes = [_bounced(ball, at + sign * aside).imag / H for sign in (-1, 1)]
     return FreeImpact(
+        n=np.asarray(n),
         speed=speed,
         restitution=np.real(signature.restitution),
         slope=np.imag(signature.restitution * at) / H,
@@ -104,37 +126,28 @@ def _bounced(ball: Ball, speed: NDArray) -> NDArray:
     return ball.signature(speed).restitution * speed
 
 
-def restitution_values(impact: FreeImpact, amplitude: ArrayLike, n: int = 1) -> dict:
-    """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1).
-
-    The restitution coefficient is the function r(v) of the impact, on whose slope the period
-    doubling depends: Y_D = 2(1 + rb)/[(1 + r)(1 + b)]. NaN below the saddle-node Λ = C.
-    """
-    half = n * np.pi
-    line = impact.speed - half
-    lift = _root(np.square(amplitude) - line**2)
-    anywhere = 0 * (line + np.asarray(amplitude))
-    return {
-        "max_height": lift + half**2 / 2,
-        "bounce_velocity": half + 0 * lift,
-        "phase": np.arctan2(lift, line),
-        "apparent_restitution": impact.restitution + 0 * lift,
-        "saddle_node": line + anywhere,
-        "period_doubling": np.hypot(line, _doubling_lift(impact)) + anywhere,
-    }
-
-
-def _doubling_lift(impact: FreeImpact) -> NDArray:
-    """Y_D, the Λ sin ψ at which the orbits of the restitution model double their period."""
-    r = impact.restitution
-    b = impact.slope
-    return 2 * (1 + r * b) / ((1 + r) * (1 + b))
-
-
 def _root(square: NDArray) -> NDArray:
     """The square root, NaN of a negative number without a warning."""
     with np.errstate(invalid="ignore"):
         return np.sqrt(square)
+
+
+def restitution_values(impact: FreeImpact, amplitude: ArrayLike) -> dict:
+    """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1).
+
+    The restitution coefficient is the function r(v) of the impact, on whose slope the period
+    doubling depends. NaN below the saddle-node Λ = C.
+    """
+    lift = _root(np.square(amplitude) - impact.line**2)
+    anywhere = 0 * (impact.line + np.asarray(amplitude))
+    return {
+        "max_height": lift + impact.half**2 / 2,
+        "bounce_velocity": impact.half + 0 * lift,
+        "phase": np.arctan2(lift, impact.line),
+        "apparent_restitution": impact.restitution + 0 * lift,
+        "saddle_node": impact.line + anywhere,
+        "period_doubling": np.hypot(impact.line, impact.doubling) + anywhere,
+    }
 
 
 def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
@@ -162,50 +175,42 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     -0.01
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    reference = restitution_values(impact, amplitude, n)
-    v = impact.speed
+    reference = restitution_values(impact, amplitude)
     r = impact.restitution
-    b = impact.slope
     delay = impact.centroid
-    half = n * np.pi
-    line = v - half
-    shift = impact.load / (1 + b)
-    lift = _root(np.square(amplitude) - line**2)
-    turned = _root(np.square(amplitude) - (line - shift) ** 2)
+    shift = impact.shift
+    nearer = impact.line - shift
+    lift = _root(np.square(amplitude) - impact.line**2)
+    turned = _root(np.square(amplitude) - nearer**2)
+    across, along = _doubling_shift(impact)
     with np.errstate(invalid="ignore", divide="ignore"):
-        turn = np.arccos((line - shift) / amplitude) - np.arccos(line / amplitude)
-        risen = turned - lift - shift * line - v * delay
-        loaded = impact.load - impact.duration + (1 + r) * delay - (b - r) * shift
+        turn = np.arccos(nearer / amplitude) - np.arccos(impact.line / amplitude)
+        risen = turned - lift - shift * impact.line - impact.speed * delay
+        loaded = impact.load - impact.duration + (1 + r) * delay - (impact.slope - r) * shift
+        load = 1 - turned + shift * impact.line
+        doubling = impact.line * across + impact.doubling * along
         return {
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
-            "apparent_restitution": loaded * (1 - turned + shift * line) / (r * v),
+            "apparent_restitution": loaded * load / (r * impact.speed),
             "saddle_node": -shift / reference["saddle_node"],
-            "period_doubling": _doubling_error(impact, half) + 0 * reference["period_doubling"],
+            "period_doubling": doubling / reference["period_doubling"] ** 2,
         }
 
 
-def _doubling_error(impact: FreeImpact, half: float) -> NDArray:
-    """The relative error of the amplitude of the period doubling."""
-    line = impact.speed - half
-    lift = _doubling_lift(impact)
-    across, along = _doubling_shift(impact, half)
-    return (line * across + lift * along) / (line**2 + lift**2)
-
-
-def _doubling_shift(impact: FreeImpact, half: float) -> tuple[NDArray, NDArray]:
+def _doubling_shift(impact: FreeImpact) -> tuple[NDArray, NDArray]:
     """The shift (δX, δY) of the period doubling from (C, Y_D), of first order."""
-    v = impact.speed
     b = impact.slope
-    lift = _doubling_lift(impact)
-    across = impact.load / (1 + b) * (lift - 1)
-    steeper = impact.load_slope * (1 - lift) + impact.curvature * across
+    half = impact.half
+    rise = impact.doubling - 1
+    across = impact.shift * rise
+    steeper = impact.curvature * across - impact.load_slope * rise
     along = (
         (1 - b) * across
-        + 2 * impact.centroid_slope * (lift - 1)
-        - half * impact.load * (v - half)
-        + steeper * (half * (2 - lift) - v)
+        + 2 * impact.centroid_slope * rise
+        - half * impact.load * impact.line
+        + steeper * (half * (1 - rise) - impact.speed)
     )
     return across, along / (half * (1 + b))
 
@@ -217,7 +222,7 @@ def law_coefficients(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int 
     height and of the phase are infinite, because their errors are of the order √γ there.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, n=n)
+    errors = law_errors(impact.stretched(1j * H), amplitude=amplitude)
     return {name: np.imag(error) / H for name, error in errors.items()}
 
 
@@ -229,24 +234,23 @@ def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 
     and not proved (docs/error-law.md).
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    reference = restitution_values(impact, amplitude, n)
-    v = impact.speed
+    reference = restitution_values(impact, amplitude)
     delay = impact.centroid
-    half = n * np.pi
-    line = v - half
-    shift = np.abs(impact.load / (1 + impact.slope))
-    weight = 1 + np.abs(1 - _root(np.square(amplitude) - line**2))
-    loaded = impact.duration * weight / (impact.restitution * v)
+    shift = np.abs(impact.shift)
+    weight = 1 + np.abs(1 - _root(np.square(amplitude) - impact.line**2))
+    loaded = impact.duration * weight / (impact.restitution * impact.speed)
     small = impact.duration * np.maximum(1, amplitude) + loaded
     with np.errstate(invalid="ignore", divide="ignore"):
-        later = shift * weight / _root(np.square(amplitude) - (line - shift) ** 2)
+        later = shift * weight / _root(np.square(amplitude) - (impact.line - shift) ** 2)
+        risen = impact.line * later + impact.speed * delay
+        node = shift / reference["saddle_node"]
         scales = {
-            "max_height": (line * later + v * delay) / reference["max_height"],
+            "max_height": risen / reference["max_height"],
             "bounce_velocity": (impact.duration - delay) / reference["bounce_velocity"],
             "phase": (later + delay) / reference["phase"],
             "apparent_restitution": loaded,
-            "saddle_node": shift / reference["saddle_node"],
-            "period_doubling": shift / reference["saddle_node"] + delay / half,
+            "saddle_node": node,
+            "period_doubling": node + delay / impact.half,
         }
         return {name: scale * small for name, scale in scales.items()}
 
@@ -286,41 +290,35 @@ def law_thresholds(
     (82.18, 132.3)
     """
     impact = free_impact(along_ratio(contacts, tolerance)(1.0), n)
-    found = {
-        name: np.abs(coefficient) / tolerance
-        for name, coefficient in law_coefficients(impact, amplitude=amplitude, n=n).items()
-    }
-    half = n * np.pi
-    line = impact.speed - half
-    shift = impact.load / (1 + impact.slope)
+    coefficients = law_coefficients(impact, amplitude=amplitude)
+    found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     # The error of the height is largest where Y₁ rises as fast as the depth of the instant, and
     # that of the phase where ψ₁ does: at these values of C - s.
-    deeper = shift * line + impact.speed * impact.centroid
-    later = shift + impact.centroid
+    deeper = impact.shift * impact.line + impact.speed * impact.centroid
+    later = impact.shift + impact.centroid
     turns = {
-        "max_height": deeper * amplitude / np.hypot(shift, deeper),
-        "phase": _root(np.maximum(np.square(amplitude) - (shift / later) ** 2, 0)),
+        "max_height": deeper * amplitude / np.hypot(impact.shift, deeper),
+        "phase": _root(np.maximum(np.square(amplitude) - (impact.shift / later) ** 2, 0)),
     }
     for name, turn in turns.items():
-        found[name] = 1 / _longest(impact, amplitude, n, tolerance, name, turn)
+        found[name] = 1 / _longest(impact, amplitude, tolerance, name, turn)
     return found
 
 
-def _longest(impact, amplitude, n, tolerance, name, turn) -> NDArray:
+def _longest(impact, amplitude, tolerance, name, turn) -> NDArray:
     """The stretch γ up to which a concave error is within the tolerance.
 
     ``turn`` is the value of C - s at which the error is largest.
     """
-    line = impact.speed - n * np.pi
-    shift = impact.load / (1 + impact.slope)
 
     def error(stretch, amplitude, *fields):
-        return law_errors(FreeImpact(*fields).stretched(stretch), amplitude=amplitude, n=n)[name]
+        return law_errors(FreeImpact(*fields).stretched(stretch), amplitude=amplitude)[name]
 
+    shift = impact.shift
     with np.errstate(invalid="ignore", divide="ignore"):
-        largest = np.where(shift > 0, np.maximum((line - turn) / shift, 0), 0)
+        largest = np.where(shift > 0, np.maximum((impact.line - turn) / shift, 0), 0)
         # The law has orbits as long as |C - s| is below Λ. A contact of 4π is out of its range.
-        end = (line + np.copysign(amplitude, shift)) / shift * (1 - 1e-9)
+        end = (impact.line + np.copysign(amplitude, shift)) / shift * (1 - 1e-9)
     end = np.fmin(end, 4 * np.pi / impact.duration)
     upwards = error(largest, amplitude, *impact) >= tolerance
     found = find_root(
@@ -402,25 +400,22 @@ def contact_values(
 
 def _bifurcation(row: Ball, periods: NDArray, name: str) -> NDArray:
     """The amplitudes of a bifurcation, by rows, from a guess by the error law."""
-    half = np.pi * periods
     impact = free_impact(row, periods)
-    line = impact.speed - half
-    shift = impact.load / (1 + impact.slope)
     if name == "saddle_node":
         kind = "saddle-node"
-        x = line - shift
-        y = -shift * line
+        x = impact.line - impact.shift
+        y = -impact.shift * impact.line
     else:
         kind = "period doubling"
-        across, along = _doubling_shift(impact, half)
-        x = line + across
-        y = _doubling_lift(impact) + along
+        across, along = _doubling_shift(impact)
+        x = impact.line + across
+        y = impact.doubling + along
     # The impacts of a corrected ball are at the centroids, and all others start before them.
     delay = 0.0 if isinstance(row, Corrected) else impact.centroid
-    guess = [np.arctan2(y, x) - delay, half + x - (1 - y) * delay, np.hypot(x, y)]
+    guess = [np.arctan2(y, x) - delay, impact.half + x - (1 - y) * delay]
     if row.lasts:
-        guess.insert(2, row.free(guess[1]))
-    guess = np.stack(np.broadcast_arrays(*guess), axis=-1)
+        guess.append(row.free(guess[1]))
+    guess = np.stack(np.broadcast_arrays(*guess, np.hypot(x, y)), axis=-1)
     z, good = special_near(OrbitEquations(row, 1, periods), kind, guess)
     return np.where(good & (z[:, -1] > 0), z[:, -1], np.nan)
 
@@ -486,7 +481,7 @@ def exact_errors(
     """
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=quantities)
     if simple is None:
-        reference = restitution_values(free_impact(ball, n), amplitude, n)
+        reference = restitution_values(free_impact(ball, n), amplitude)
     else:
         other = simple(ball)
         reference = contact_values(other, amplitude=amplitude, n=n, quantities=quantities)

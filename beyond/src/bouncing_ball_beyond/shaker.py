@@ -315,8 +315,8 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
     ball = contacts(1.0)
     impact = free_impact(ball, n)
     duration = float(impact.duration)
-    simple = restitution_values(impact, amplitude, n)
-    law = law_errors(impact, amplitude=amplitude, n=n)
+    simple = restitution_values(impact, amplitude)
+    law = law_errors(impact, amplitude=amplitude)
     names = ("saddle_node", "period_doubling", "max_height")
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names)
     if np.isnan(exact["saddle_node"] + exact["period_doubling"]):

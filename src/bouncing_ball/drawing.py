@@ -1,6 +1,6 @@
 """What the figures share: style, labels, branches of orbits with their stability, picture files.
 
-A figure is one column of a journal wide, with texts of 8 points. Colours differ in lightness too,
+A figure is one column or one page of a journal wide, with texts of 8 points. Colours differ in lightness too,
 and curves also differ in dashes, width or marks, so that nothing depends on colour vision or on a
 printer of colours. Line styles tell the kind of an orbit: solid for stable, dashed for unstable,
 dotted for inadmissible. In pictures with both phases of a contact, a wide pale line is the phase φ
@@ -33,7 +33,10 @@ Look = dict[str, Any]
 """Keywords of a line, a mark or a text."""
 
 WIDTH = 3.5
-"""Width of a figure in inches."""
+"""Width of a figure of one column in inches."""
+
+WHOLE_WIDTH = 7.0
+"""Width of a figure of the whole page in inches."""
 
 SETTINGS: Look = {
     "font.size": 8,
@@ -168,10 +171,12 @@ def pale(colour: str) -> str:
 # Panels
 
 
-def panels(height: float, rows: int = 1, **options: Any) -> tuple[Figure, Any]:
-    """A figure of one column's width, and its panel or array of panels, one above the other."""
-    figure = Figure(figsize=(WIDTH, height))
-    return figure, figure.subplots(rows, **options)
+def panels(height: float, rows: int = 1, columns: int = 1, **options: Any) -> tuple[Figure, Any]:
+    """A figure, and its panel or array of panels. With several columns of panels it is as wide as
+    the page, and else as one column of it.
+    """
+    figure = Figure(figsize=(WIDTH if columns == 1 else WHOLE_WIDTH, height))
+    return figure, figure.subplots(rows, columns, **options)
 
 
 def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:

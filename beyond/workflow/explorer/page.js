@@ -140,13 +140,13 @@ addEventListener("hashchange", () => show(location.hash));
 
 // ---- The badge: the page against Python.
 function check() {
-  const {commit, orbits, balls} = REFERENCES.references;
+  const {orbits, balls} = REFERENCES.references;
   const parts = [compareRows(orbits, orbitAgain), compareRows(balls, ballAgain)];
   const {worst, where} = parts.reduce((one, other) => other.worst <= one.worst ? one : other);
   const good = worst <= BOUND;
   $("badge").className = good ? "good" : "bad";
   $("badge").textContent = `${good ? "Checked" : "WRONG"}: ${parts[0].count} orbits and ${parts[1].count} balls of the `
-    + `Python package, commit ${commit.slice(0, 10)}, computed again here: largest `
+    + `Python package, computed again here: largest `
     + `difference ${worst.toExponential(1)} (${where}), ${good ? "within" : "above"} ${BOUND.toExponential(0)}.`;
   $("badge").dataset.worst = String(worst);
 }

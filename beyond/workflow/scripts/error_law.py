@@ -1,0 +1,201 @@
+"""Stage: errors of the restitution and of the corrected model, and what the error law leaves."""
+
+import sys
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from bouncing_ball.datasets import grid, save_stage
+from bouncing_ball.errors import permanent_contact_error, threshold
+from bouncing_ball_beyond.balls import Ball, Corrected, SpringDamper, damping_of
+from bouncing_ball_beyond.error_law import (
+    QUANTITIES,
+    error_thresholds,
+    exact_errors,
+    free_impact,
+    law_coefficients,
+    law_errors,
+    law_remainders,
+    law_thresholds,
+)
+from studies.orbits import half_next_to_saddle_node, last_zero, random_orbits
+from studies.variables import VARIABLES
+
+# What stands in place of a contact. Without a name of a class it is the restitution coefficient.
+MODELS = {"restitution": None, "corrected": Corrected}
+
+# At two such contacts the corrected model's error is of second order, with no visible rounding.
+STIFF = np.array([500.0, 1000.0])
+
+# Two ϖ for the orders: below 100 higher orders contribute, above 10⁴ rounding does.
+TWO_STIFF = np.array([[1000.0], [2000.0]])
+
+
+def stacked(quantities: dict) -> NDArray:
+    """The values of the quantities, shape (quantity, ...)."""
+    return np.stack(np.broadcast_arrays(*quantities.values()))
+
+
+def errors(ball: Ball, amplitude, n) -> NDArray:
+    """Signed errors of both models, shape (model, quantity, ...)."""
+    return np.stack(
+        [
+            stacked(exact_errors(ball, amplitude=amplitude, n=n, simple=simple))
+            for simple in MODELS.values()
+        ]
+    )
+
+
+def left_by_law(ball: Ball, amplitude, n) -> tuple[NDArray, NDArray]:
+    """Moduli of what the error law leaves, and of the restitution model's errors."""
+    error = stacked(exact_errors(ball, amplitude=amplitude, n=n))
+    return np.abs(error - stacked(law_errors(ball, amplitude=amplitude, n=n))), np.abs(error)
+
+
+def left_at_saddle_node(ball: Ball, n) -> tuple[NDArray, NDArray]:
+    """The same at the saddle-node of the restitution model, NaN for the phase, which is 0 there.
+
+    Rounding must not put Λ below the saddle-node, and a root of the share added is small next to
+    what the contact changes at ϖ up to 10⁴.
+    """
+    left, error = left_by_law(ball, (1 + 1e-9) * (free_impact(ball, n).speed - n * np.pi), n)
+    phase = QUANTITIES.index("phase")
+    left[phase] = error[phase] = np.nan
+    return left, error
+
+
+def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
+    """Errors along ϖ on the orbit, with their zeros, and its numbers of the error law."""
+    n = parameters["n"]
+    amplitude = parameters["amplitude"]
+    tolerance = parameters["tolerance"]
+    span = parameters["frequency_ratio"]
+    ratios = grid(span)
+    ball = SpringDamper(
+        ratios, damping_ratio=damping_of(parameters["restitution"]), release=release
+    )
+    found = errors(ball, amplitude, n)
+    once, twice = (errors(ball.at(frequency_ratio=STIFF), amplitude, n)[1] * STIFF**2).T
+    left, _ = left_by_law(ball, amplitude, n)
+    left_at_node, node_error = left_at_saddle_node(ball, n)
+    unit = ball.at(frequency_ratio=1.0)
+    law = {"amplitude": amplitude, "n": n}
+    search = law | {"tolerance": tolerance, "low": span["min"], "high": span["max"]}
+    thresholds = [
+        error_thresholds(unit, simple=simple, samples=span["samples"], **search)
+        for simple in MODELS.values()
+    ]
+    zeros = np.full(found.shape[:2], np.nan)
+    for model, quantity in np.ndindex(zeros.shape):
+        name = QUANTITIES[quantity]
+        simple = list(MODELS.values())[model]
+
+        def error(ratio, name=name, simple=simple):
+            one = ball.at(frequency_ratio=ratio)
+            return float(exact_errors(one, simple=simple, quantities=[name], **law)[name])
+
+        zeros[model, quantity] = last_zero(ratios, found[model, quantity], error)
+    both = ("model", "quantity")
+    return {
+        "relative_error": ((*both, "frequency_ratio"), np.abs(found)),
+        "coefficient": ("quantity", stacked(law_coefficients(unit, **law))),
+        # The error is C/ϖ² and terms of third order, which are eliminated (Richardson).
+        "second_order": ("quantity", 2 * twice - once),
+        "law_threshold": ("quantity", stacked(law_thresholds(unit, tolerance=tolerance, **law))),
+        "error_threshold": (
+            both,
+            [[each.ratio for each in by_name.values()] for by_name in thresholds],
+        ),
+        "threshold_status": (
+            both,
+            [[str(each.status) for each in by_name.values()] for by_name in thresholds],
+        ),
+        "law_left": (("place", "quantity", "frequency_ratio"), [left, left_at_node]),
+        "node_error": (("quantity", "frequency_ratio"), node_error),
+        "error_zero": ("quantity", zeros[0]),
+        "corrected_error_zero": ("quantity", zeros[1]),
+    }
+
+
+def of_permanent_contact(parameters: dict, release: str) -> dict[str, float]:
+    """The error of the threshold of permanent contact, which is K₂/ϖ² and terms of fourth order."""
+    zeta = float(damping_of(parameters["restitution"]))
+    ratios = grid(parameters["frequency_ratio"])
+    tolerance = parameters["tolerance"]
+    coefficient = 2 * zeta**2 - 1 if release == "displacement" else -1.0
+    error = permanent_contact_error(ratios, zeta, release)
+    return {
+        "permanent_coefficient": coefficient,
+        "permanent_law": np.sqrt(abs(coefficient) / tolerance),
+        "permanent_threshold": threshold(ratios, error, tolerance).ratio,
+    }
+
+
+def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
+    """Orders of both models' errors in 1/ϖ, and the remainder of the error law."""
+    seed = parameters["seed"]
+    n, zeta, amplitude, _ = random_orbits(parameters["samples"], seed, release, (0.2, 0.95))
+    stiff = SpringDamper(TWO_STIFF, damping_ratio=zeta, release=release)
+    once, twice = np.moveaxis(np.abs(errors(stiff, amplitude, n)), 2, 0)
+    left, _ = left_by_law(stiff, amplitude, n)
+    left_at_node, error = left_at_saddle_node(stiff, n)
+    n, zeta, amplitude, rng = random_orbits(parameters["law_samples"], seed + 1, release)
+    span = parameters["frequency_ratio"]
+    ratio = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), amplitude.size))
+    ball = SpringDamper(ratio, damping_ratio=zeta, release=release)
+    low = free_impact(ball, n).speed - n * np.pi
+    amplitude = half_next_to_saddle_node(low, amplitude, rng)
+    remains, _ = left_by_law(ball, amplitude, n)
+    return {
+        "order": (("model", "quantity", "sample"), np.log2(once / twice)),
+        "law_order": (
+            ("place", "quantity", "sample"),
+            [np.log2(each[:, 0] / each[:, 1]) for each in (left, left_at_node)],
+        ),
+        "node_order": (("quantity", "sample"), np.log2(error[:, 0] / error[:, 1])),
+        "order_frequency_ratio": ("pair", TWO_STIFF.ravel()),
+        "law_remainder": (
+            ("quantity", "law_sample"),
+            remains / stacked(law_remainders(ball, amplitude=amplitude, n=n)),
+        ),
+    }
+
+
+def ext_orders(parameters: dict, release: str) -> xr.Dataset:
+    """Errors along ϖ for one orbit, their orders in 1/ϖ, and the error law.
+
+    ζ follows from r by Eq. 16, and the restitution model has the r that the contact really has.
+    What the law leaves is also computed at the saddle-node of the restitution model.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = of_the_orbit(parameters, release) | of_random_orbits(parameters, release)
+    return xr.Dataset(
+        found | of_permanent_contact(parameters, release),
+        {
+            "model": list(MODELS),
+            "place": ["orbit", "saddle-node"],
+            "quantity": list(QUANTITIES),
+            "frequency_ratio": grid(parameters["frequency_ratio"]),
+        },
+    )
+
+
+STAGE = {
+    "ext_orders": (
+        ext_orders,
+        "Order of convergence of the restitution model and of the corrected one",
+    ),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+    settings = {"release": snakemake.params.release}
+    save_stage(
+        STAGE,
+        snakemake.params.config,
+        settings,
+        snakemake.output,
+        snakemake.input.code,
+        VARIABLES,
+    )

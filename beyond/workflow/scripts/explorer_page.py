@@ -1,0 +1,11 @@
+"""The explorer's page from its reference orbits."""
+
+import sys
+from pathlib import Path
+
+from bouncing_ball.datasets import read
+from studies.explorer import page
+
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+(data,) = snakemake.input.data
+Path(snakemake.output.html).write_text(page(read(data)), encoding="utf-8", newline="\n")

@@ -1,0 +1,15 @@
+"""A table as text, as Markdown and as CSV."""
+
+import sys
+from pathlib import Path
+
+from bouncing_ball.datasets import read
+from bouncing_ball.tables import comma_separated, markdown
+from studies.tables import TABLES
+
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+data = snakemake.input.data
+rows = TABLES[Path(data).stem](read(data))
+texts = {snakemake.output.md: markdown(rows), snakemake.output.csv: comma_separated(rows)}
+for path, text in texts.items():
+    Path(path).write_text(text, encoding="utf-8", newline="\n")

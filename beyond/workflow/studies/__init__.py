@@ -1,0 +1,1 @@
+"""What the stages of the workflow share: descriptions of variables, figures, tables and texts."""

@@ -1,0 +1,51 @@
+"""The article and the list of figures: templates filled in from datasets.
+
+As in the replication, a template has text and names of numbers, and no numbers.
+"""
+
+from decimal import Decimal
+from pathlib import Path
+
+import jinja2
+import numpy as np
+
+from bouncing_ball.article import at_most, fixed, listed, percent, short
+from bouncing_ball.datasets import Datasets, parameters
+
+TEMPLATES = Path(__file__).parents[1] / "templates"
+
+
+def filled_in(name: str, datasets: Datasets) -> str:
+    """The text of a template, "article" or "figures" (the list of all figures), Markdown."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters.update(
+        fixed=fixed, percent=percent, at_most=at_most, short=short, digits=digits, listed=listed
+    )
+    return environment.get_template(f"{name}.md.j2").render(
+        **datasets,
+        titles={key: data.attrs["title"] for key, data in datasets.items()},
+        given={key: parameters(data) for key, data in datasets.items()},
+    )
+
+
+def digits(value: float, count: int) -> str:
+    """A number with a number of digits, small ones with a power of ten.
+
+    >>> digits(82.177, 2), digits(1.5812, 4), digits(3.63e-6, 2), digits(5613.2, 2)
+    ('82', '1.581', '3.6·10⁻⁶', '5600')
+    """
+    number = float(value)
+    if not np.isfinite(number):
+        return "–"
+    rounded = Decimal(f"{number:.{count - 1}e}")
+    exponent = rounded.adjusted()
+    if exponent < -3:
+        power = str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+        return f"{rounded.scaleb(-exponent)}·10{power}".replace("-", "−")
+    return f"{rounded:f}".replace("-", "−")

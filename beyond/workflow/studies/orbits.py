@@ -1,0 +1,81 @@
+"""Random n-T orbits, on which errors are measured, and the zeros of errors along ϖ."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.optimize.elementwise import find_root
+
+from bouncing_ball.restitution import period_doubling, saddle_node
+from bouncing_ball_beyond.balls import SpringDamper, damping_of
+
+NEAREST = -8.0
+"""The smallest share of the distance from the saddle-node, as a power of ten."""
+
+
+def damping(restitution: NDArray, release: str) -> NDArray:
+    """ζ of the contacts with a restitution coefficient under a release; with the force release they
+    have more damping than by Eq. 16.
+    """
+    if release == "displacement":
+        return damping_of(restitution)
+
+    def excess(zeta: NDArray, r: NDArray) -> NDArray:
+        ball = SpringDamper(1.0, damping_ratio=zeta, release=release)
+        return ball.signature(1.0).restitution - r
+
+    return find_root(excess, (np.zeros_like(restitution), 0.999), args=(restitution,)).x
+
+
+def random_orbits(
+    size: int, seed: int, release: str, places: tuple[float, float] = (0.0, 1.0)
+) -> tuple[NDArray, NDArray, NDArray, np.random.Generator]:
+    """Random (n, ζ, Λ) in the stable range of the restitution model, and the generator.
+
+    r is uniform between 0.05 and 0.98, or from 0.15 with the force release, whose contacts have
+    r > e⁻²; n is uniform from 1 to 5, and Λ uniform in the part `places` of the range from the
+    saddle-node (0) to the period doubling (1).
+    """
+    rng = np.random.default_rng(seed)
+    r = rng.uniform(0.15 if release == "force" else 0.05, 0.98, size)
+    n = rng.integers(1, 6, size)
+    low = saddle_node(n, r)
+    amplitude = low + rng.uniform(*places, size) * (period_doubling(n, r) - low)
+    return n, damping(r, release), amplitude, rng
+
+
+def half_next_to_saddle_node(
+    low: NDArray, amplitude: NDArray, generator: np.random.Generator
+) -> NDArray:
+    """Amplitudes of which a random half is moved next to the saddle-nodes, at `low`.
+
+    What is left of the distance is a share between 10⁻⁸ and 1, uniform in its logarithm. Even draws
+    from the stable range hardly meet the saddle-node, where errors of the height change their
+    order.
+    """
+    near = low + 10 ** generator.uniform(NEAREST, 0, amplitude.shape) * (amplitude - low)
+    return np.where(generator.random(amplitude.shape) < 0.5, amplitude, near)
+
+
+def last_zero(ratios: NDArray, errors: NDArray, at: Callable[[float], float]) -> float:
+    """The largest ϖ at which an error passes through zero; NaN if there is none on the grid.
+
+    Where it changes its sign through infinity there is no zero.
+
+    Examples
+    --------
+    >>> grid = np.geomspace(1, 1e4, 8)
+    >>> round(last_zero(grid, grid - 100, lambda ratio: ratio - 100), 9)
+    100.0
+    >>> last_zero(grid, 1 / (grid - 100), lambda ratio: 1 / (ratio - 100))
+    nan
+    """
+    turns = np.flatnonzero(errors[1:] * errors[:-1] < 0)
+    if turns.size == 0:
+        return np.nan
+    last = turns[-1]
+    ends = np.log(ratios[last : last + 2])
+    zero = np.exp(brentq(lambda logarithm: at(np.exp(logarithm)), *ends, xtol=1e-14))
+    beside = np.abs(errors[last : last + 2]).max()
+    return float(zero) if abs(at(zero)) < beside else np.nan

@@ -1,0 +1,129 @@
+"""What each variable of the datasets means, and how closely two computations of it agree.
+
+These are the variables of the replication, whose module `datasets` says what a tolerance means, and
+those of the studies here.
+"""
+
+from bouncing_ball import datasets
+from bouncing_ball.datasets import Variable
+
+VARIABLES = datasets.VARIABLES | {
+    # Coordinates
+    "release": Variable("what ends a contact"),
+    "model": Variable("model of the impact"),
+    "place": Variable("the orbit, or the saddle-node of the restitution model"),
+    "position": Variable(
+        "position of the amplitude in the stable range of the restitution model, 0 at the "
+        "saddle-node and 1 at the period doubling",
+        "p",
+    ),
+    "law": Variable("law of the contact"),
+    "centroid_ratio": Variable(
+        "π over D + κ of the free impact, which stands for the frequency ratio", "π/(D+κ)"
+    ),
+    "calibration": Variable(
+        "orbit at whose relative impact speed |δ′_i| the contact has the given r and centroid"
+    ),
+    "motion": Variable("ball that is followed"),
+    # One contact
+    "free_force": Variable("force of a free contact, over mω times the impact speed", "F/(mωv)"),
+    "contact_end": Variable("when a free contact ends, in units of 1/ω", "ωt_c"),
+    "end_restitution": Variable("restitution coefficient of a free impact by the release", "r"),
+    "contact_force": Variable("force of the table over the weight", "F", floor=1.0),
+    "flight_before": Variable("flight before the contact, continued", "z"),
+    "flight_after": Variable("flight after the contact, continued backwards", "z"),
+    "meeting_time": Variable("time at which the continued flights meet", "t^*"),
+    "meeting_height": Variable("height at which the continued flights meet", "z"),
+    "delay": Variable("delay of the instant by the signature of the contact", "t_c"),
+    # Errors along the frequency ratio. What the corrected model and the error law leave is a small
+    # difference of numbers of the size of 1 that are known to some 1e-13.
+    "relative_error": Variable("relative error of a simple model", "", "Eqs. 37-38", floor=1e-2),
+    "law_left": Variable("modulus of the error that the error law leaves", floor=1e-2),
+    "node_error": Variable(
+        "modulus of the relative error of the restitution model at its saddle-node"
+    ),
+    "coefficient": Variable("relative error times the frequency ratio, to first order", "K"),
+    # The error at ϖ = 500 and 1000, some 1e-6 and known to some 1e-13, times ϖ².
+    "second_order": Variable(
+        "relative error of the corrected model times the squared frequency ratio",
+        "C",
+        tolerance=1e-6,
+        floor=1.0,
+    ),
+    "law_threshold": Variable("frequency ratio for the tolerance by the error law", "ϖ"),
+    "error_zero": Variable("frequency ratio at which the error passes through zero", "ϖ"),
+    # At large ϖ the corrected model's error, which passes through zero there, is itself small.
+    "corrected_error_zero": Variable(
+        "frequency ratio at which the corrected model's error passes through zero",
+        "ϖ",
+        tolerance=1e-7,
+    ),
+    "permanent_coefficient": Variable(
+        "relative error of the permanent contact times the squared frequency ratio", "K₂"
+    ),
+    "permanent_law": Variable("frequency ratio for the tolerance by this law", "√(|K₂|/ε)"),
+    "permanent_threshold": Variable("frequency ratio for the tolerance, permanent contact", "ϖ_PC"),
+    # Orders are quotients of such differences at ϖ = 1000 and 2000. Between random orbits they vary
+    # by percents.
+    "order": Variable(
+        "order of convergence of the relative error in 1/ϖ", tolerance=1e-3, floor=1.0
+    ),
+    "law_order": Variable(
+        "order of convergence in 1/ϖ of what the error law leaves", tolerance=1e-3, floor=1.0
+    ),
+    "node_order": Variable(
+        "order of convergence in 1/ϖ of the error at the saddle-node", tolerance=1e-3, floor=1.0
+    ),
+    "order_frequency_ratio": Variable(
+        "two frequency ratios between which the orders are measured", "ϖ"
+    ),
+    "law_remainder": Variable(
+        "remainder of the error law over its scale and small parameter",
+        "|e - E|/(S η)",
+        tolerance=1e-4,
+        floor=1.0,
+    ),
+    # Map
+    "threshold_by_law": Variable(
+        "frequency ratio for the tolerance of the height by the error law", "ϖ"
+    ),
+    "law_differs_above": Variable("share by which both frequency ratios differ where it is marked"),
+    "rule_product": Variable(
+        "n times the frequency ratio times the error, at the threshold; its modulus is at most 1 "
+        "where the frequency ratio 1/(nε) is enough",
+        "nϖe",
+    ),
+    # Other contact laws
+    "law_error_zero": Variable(
+        "π over D + κ at which the error passes through zero", "π/(D+κ)", tolerance=1e-7
+    ),
+    "error_calibration": Variable("calibration of the contacts of the relative errors"),
+    "stable_at_threshold": Variable("whether the orbit at the threshold is stable and admissible"),
+    # Explorer
+    "trace": Variable("trace of the derivative of the return map", "tr"),
+    "determinant": Variable("determinant of the derivative of the return map", "det"),
+    "restitution_trace": Variable("this trace in the restitution model", "tr"),
+    "restitution_period_doubling": Variable(
+        "amplitude of the period doubling, restitution model", "Λ_PD"
+    ),
+    "corrected_phase": Variable("phase of impact, corrected model", "φ", units="rad"),
+    "corrected_trace": Variable("trace of the return map's derivative, corrected model", "tr"),
+    "corrected_saddle_node": Variable("amplitude of the saddle-node, corrected model", "Λ_SN"),
+    "corrected_period_doubling": Variable(
+        "amplitude of the period doubling, corrected model", "Λ_PD"
+    ),
+    "corrected_max_height": Variable("greatest height, corrected model", "max z"),
+    "ball_restitution": Variable("restitution coefficient of a ball that is followed", "r"),
+    "ball_frequency_ratio": Variable(
+        "frequency ratio of the contact of a ball that is followed", "ϖ"
+    ),
+    "ball_amplitude": Variable("amplitude of the table of a ball that is followed", "Λ"),
+    "start_phase": Variable("phase of the table at the first impact", "φ", units="rad"),
+    "velocity": Variable("velocity of the ball before the first impact", "z′_i"),
+    "end_impact": Variable("number of the impact that is compared, from 0"),
+    "end_phase": Variable("phase of the table at that impact", "φ", units="rad"),
+    "end_speed": Variable("speed of the ball towards the table at that impact", "-δ′"),
+    "end_time": Variable(
+        "time of that impact since the first one, or of the rest that follows it", "τ"
+    ),
+}

@@ -45,10 +45,10 @@ SHARE = 0.1
 
 
 class Curvature(NamedTuple):
-    """Derivatives of the legs, and their first two derivatives in a direction v.
+    """Derivatives of the legs, and the first two derivatives of these along a vector v.
 
-    Each has the shape (k, q, q + 2 + p) of `equations.Linear`; contracted with v, ``first`` is
-    B(v, ·), and ``second`` is C(v, v, ·).
+    Each has the shape (k, q, q + 2 + p) of `equations.Linear`; ``first`` is B(v, ·), and ``second``
+    is C(v, v, ·).
     """
 
     derivatives: NDArray
@@ -64,15 +64,19 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
     return dense(turned[np.newaxis, ..., : q + 2])[0].reshape(-1, derivatives.shape[0] * q)
 
 
-def curvature(equations: OrbitEquations, z: NDArray, v: NDArray, multiplier, step) -> Curvature:
+def taken_twice(equations: OrbitEquations) -> OrbitEquations:
+    """The equations of orbits with twice the impacts and periods."""
+    return replace(equations, impacts=2 * equations.impacts, periods=2 * equations.periods)
+
+
+def curvature(twice: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step) -> Curvature:
     """Derivatives of the legs along a vector v of the impacts that comes back multiplied by ±1.
 
     They are those of the first half of the orbit taken twice, along which v is periodic.
     """
-    k, q, size = equations.impacts, equations.unknowns, equations.size
-    twice = replace(equations, impacts=2 * k, periods=2 * equations.periods)
+    k, q, size = twice.impacts // 2, twice.unknowns, twice.size // 2
     later = z[:size].copy()
-    later[::q] += 2 * np.pi * equations.periods
+    later[::q] += np.pi * twice.periods
     row = np.concatenate([z[:size], later, z[size:]])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - size)])
     rows = row + np.multiply.outer(step * NODES, direction)
@@ -91,9 +95,9 @@ def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> flo
     return float(w @ (closed(bent.first, 1) @ h + closed(bent.second, multiplier) @ v / 6))
 
 
-def null_vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
+def null_vectors(matrix: NDArray) -> tuple[NDArray, NDArray]:
     """v and w of length 1, which are those of the least singular value."""
-    left, _, right = np.linalg.svd(closed(derivatives, multiplier))
+    left, _, right = np.linalg.svd(matrix)
     return right[-1], left[:, -1]
 
 
@@ -169,13 +173,14 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     equations, z, multiplier = orbit.equations, orbit.z, MULTIPLIERS[orbit.kind]
     q = equations.unknowns
     derivatives = equations.linear(z[np.newaxis]).derivatives[0]
-    v, w = null_vectors(derivatives, multiplier)
+    v, w = null_vectors(closed(derivatives, multiplier))
     signs = np.array([1.0, -1.0])
     start = v[:2] * signs
     v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
     w = w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
     step = longest_step(equations, z, v)
-    coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
+    twice = taken_twice(equations)
+    coarse, fine = (curvature(twice, z, v, multiplier, h) for h in (step, step / 2))
     value = coefficient(fine, v, w, multiplier)
     by_parameter = derivatives[..., q + 2].ravel()
     if multiplier == 1:

@@ -1,0 +1,479 @@
+r"""Curves of special orbits in two parameters, with their points of codimension two.
+
+A special orbit solves the equations of an orbit and one more, g = 0. With two free parameters such orbits
+lie on a curve, which is followed by pseudo-arclength as branches are. At a saddle-node and a period
+doubling the matrix A of the chain of legs, which is closed with the multiplier 1 or -1, is singular.
+There g comes from a matrix that is bordered by the null vectors of a neighbour, c and b::
+
+    A v + g b = 0,   c v = 1,        wA + g c = 0,   w b = 1,        ∂g/∂z = -w (∂A/∂z) v
+
+A is also singular where a release is lost, for every orbit: the rate ρ of the release function is zero
+there, and with it the whole column of T. These zeros are divided out: Newton's method solves g/∏ρ = 0.
+
+Other special orbits have the tests of `continuation.KINDS`. On a curve these points are named:
+
+* a cusp, where two saddle-nodes meet: a = 0 in their normal form;
+* a generalized period doubling, where b = 0: doublings are supercritical on one side of it only;
+* the resonances 1:1 and 1:2, where both multipliers are 1, or -1: their product is 1;
+* special orbits of another kind, where for example a flight begins to graze the table.
+
+A fold-flip, with the multipliers 1 and -1, does not occur, because the determinant of the return map is a
+product of positive numbers.
+
+Source: W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM (2000), for
+bordered matrices; Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BarycentricInterpolator
+from scipy.optimize import brentq
+
+from bouncing_ball_beyond.continuation import (
+    KINDS,
+    FollowedBranch,
+    halves_of,
+    scales,
+    test_with_gradient,
+)
+from bouncing_ball_beyond.equations import OrbitEquations, dense
+from bouncing_ball_beyond.forms import (
+    MULTIPLIERS,
+    Curvature,
+    closed,
+    coefficient,
+    curvature,
+    longest_step,
+    null_vectors,
+    taken_twice,
+)
+from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
+from bouncing_ball_beyond.paths import Path, path_of
+
+FIRST_STEP = 0.05
+LONGEST_STEP = 0.2
+SHORTEST_STEP = 1e-7
+"""Lengths of steps, in the units of `continuation.scales`."""
+
+STRAIGHT = 0.97
+"""The least cosine of the angle between the tangents at the ends of a step."""
+
+SHIFT = 1e-5
+"""Shift of T in differences, whose errors, some 1e-10, do not move what Newton's method finds."""
+
+RESONANT = 1e-6
+"""A curve ends in a resonance if the product of the multipliers differs from 1 by less. Located at
+a range's end, the determinant has at least ten digits."""
+
+ZERO = 1e-6
+"""A test that is larger where it changes its sign jumps there: shares of steps are found to 1e-12."""
+
+OTHER = 1e-3
+"""A start that is farther from the corrected special orbit is no special orbit of its kind."""
+
+DEGENERATE = {
+    "saddle-node": ("cusp", "1:1 resonance"),
+    "period doubling": ("generalized period doubling", "1:2 resonance"),
+}
+"""Where a or b is zero, and where both multipliers are the same."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpecialCurve(FollowedBranch):
+    """Special orbits of one kind along two parameters: a `FollowedBranch` with their kind.
+
+    Its ``special`` orbits are those of codimension two.
+    """
+
+    kind: str = ""
+
+    def __repr__(self):
+        return super().__repr__().replace("FollowedBranch", f"SpecialCurve: {self.kind}")
+
+    @property
+    def along(self) -> str:
+        """The names of the two parameters."""
+        return " and ".join(path.name for path in self.equations.along)
+
+    @cached_property
+    def orbits(self) -> tuple[PeriodicOrbit, ...]:
+        """The special orbits one by one."""
+        return tuple(PeriodicOrbit(self.equations, row, self.kind) for row in self.z)
+
+
+class _Border(NamedTuple):
+    """Vectors v and w of length 1 near the null vectors of the chain, shape (kq,)."""
+
+    v: NDArray
+    w: NDArray
+
+
+class _Point(NamedTuple):
+    """A special orbit of a curve: z, and the tangent with normal · tangent = 1, shape (N,).
+
+    ``border`` are its null vectors and ``bent`` the derivatives of the legs along v; both are None for
+    kinds without a multiplier.
+    """
+
+    z: NDArray
+    tangent: NDArray
+    border: _Border | None
+    bent: Curvature | None
+
+
+@dataclass(frozen=True)
+class _System:
+    """The equations of special orbits of a kind."""
+
+    equations: OrbitEquations
+    kind: str
+
+    @cached_property
+    def multiplier(self) -> int:
+        """Of saddle-nodes and period doublings: 1 or -1."""
+        return MULTIPLIERS[self.kind]
+
+    @cached_property
+    def twice(self) -> OrbitEquations:
+        """The equations of the orbits taken twice."""
+        return taken_twice(self.equations)
+
+    def border(self, z: NDArray) -> _Border | None:
+        """The null vectors at a special orbit."""
+        if self.kind not in MULTIPLIERS:
+            return None
+        derivatives = self.equations.linear(z[np.newaxis]).derivatives[0]
+        return _Border(*null_vectors(closed(derivatives, self.multiplier)))
+
+    def condition(self, z, derivatives, border):
+        """g at z, the gradient of g/∏ρ times ∏ρ, the null vectors, and the derivatives along v.
+
+        ``derivatives`` are those of the legs at z and, if impacts have a T, on both sides of z.
+        """
+        if border is None:
+            value, gradient = test_with_gradient(self.equations, self.kind, z[np.newaxis])
+            return value[0], gradient[0], None, None
+        size = len(border.v)
+        matrix = np.zeros((size + 1, size + 1))
+        matrix[:-1, :-1] = closed(derivatives[0], self.multiplier)
+        matrix[:-1, -1], matrix[-1, :-1] = border.w, border.v
+        right = np.zeros(size + 1)
+        right[-1] = 1.0
+        v, w = np.linalg.solve(matrix, right), np.linalg.solve(matrix.T, right)
+        value, v, w = v[-1], v[:-1], w[:-1]
+        step = longest_step(self.equations, z, v)
+        bent = curvature(self.twice, z, v, self.multiplier, step)
+        gradient = -w @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
+        if len(derivatives) > 1:
+            rates = np.zeros((len(derivatives[0]), 3))
+            rates[:, 0] = derivatives[0, :, 0, 2]
+            bends = (derivatives[1] - derivatives[2]) / (2 * SHIFT)
+            inverse = np.divide(1.0, rates, out=rates, where=rates != 0).ravel()
+            gradient -= value * inverse @ dense(bends[np.newaxis])[0].reshape(size, -1)
+        return value, gradient, _Border(v, w), bent
+
+    @cached_property
+    def shifts(self) -> NDArray:
+        """Shifts of z at which the legs are needed: none, and of all T to both sides if there are any."""
+        shift = np.zeros(self.equations.length)
+        if not self.equations.ball.lasts:
+            return shift[np.newaxis]
+        shift[2 : self.equations.size : 3] = SHIFT
+        return np.array([0 * shift, shift, -shift])
+
+    @np.errstate(all="ignore")
+    def solve(self, guess, normal, border, tolerance=1e-8, iterations=8) -> _Point:
+        """The special orbit on the plane through a guess across a normal, by Newton's method.
+
+        It ends with a step of the relative size `tolerance`. As its convergence is quadratic, the
+        error is one of rounding after a step of 1e-8. The derivatives along v are those before the
+        last step.
+
+        Raises
+        ------
+        OrbitNotFound
+            If it does not converge.
+        """
+        z = guess
+        for _ in range(iterations):
+            linear = self.equations.linear(z + self.shifts)
+            jacobian = dense(linear.derivatives[:1])[0].reshape(-1, len(z))
+            try:
+                value, gradient, new, bent = self.condition(z, linear.derivatives, border)
+                matrix = np.vstack([jacobian, gradient, normal])
+                right = np.zeros((len(z), 2))
+                right[:-2, 0], right[-2, 0] = -linear.legs[0].ravel(), -value
+                right[-1] = normal @ (guess - z), 1.0
+                step, tangent = np.linalg.solve(matrix, right).T
+            except np.linalg.LinAlgError:
+                break
+            z = z + step
+            if np.abs(step).max() < tolerance * (1 + np.abs(z).max()):
+                return _Point(z, tangent, new, bent)
+        raise OrbitNotFound(f"no {self.kind} is found: Newton's method does not converge")
+
+    def tests(self, points: list[_Point], names: Iterable[str]) -> dict[str, NDArray]:
+        """What is zero at the points of codimension two, by their names, shape (points,)."""
+        equations, z = self.equations, np.array([point.z for point in points])
+        linear = equations.linear(z)
+        tests = {}
+        for name in names:
+            if name in KINDS:
+                tests[name] = KINDS[name].test(equations, z, linear)
+            elif "resonance" in name:
+                tests[name] = equations.trace_and_determinant(linear)[1] - 1
+            else:
+                values = [coefficient(each.bent, *each.border, self.multiplier) for each in points]
+                tests[name] = np.array(values)
+        return tests
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names of the points of codimension two."""
+        others = KINDS.keys() - {self.kind}
+        if self.kind in MULTIPLIERS:
+            others = others - MULTIPLIERS.keys() | set(DEGENERATE[self.kind])
+        return tuple(sorted(others))
+
+    @cached_property
+    def ends(self) -> tuple[str, ...]:
+        """Those of them at which a curve ends."""
+        return tuple(name for name in self.names if name in KINDS and KINDS[name].end)
+
+
+def special_curve(
+    special: PeriodicOrbit,
+    *,
+    along: tuple[str | Path, str | Path] = ("amplitude", "restitution"),
+    ranges: Mapping[str, tuple[float, float]] | None = None,
+    points: int = 400,
+) -> SpecialCurve:
+    """The curve of special orbits through one of them, in two parameters, both ways.
+
+    Parameters
+    ----------
+    special : PeriodicOrbit
+        A special orbit of a branch, such as ``branch.first("saddle-node")``. From a period halving
+        the curve of the period doublings is followed with which it coincides.
+    along : tuple of two names or paths
+        As for `follow`.
+    ranges : mapping of names to (low, high), optional
+        Where the curve ends; without one at the limits of the parameter, for which a large value is
+        ten times that of the start, and at least 10.
+    points : int
+        The largest number of orbits in each direction.
+
+    Returns
+    -------
+    SpecialCurve
+
+    Raises
+    ------
+    OrbitNotFound
+        If the orbit is no special orbit from which a curve goes on.
+    ValueError
+        If a parameter is unknown or the orbit is outside the ranges.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, follow, orbit
+    >>> doubling = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8).first("period doubling")
+    >>> curve = special_curve(doubling, ranges={"amplitude": (0.5, 3.0), "restitution": (0.1, 1.0)})
+    >>> [each.kind for each in curve.special], curve.end
+    (['1:2 resonance'], 'restitution = 1 is reached')
+    """
+    system, z = _start(special, along)
+    limits = _limits(system.equations, z, special, ranges)
+    border = system.border(z)
+    first = system.solve(z, np.eye(len(z))[-1], border)
+    if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
+        raise OrbitNotFound(f"the orbit is no {system.kind}: the nearest one is elsewhere")
+    direction = first.tangent / np.linalg.norm(first.tangent)
+    forth = _half(system, *_march(system, first, direction, limits, points))
+    if forth.end == CLOSED:
+        back = _Half(first.z[np.newaxis], (), CLOSED)
+    else:
+        back = _half(system, *_march(system, first, -direction, limits, points))
+    z = np.concatenate([back.z[:0:-1], forth.z])
+    found = (*back.special[::-1], *forth.special)
+    return SpecialCurve(system.equations, z, found, back.end, forth.end, system.kind)
+
+
+CLOSED = "the curve is closed"
+
+
+class _Half(NamedTuple):
+    """One direction of a curve from its start."""
+
+    z: NDArray
+    special: tuple[PeriodicOrbit, ...]
+    end: str
+
+
+def _start(special: PeriodicOrbit, along) -> tuple[_System, NDArray]:
+    """The equations of special orbits along two parameters, and one of them."""
+    kind, ball, amplitude = special.kind, special.ball, special.amplitude
+    if kind not in KINDS:
+        raise OrbitNotFound(
+            f"kind = {kind!r}: a curve goes through a special orbit of a branch: {', '.join(KINDS)}"
+        )
+    paths = tuple(path_of(each, ball) for each in along)
+    if len({path.name for path in paths}) != 2:
+        raise ValueError(f"along = {along!r}: must be two different parameters")
+    equations = OrbitEquations(ball, special.impacts, special.periods, amplitude, paths)
+    values = [float(path.place(ball, amplitude)) for path in paths]
+    z = np.append(special.z[: equations.size], values)
+    if kind == "period halving":
+        halves, rows = halves_of(equations, z[np.newaxis])
+        return _System(replace(halves, periods=int(halves.periods)), "period doubling"), rows[0]
+    return _System(equations, kind), z
+
+
+def _limits(equations, z, special, ranges) -> NDArray:
+    """The ends of both parameters, shape (2, 2): the least and the greatest values."""
+    given, ends = dict(ranges or {}), []
+    for path, value in zip(equations.along, z[equations.size :], strict=True):
+        low, high = path.limits(special.ball, special.amplitude)
+        high = high if high <= 10 else min(high, max(10.0, 10 * value))
+        wanted = given.pop(path.name, (low, high))
+        low, high = (
+            max(low, wanted[0]),
+            min(path.limits(special.ball, special.amplitude)[1], wanted[1]),
+        )
+        if not low <= value <= high:
+            raise ValueError(f"{path.name} = {value:.10g} is not in its range, [{low:g}, {high:g}]")
+        ends.append((low, high))
+    if given:
+        names = " and ".join(path.name for path in equations.along)
+        raise ValueError(f"ranges: {', '.join(given)}: the parameters are {names}")
+    return np.array(ends).T
+
+
+def _march(system: _System, first: _Point, direction, limits, most: int) -> tuple[list, str]:
+    """The special orbits in one direction, and why there are no more.
+
+    The predictor is a parabola with the tangents at the last two points.
+    """
+    units = scales(system.equations, first.z[np.newaxis])[0]
+    here, ahead = first, direction / units / np.linalg.norm(direction / units)
+    points, length, bend = [first], FIRST_STEP, np.zeros(len(units))
+    tests = system.tests([first], system.ends)
+    while len(points) < most:
+        try:
+            guess = here.z + length * (ahead + length * bend) * units
+            point, end = _solved(system, here, guess, ahead / units, limits)
+            following = point.tangent / units / np.linalg.norm(point.tangent / units)
+            if not following @ ahead > STRAIGHT:
+                raise OrbitNotFound("the curve turns")
+        except OrbitNotFound:
+            length /= 2
+            if length < SHORTEST_STEP:
+                return points, f"no further {system.kind} is found"
+            continue
+        points.append(point)
+        new = system.tests([point], system.ends)
+        if end or any(tests[name] * new[name] < 0 for name in system.ends):
+            return points, end
+        if len(points) > 4 and np.linalg.norm((point.z - first.z) / units) < length:
+            return [*points, first], CLOSED
+        wider = scales(system.equations, point.z[np.newaxis])[0]
+        bend = (following - ahead) / (2 * length) * units / wider
+        if following @ ahead > 0.99:
+            length = min(1.5 * length, LONGEST_STEP)
+        here, tests, units = point, new, wider
+        ahead = point.tangent / units / np.linalg.norm(point.tangent / units)
+    return points, "all points are used"
+
+
+def _solved(system, here: _Point, guess, normal, limits) -> tuple[_Point, str]:
+    """The special orbit near a guess, or at the end of a range, and then the words for this end."""
+    size, paths = system.equations.size, system.equations.along
+    point = system.solve(guess, normal, here.border)
+    old, values = here.z[size:], point.z[size:]
+    outside = (values < limits[0]) | (values > limits[1])
+    if not outside.any():
+        return point, ""
+    bound = np.where(values < old, *limits)
+    share = np.where(outside, (bound - old) / (values - old), np.inf)
+    j = int(share.argmin())
+    guess = here.z + share[j] * (point.z - here.z)
+    guess[size + j] = bound[j]
+    normal = np.eye(len(guess))[size + j] * np.sign(values[j] - old[j])
+    return system.solve(guess, normal, here.border), f"{paths[j].name} = {bound[j]:.10g} is reached"
+
+
+def _half(system: _System, points: list[_Point], end: str) -> _Half:
+    """One direction of a curve with its points of codimension two, up to one where it ends."""
+    tests = system.tests(points, system.names)
+    last, final = (len(points), 0.0), None
+    for name in system.ends:
+        for i in _changes(tests[name]):
+            share, z = _located(system, name, points, i, 1.0)
+            last, final = min((last, final), ((i, share), (name, z)), key=lambda each: each[0])
+    found = []
+    for name in set(system.names) - set(system.ends):
+        values = tests[name]
+        if "resonance" in name:
+            resonant = np.abs(values) < RESONANT
+            values = np.where(resonant, 0.0, values)
+            if resonant[-1] and not resonant.all():
+                found.append((len(points) - 1, 0.0, name, points[-1].z))
+        for i in _changes(values):
+            if i <= last[0]:
+                upto = last[1] if i == last[0] else 1.0
+                share, z = _located(system, name, points, i, upto)
+                found.append((i, share, name, z))
+    z = np.array([point.z for point in points])
+    if final is not None:
+        name, row = final
+        end = f"{name}: {KINDS[name].end}"
+        z = z[: last[0] + 1]
+        if row is not None:
+            z = np.vstack([z, row])
+            found.append((*last, name, row))
+    found = sorted((each for each in found if each[3] is not None), key=lambda each: each[:2])
+    special = tuple(PeriodicOrbit(system.equations, row, name) for _, _, name, row in found)
+    return _Half(z, special, end)
+
+
+def _changes(values: NDArray) -> NDArray:
+    """The numbers of the steps in which a test changes its sign."""
+    return (values[1:] * values[:-1] < 0).nonzero()[0]
+
+
+def _located(system: _System, name: str, points: list[_Point], i: int, upto: float):
+    """The share of the step i at which a test is zero, and the orbit; or its end and None."""
+    here, chord = points[i], points[i + 1].z - points[i].z
+    normal = chord / (chord @ chord)
+    # The share is a linear function of z. The points before the step serve the predictor.
+    known = {normal @ (point.z - here.z): point for point in points[max(i - 3, 0) : i]}
+    known |= {0.0: here, 1.0: points[i + 1]}
+
+    def at(share):
+        if share in known:
+            return known[share]
+        guess = BarycentricInterpolator(list(known), [point.z for point in known.values()])(share)
+        try:
+            known[share] = system.solve(guess, normal, here.border, tolerance=1e-11)
+        except OrbitNotFound:
+            # Next to an end the equations are singular, but the curve is smooth.
+            if name not in system.ends:
+                raise
+            return here._replace(z=guess)
+        return known[share]
+
+    def test(share):
+        return system.tests([at(share)], [name])[name][0]
+
+    try:
+        share = brentq(test, 0.0, upto)
+    except (OrbitNotFound, ValueError):
+        # The orbits cannot be continued, or the test changes its sign behind `upto`.
+        return 1.0, None
+    # A clearance jumps to FAR where flights or contacts no longer turn back.
+    return (share, at(share).z) if abs(test(share)) < ZERO else (1.0, None)

@@ -1,0 +1,198 @@
+"""Pictures of branches of orbits and of curves of special orbits.
+
+Lines are solid where orbits are stable, dashed where they are not, and pale where no ball follows
+them; special orbits have marks. Nothing is drawn by pyplot, and nothing depends on the settings of
+the user, except in axes of his.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pieces, sample, style
+from bouncing_ball_beyond.continuation import FollowedBranch, scales
+from bouncing_ball_beyond.curves import SpecialCurve
+from bouncing_ball_beyond.equations import newton
+from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
+
+MARKS = {
+    "saddle-node": "o",
+    "period doubling": "s",
+    "period halving": "D",
+    "grazing of a flight": "^",
+    "grazing of a release": "v",
+    "grazing of an impact": "<",
+    "lost release": "X",
+    "cusp": "P",
+    "generalized period doubling": "*",
+    "1:1 resonance": "p",
+    "1:2 resonance": "h",
+}
+"""Marks of special orbits."""
+
+HEIGHT = 2.8
+"""Height of a figure in inches."""
+
+DECADES = 2
+"""An axis on which more powers of ten lie is logarithmic."""
+
+MARKED = 4
+"""Orbits with more impacts have no marks, which would hide their lines."""
+
+FINENESS = 0.04
+"""Distance of the orbits through which lines are drawn, in the units of the continuation."""
+
+
+def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure:
+    """Draw branches over what changes, or curves of special orbits over their two parameters.
+
+    Parameters
+    ----------
+    *found : FollowedBranch, SpecialCurve, or lists of them
+        All along the same parameters. The branches of a cascade are such a list.
+    quantity : str
+        What is drawn of a branch: a quantity of the dataset, such as "max_height". One of the
+        impacts has a line for each impact.
+    ax : matplotlib.axes.Axes, optional
+        Axes of a figure of yours.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ValueError
+        If there is no such quantity, or the branches are not along the same parameters.
+    """
+    branches = [each for group in found for each in _branches(group)]
+    along = {tuple(path.name for path in each.equations.along) for each in branches}
+    if len(along) != 1:
+        raise ValueError("plot needs branches, all along the same parameters")
+    names = *along.pop(), quantity
+    if quantity not in OF_IMPACTS and quantity != "max_height":
+        allowed = ", ".join(["max_height", *OF_IMPACTS])
+        raise ValueError(f"quantity = {quantity!r}: must be one of {allowed}")
+    with style():
+        axes = Figure(figsize=(WIDTH, HEIGHT)).subplots() if ax is None else ax
+        entries: dict[str, Any] = {}
+        lines: dict[str, Any] = {}
+        for branch, colour in zip(branches, colours(len(branches)), strict=True):
+            entries |= _draw(axes, branch, quantity, colour)
+            lines[_name(branch)] = sample(color=colour)
+        # First the kinds of lines, then the marks, then the branches.
+        entries = dict(sorted(entries.items(), key=lambda entry: entry[1].get_marker() != "None"))
+        entries |= lines if len(lines) > 1 else {}
+        axes.set_xlabel(_label(names[0]))
+        axes.set_ylabel(_label(names[1]))
+        axes.set_title(_title(branches))
+        _scale(axes)
+        if ax is None:
+            legend_below(axes.figure, entries, columns=3)
+        else:
+            axes.legend(entries.values(), entries.keys())
+    return axes.figure
+
+
+def _branches(group: Any) -> list[FollowedBranch]:
+    """One branch, or those of a list without the reasons why some were not found."""
+    if isinstance(group, FollowedBranch):
+        return [group]
+    return [each for each in group if isinstance(each, FollowedBranch)]
+
+
+def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dict[str, Any]:
+    """Draw one branch or curve; returns what a legend says of it."""
+    is_curve = isinstance(branch, SpecialCurve)
+    shown = branch if is_curve else _refined(branch)
+    orbits = with_special(shown)
+    whole = replace(shown, z=np.array([each.z for each in orbits]))
+    x, y = _coordinates(whole, quantity)
+    stable = np.ones(len(x), bool) if is_curve else whole.stable
+    looks = 2 * whole.admissible + stable
+    special = [i for i, each in enumerate(orbits) if each in branch.special]
+    for i in reversed(special):
+        looks[i] = looks[min(i + 1, len(x) - 1)]
+    entries = {}
+    for part in pieces(looks):
+        admissible, steady = divmod(int(looks[part.start]), 2)
+        look = {
+            "color": colour if admissible else pale(colour),
+            "linestyle": KINDS["stable" if steady else "unstable"],
+        }
+        axes.plot(x[part], y[part], **look)
+        kind = whole.kind if is_curve else ("stable" if steady else "unstable")
+        text = kind if admissible else f"{kind}, no ball follows"
+        entries[text] = sample(**look | {"color": "black" if admissible else pale("black")})
+    for i in special if whole.impacts <= MARKED else ():
+        mark = {"marker": MARKS[orbits[i].kind], "fillstyle": "none", "markersize": 4}
+        look = mark | {"linestyle": "none", "markeredgewidth": 1.0, "zorder": 4}
+        axes.plot(np.full(y[i].shape, x[i]), y[i], color=colour, **look)
+        entries[orbits[i].kind] = sample(**look)
+    return entries
+
+
+def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArray]:
+    """Abscissa (points,) and ordinates (points, lines)."""
+    if isinstance(branch, SpecialCurve):
+        return branch.z[:, -2], branch.z[:, -1:]
+    if quantity == "max_height":
+        return branch.values, branch.equations.max_height(branch.z)[:, np.newaxis]
+    y = np.array([np.atleast_1d(getattr(each, quantity)) for each in branch.orbits])
+    is_angle = OF_IMPACTS[quantity][2] == "rad"
+    return branch.values, np.unwrap(y, axis=0) / np.pi if is_angle else y
+
+
+def _refined(branch: FollowedBranch) -> FollowedBranch:
+    """The branch with further orbits in between, so that lines through them have no corners."""
+    if len(branch) < 2:
+        return branch
+    units = scales(branch.equations, branch.z[:-1])
+    chords = np.diff(branch.z, axis=0)
+    counts = np.ceil(np.linalg.norm(chords / units, axis=1) / FINENESS).astype(int).clip(1, 50)
+    which = np.repeat(np.arange(len(chords)), counts)
+    share = np.concatenate([np.arange(count) / count for count in counts])[:, np.newaxis]
+    guess = branch.z[which] + share * chords[which]
+    solution = newton(branch.equations, guess, (chords / units**2)[which])
+    good = solution.found | (share[:, 0] == 0)
+    z = np.where(share == 0, guess, solution.z)[good]
+    return replace(branch, z=np.concatenate([z, branch.z[-1:]]))
+
+
+def _scale(axes: Axes) -> None:
+    """Make axes logarithmic on which the data are positive and cover many powers of ten."""
+    data = axes.dataLim
+    for name, (low, high) in (("x", data.intervalx), ("y", data.intervaly)):
+        if low > 0 and high > 10**DECADES * low:
+            axes.set(**{f"{name}scale": "log"})
+
+
+def _label(name: str) -> str:
+    """The label of an axis."""
+    _, symbol, unit = (OF_IMPACTS | OF_ORBITS | PARAMETERS).get(name, (name, "", "1"))
+    symbol = f"{symbol}/π" if unit == "rad" else symbol
+    return f"{name} {symbol}".replace("_", " ").rstrip()
+
+
+def _name(branch: FollowedBranch) -> str:
+    """What a legend says of the colour of a branch."""
+    impacts, periods = branch.impacts, branch.periods
+    return f"{impacts} impact{'s'[: impacts - 1]} in {periods} period{'s'[: periods - 1]}"
+
+
+def _title(branches: list[FollowedBranch]) -> str:
+    """The parameters that do not change and are the same on all branches."""
+    first, last = branches[0].orbits[0].parameters, branches[0].orbits[-1].parameters
+    others = [each.orbits[0].parameters for each in branches]
+    same = {
+        name: value
+        for name, value in first.items()
+        if last[name] == value and all(each.get(name) == value for each in others)
+    }
+    texts = [f"{PARAMETERS.get(name, ('', name))[1]} = {value:.4g}" for name, value in same.items()]
+    counts = {_name(branch) for branch in branches}
+    return ", ".join([*(counts if len(counts) == 1 else []), *texts])

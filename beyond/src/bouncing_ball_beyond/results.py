@@ -1,0 +1,269 @@
+"""Orbits, branches and curves as labelled datasets, and back from them and their files.
+
+A dataset has a row for each orbit, along the dimension ``point``, with the quantities of each
+impact along ``impact`` and those of the orbit beside them; special orbits are rows with a
+``kind``, at their place among the others. It also has all unknowns of the equations, so that
+`read_orbits` makes the same orbits of it, of a part of it, and of a netCDF file.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from importlib import import_module
+from os import PathLike
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball_beyond.balls import Ball
+from bouncing_ball_beyond.continuation import FollowedBranch, scales
+from bouncing_ball_beyond.curves import SpecialCurve
+from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.orbits import PeriodicOrbit
+from bouncing_ball_beyond.paths import Path, path_of
+
+OF_IMPACTS = {
+    "phase": ("phase of the table as an impact starts", "φ", "rad"),
+    "release_phase": ("phase of the table at the end of the contact", "φ + D", "rad"),
+    "contact_duration": ("duration of the contact", "D", "1"),
+    "flight_time": ("duration of the flight after the contact", "", "1"),
+    "impact_velocity": ("velocity of the ball as an impact starts", "", "1"),
+    "bounce_velocity": ("velocity of the ball as the contact ends", "", "1"),
+    "relative_impact_velocity": ("relative velocity as an impact starts", "δ′", "1"),
+    "relative_bounce_velocity": ("relative velocity as the contact ends", "δ′", "1"),
+    "apparent_restitution": ("apparent restitution coefficient", "rₐ", "1"),
+}
+"""Quantities of the impacts: long name, symbol and unit."""
+
+OF_ORBITS = {
+    "max_height": ("greatest height of the ball", "", "1"),
+    "periods": ("periods of the table in one period of the orbit", "m", "1"),
+    "stable": ("whether neighbouring motions stay near", "", "1"),
+    "admissible": ("whether a ball follows the orbit", "", "1"),
+    "digits_left": ("certain decimal places of times and speeds", "", "1"),
+    "kind": ("kind of a special orbit, and empty for others", "", "1"),
+}
+"""Quantities of whole orbits."""
+
+PARAMETERS = {
+    "amplitude": ("amplitude of the table", "Λ", "1"),
+    "restitution": ("restitution coefficient", "r", "1"),
+    "frequency_ratio": ("frequency ratio", "ϖ", "1"),
+    "damping_ratio": ("damping ratio", "ζ", "1"),
+    "frequency": ("frequency of a table with a fixed stroke", "Ω/√(g/a)", "1"),
+}
+"""Parameters; those of laws have their names as long names."""
+
+Found = PeriodicOrbit | FollowedBranch | Sequence
+"""What a dataset is made of, and read as: an orbit, a branch or a curve, or a list of orbits."""
+
+
+# Datasets
+
+
+def to_dataset(found: Found) -> xr.Dataset:
+    """The dataset of an orbit, of a branch or curve with its special orbits, or of several orbits.
+
+    The orbits of a list have the same number of impacts and balls of one kind; what is no orbit in
+    it, such as an `OrbitNotFound`, is left out. ``to_netcdf`` of the dataset writes a file.
+
+    Raises
+    ------
+    ValueError
+        If the orbits do not fit into one dataset, or if there is none.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, orbit
+    >>> data = to_dataset(orbit(Rigid(0.5), amplitude=1.4))
+    >>> round(float(data.impact_velocity), 6), dict(data.sizes)
+    (-3.141593, {'point': 1, 'impact': 1, 'multiplier': 2})
+    """
+    orbits = _listed(found)
+    first = orbits[0]
+    along = [path.name for path in first.equations.along]
+    data = xr.Dataset(
+        attrs={
+            "source": "bouncing_ball_beyond",
+            "impacts": first.impacts,
+            "ball": json.dumps(described(first.ball)),
+            "along": json.dumps(along),
+            "form": type(found).__name__,
+        }
+    )
+    if isinstance(found, FollowedBranch):
+        data.attrs |= {"start": found.start, "end": found.end}
+    if isinstance(found, SpecialCurve):
+        data.attrs["kind"] = found.kind
+    for name, text in OF_IMPACTS.items():
+        values = np.array([np.atleast_1d(getattr(each, name)) for each in orbits])
+        data[name] = ("point", "impact"), values, _attributes(text)
+    for name, text in OF_ORBITS.items():
+        values = np.array([getattr(each, name) for each in orbits])
+        data[name] = "point", values, _attributes(text)
+    multipliers = np.array([each.multipliers for each in orbits])
+    for part, values in (("real", multipliers.real), ("imag", multipliers.imag)):
+        text = f"{part} part of the Floquet multiplier", "μ", "1"
+        data[f"multiplier_{part}"] = ("point", "multiplier"), values, _attributes(text)
+    unknowns = np.array([each.z[: each.equations.size] for each in orbits])
+    unknowns = unknowns.reshape(len(orbits), first.impacts, -1)
+    text = "time of the impact", "τ", "1"
+    data["impact_time"] = ("point", "impact"), unknowns[..., 0], _attributes(text)
+    if first.ball.lasts:
+        text = "duration of the contact in the time of its equations", "T", "1"
+        data["scaled_duration"] = ("point", "impact"), unknowns[..., 2], _attributes(text)
+    for name in first.parameters:
+        values = np.array([each.parameters[name] for each in orbits])
+        text = PARAMETERS.get(name, (name.replace("_", " "), "", "1"))
+        data[name] = "point", values, _attributes(text)
+    return data.set_coords(along)
+
+
+def _attributes(text: tuple[str, str, str]) -> dict[str, str]:
+    """Attributes of a variable."""
+    return dict(zip(("long_name", "symbol", "units"), text, strict=True))
+
+
+def _listed(found: Found) -> list[PeriodicOrbit]:
+    """All orbits in order, the special ones of a branch at their places."""
+    if isinstance(found, PeriodicOrbit):
+        return [found]
+    if isinstance(found, FollowedBranch):
+        return with_special(found)
+    orbits = [each for each in found if isinstance(each, PeriodicOrbit)]
+    if not orbits:
+        raise ValueError("there is no orbit to make a dataset of")
+    if len({each.impacts for each in orbits}) > 1:
+        counts = ", ".join(str(count) for count in sorted({each.impacts for each in orbits}))
+        raise ValueError(f"orbits with {counts} impacts: those of one dataset have the same number")
+    if len({(type(each.ball), *each.parameters) for each in orbits}) > 1:
+        raise ValueError(
+            "the orbits of one dataset have balls of one kind, and change along one path"
+        )
+    return orbits
+
+
+def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
+    """The orbits of a branch with its special orbits, each in the step where it makes no detour."""
+    orbits, units = list(branch.orbits), scales(branch.equations, branch.z)[0]
+    points = branch.z / units
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    for special in reversed(branch.special):
+        distance = np.linalg.norm(points - special.z / units, axis=1)
+        place = int(np.argmin(distance[:-1] + distance[1:] - steps)) if len(steps) else 0
+        orbits.insert(place + 1, special)
+    return orbits
+
+
+# Balls as texts
+
+
+def described(ball: Ball) -> dict[str, Any]:
+    """A ball as its class and its fields; a function among them is left out, with its name."""
+    text: dict[str, Any] = {"class": type(ball).__name__}
+    for field in fields(ball):
+        value = getattr(ball, field.name)
+        if isinstance(value, Ball):
+            text[field.name] = described(value)
+        elif callable(value):
+            text["function"] = getattr(value, "__name__", repr(value))
+        elif value is not None:
+            text[field.name] = value if isinstance(value, str) else float(value)
+    return text
+
+
+def ball_of(text: dict[str, Any]) -> Ball:
+    """The ball that was described.
+
+    Raises
+    ------
+    ValueError
+        If it had a function.
+    """
+    if "function" in text:
+        raise ValueError(
+            f"the ball is a {text['class']} with a function, {text['function']}: give it as ball="
+        )
+    values = {
+        name: ball_of(value) if isinstance(value, dict) else value for name, value in text.items()
+    }
+    kind = getattr(import_module("bouncing_ball_beyond"), values.pop("class"))
+    return kind(**values)
+
+
+def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) -> Found:
+    """The orbits of a dataset or of its file.
+
+    Parameters
+    ----------
+    source : xarray.Dataset or path of a netCDF file
+    ball : Ball, optional
+        A ball with a function that was written by its user, which is not in the file; its
+        parameters are.
+    along : ParameterPath, optional
+        A path that was written by its user.
+
+    Returns
+    -------
+    PeriodicOrbit, FollowedBranch, SpecialCurve, or list of PeriodicOrbit
+        What the dataset was made of.
+
+    Raises
+    ------
+    ValueError
+        If the dataset has no orbits, or if a ball or a path is missing.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, orbit
+    >>> one = orbit(Rigid(0.5), amplitude=1.4)
+    >>> read_orbits(to_dataset(one)).distance(one)
+    0.0
+    """
+    is_file = isinstance(source, str | PathLike)
+    data = xr.load_dataset(source) if is_file else source
+    name = f"{source}: " if is_file else ""
+    if not {"ball", "along", "form"} <= data.attrs.keys():
+        raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
+    ball = ball or ball_of(json.loads(data.attrs["ball"]))
+    paths = [_path(each, ball, along) for each in json.loads(data.attrs["along"])]
+    orbits = [_orbit_at(data.isel(point=i), ball, paths) for i in range(data.sizes["point"])]
+    form = data.attrs["form"]
+    if form == "PeriodicOrbit":
+        return orbits[0]
+    if form not in ("FollowedBranch", "SpecialCurve"):
+        return orbits
+    common = data.attrs.get("kind", "")
+    rows = [each for each in orbits if each.kind == common]
+    z = np.array([each.z for each in rows])
+    equations = rows[0].equations
+    special = [replace(each, equations=equations) for each in orbits if each.kind != common]
+    given = equations, z, tuple(special), data.attrs["start"], data.attrs["end"]
+    return SpecialCurve(*given, common) if form == "SpecialCurve" else FollowedBranch(*given)
+
+
+def _path(name: str, ball: Ball, given: Path | None) -> Path:
+    """The path of a name, or the given one if that is its name."""
+    if given is not None and given.name == name:
+        return given
+    try:
+        return path_of(name, ball)
+    except ValueError:
+        raise ValueError(
+            f"the orbits are on a path {name!r} of their user: give it as along="
+        ) from None
+
+
+def _orbit_at(row: xr.Dataset, ball: Ball, paths: list[Path]) -> PeriodicOrbit:
+    """The orbit of one row."""
+    columns = [row.impact_time.values, -row.relative_impact_velocity.values]
+    if ball.lasts:
+        columns.append(row.scaled_duration.values)
+    here = ball.at(**{name: float(row[name]) for name in ball.parameters})
+    amplitude, periods = float(row.amplitude), int(row.periods)
+    equations = OrbitEquations(here, len(columns[0]), periods, amplitude, tuple(paths))
+    values = [float(row[path.name]) for path in paths]
+    return PeriodicOrbit(
+        equations, np.append(np.stack(columns, axis=-1), values), str(row.kind.values)
+    )

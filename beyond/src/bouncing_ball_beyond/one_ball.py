@@ -1,0 +1,386 @@
+r"""One ball from impact to impact: first landings and first releases as scalar loops.
+
+Both are first zeros of functions that are positive until then. Let f ≥ 0, with f″ ≥ -K from now on
+and \|f‴\| ≤ J. Then ::
+
+    f(t + h) ≥ f + f′h - B h²/2    for h ≤ H,    B = min(K, J H/3 - f″)
+
+so that no zero lies before the root of this parabola, with H = ∞, B = K, or with any other reach H.
+Steps to such roots never pass a zero, and converge to a simple one with third order. A double zero
+slows them down and does not mislead them.
+
+The functions are plain Python. Where numba is installed it compiles them, which gives the same
+numbers. They are in one file because numba's cache notices only changes of the file of the function
+that is called. Many balls are followed side by side in :mod:`bouncing_ball_beyond.simulation`.
+"""
+
+import math
+
+try:
+    from numba import njit
+except ImportError:
+
+    def compiled(function):
+        """Without numba the functions remain as they are."""
+        return function
+else:
+    compiled = njit(cache=True)
+
+TURN = 2 * math.pi
+REACH = 4.0
+"""The reach H of the second bound, in steps of the first one."""
+PATIENCE = 100 * TURN
+"""A contact without a release for this long is a lasting one."""
+CHATTER = 1e-5
+"""Chattering is summed up once Λ T₀ and T₀ are below this multiple of the gravity on the table: the
+sum has a relative error of the order of the square, so that an absolute error of 1e-15 is left."""
+STEPS = 20_000
+"""Steps after which a search ends as undecided. Each of them is a considerable part of the shortest
+time scale, so that these are hundreds of oscillations."""
+ROUNDING = 2.0**-52
+COLUMNS = ("turns", "phase", "speed", "own_time", "duration", "bounce_speed", "flight_time")
+"""What is recorded of each impact: the number of turns of the table and its phase τ as the impact
+starts, the closing speed u, T, the duration D, the relative speed w as it ends, and the time of
+flight that follows."""
+
+
+@compiled
+def root_of_parabola(f, slope, bend):
+    """The first h > 0 at which f + f′h - B h²/2 vanishes, for f ≥ 0; infinity if there is none."""
+    square = slope * slope + 2 * bend * f
+    if square < 0:
+        return math.inf
+    if slope < 0:
+        return 2 * f / (math.sqrt(square) - slope)
+    if bend > 0:
+        return (slope + math.sqrt(square)) / bend
+    return math.inf
+
+
+@compiled
+def safe_step(t, f, slope, second, bend, jerk):
+    """A step from the time t that passes no zero of f, and whether it ends there; K and J are
+    ``bend`` and ``jerk``.
+
+    The parabola with f″ itself is off by J h³/6 at most, and its zero by this over the slope.
+    """
+    step = root_of_parabola(f, slope, bend)
+    reach = REACH * step
+    step = max(step, min(reach, root_of_parabola(f, slope, min(bend, jerk * reach / 3 - second))))
+    if slope < 0 and jerk * step * step * step <= ROUNDING * -slope * t:
+        return root_of_parabola(f, slope, -second), True
+    return step, step <= ROUNDING * t
+
+
+@compiled
+def flight(t, gap, w, x, y):
+    """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and Λ sin τ = y.
+
+    Written with 1 - cos t and t - sin t, from tan t/2, short flights lose no digits.
+    """
+    half = math.tan(t / 2)
+    sine = 2 * half / (1 + half * half)
+    versine = half * sine
+    position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
+    rate = (w - t) + (y * sine + x * versine)
+    return position, rate, (y - 1) + (x * sine - y * versine)
+
+
+@compiled
+def rise(gap, w, x, y, amplitude, kappa):
+    """The time at which a ball that was released below the level of the table is above it, or at
+    which its contact resumes: whether it does, and this time.
+
+    A contact resumes where f = δ + κδ′ falls back to zero. As long as f > 0 no ball falls through
+    the level, because δ = 0 and δ′ < 0 exclude this.
+    """
+    forcing = amplitude * math.sqrt(1 + kappa * kappa)
+    t = 0.0
+    for _ in range(STEPS):
+        position, rate, second = flight(t, gap, w, x, y)
+        if position >= 0:
+            return False, t
+        # The fourth derivative of δ is -Λ sin τ = -(1 + δ″), and the third one Λ cos τ.
+        third = x * math.cos(t) - y * math.sin(t)
+        f = position + kappa * rate
+        slope = rate + kappa * second
+        if t > 0 and f <= 0:
+            return True, t
+        f = max(f, 0.0)
+        step, last = safe_step(t, f, slope, second + kappa * third, 1 + forcing, forcing)
+        t += step
+        if last:
+            return True, t
+    return True, math.nan
+
+
+@compiled
+def emergence(gap, w, x, y, amplitude):
+    """The time at which a ball that starts below the level of the table rises through it; infinity
+    if it falls back before.
+    """
+    t = 0.0
+    while True:
+        position, rate, second = flight(t, gap, w, x, y)
+        if position >= 0:
+            return t
+        if rate <= 0:
+            return math.inf
+        step, last = safe_step(t, -position, -rate, -second, 1 + amplitude, amplitude)
+        t += step
+        if last:
+            return t
+
+
+@compiled
+def earliest(w, x, y, amplitude):
+    """A time before which a ball that leaves the level of the table has certainly not landed.
+
+    It is the time of flight against the greatest gravity, 1 + Λ. Where the table falls away, with Y
+    ≥ 1, it is the zero of δ ≥ w s + (Y - 1) s²/2 + X s³/6 - Λ s⁴/24 without its first term.
+    """
+    if y < 1:
+        return 2 * w / (1 + amplitude)
+    fall = y - 1
+    left = (2 * x + math.sqrt(4 * x * x + 12 * amplitude * fall)) / amplitude
+    return max(2 * w / (1 + amplitude), left)
+
+
+@compiled
+def landing(start, gap, w, x, y, amplitude):
+    """The time of the first landing after the time ``start``, before which there is certainly none,
+    and the closing speed.
+
+    The ball cannot land while it is above the highest point of the table, and this part is skipped.
+    """
+    absolute = w + x
+    square = absolute * absolute + 2 * (gap + (y - amplitude))
+    aloft = math.sqrt(max(square, 0.0))
+    t = start
+    for _ in range(STEPS):
+        if absolute - aloft <= t < absolute + aloft:
+            t = absolute + aloft
+        position, rate, second = flight(t, gap, w, x, y)
+        if position <= 0 and rate <= 0:
+            return t, -rate
+        position = max(position, 0.0)
+        step, last = safe_step(t, position, rate, second, 1 + amplitude, amplitude)
+        if last:
+            third = x + w - t - rate
+            return t + step, max(-rate - step * (second + step * third / 2), 0.0)
+        t += step
+    return math.nan, math.nan
+
+
+@compiled
+def contact(s, gap, u, x, y, ratio, zeta):
+    """δ, δ′ and δ″ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1.
+
+    The responses at rest are g to an impulse, G to a constant force, and h = Q + iP to e^{is}::
+
+        G = (1 - g′ - 2ζϖg)/ϖ²,    h = (e^{is} - g′ - (i + 2ζϖ) g)/(ϖ² - 1 + 2iζϖ)
+    """
+    loss = 2 * zeta * ratio
+    stiffness = ratio * ratio
+    detuning = (ratio - 1) * (ratio + 1)
+    omega = ratio * math.sqrt((1 - zeta) * (1 + zeta))
+    half = math.tan(s / 2)
+    sine = 2 * half / (1 + half * half)
+    cosine = 1 - half * sine
+    swing = math.tan(omega * s / 2)
+    swung = 2 * swing / (1 + swing * swing)
+    decay = math.exp(-zeta * ratio * s)
+    g = decay * swung / omega
+    slope = decay * (1 - swing * swung) - zeta * ratio * g
+    held = slope + loss * g
+    real = cosine - held
+    imaginary = sine - g
+    scale = detuning * detuning + loss * loss
+    in_phase = (real * detuning + imaginary * loss) / scale
+    quadrature = (imaginary * detuning - real * loss) / scale
+    position = gap * held - u * g - (1 - held) / stiffness + y * in_phase + x * quadrature
+    rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
+    push = y * cosine + x * sine - 1
+    return position, rate, push - loss * rate - stiffness * position
+
+
+@compiled
+def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
+    r"""The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero;
+    infinity if it lasts.
+
+    What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² = F′² +
+    ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
+
+        \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
+    """
+    loss = 2 * zeta * ratio
+    stiffness = ratio * ratio
+    detuning = (ratio - 1) * (ratio + 1)
+    scale = detuning * detuning + loss * loss
+    steady = amplitude * math.sqrt((1 + kappa * kappa) / scale)
+    # The steady response of δ + κδ′ is a Λ sin + b Λ cos of the phase of the table.
+    a = (detuning + kappa * loss) / scale
+    b = (kappa * detuning - loss) / scale
+    growth = math.sqrt(1 + 4 * zeta * zeta)
+    s = 0.0
+    while s < PATIENCE:
+        position, rate, second = contact(s, gap, u, x, y, ratio, zeta)
+        push = second + loss * rate + stiffness * position + 1
+        shove = x * math.cos(s) - y * math.sin(s)
+        third = shove - loss * second - stiffness * rate
+        f = -position - kappa * rate
+        slope = -rate - kappa * second
+        if s > 0 and f <= 0:
+            return s
+        free = f + a * push + b * shove - 1 / stiffness
+        free_rate = slope + a * shove - b * push
+        energy = math.sqrt(free_rate * free_rate + stiffness * free * free)
+        if energy / ratio + steady <= 1 / stiffness:
+            return math.inf
+        bend = ratio * growth * energy
+        jerk = ratio * math.sqrt(1 + growth * growth) * bend + steady
+        f = max(f, 0.0)
+        step, last = safe_step(s, f, slope, -second - kappa * third, bend + steady, jerk)
+        s += step
+        if last:
+            return s
+    return math.inf
+
+
+@compiled
+def slowest(amplitude):
+    """A speed above which no bounces are summed up, because T₀ > 2w/g and g ≤ 1 + Λ; above it
+    :func:`settling` need not be called.
+    """
+    return CHATTER * (1 + amplitude) * (1 + amplitude)
+
+
+@compiled
+def settling(w, r, x, y, amplitude):
+    """The time in which the bounces after an impact end on the table, -1 if they are not summed up.
+
+    With the gravity g = 1 - Y on the table and its rate of change g′ = -X, the infinitely many
+    bounces take ::
+
+        T = T₀ (1 - g′T₀/(3g) + ...),    T₀ = 2w/(g (1 - r))
+    """
+    gravity = 1 - y
+    if gravity < 0 or (gravity == 0 and x > 0):
+        return -1.0
+    if w == 0:
+        return 0.0
+    whole = 2 * w
+    loss = gravity * (1 - r)
+    if whole * max(amplitude, 1.0) > CHATTER * gravity * loss:
+        return -1.0
+    whole /= loss
+    return whole * (1 + x * whole / (3 * gravity))
+
+
+@compiled
+def until_lift_off(phase, amplitude):
+    """How long a ball that rests on the table stays there: until Λ sin τ rises to 1, or for ever
+    (Eq. 9).
+    """
+    if amplitude <= 1:
+        return math.inf
+    wait = (math.asin(1 / amplitude) - phase) % TURN
+    # Rounding must not postpone the lift-off by a turn.
+    return 0.0 if wait > TURN - CHATTER**2 else wait
+
+
+@compiled
+def rest(gap, w, restitution, phase, amplitude):
+    """How long a ball rests on the table after an instantaneous impact, with the bounces before; -1
+    if it leaves.
+
+    It rests if its bounces end, or if it does not rise from a gap δ < 0 through the level of the
+    table.
+    """
+    x = amplitude * math.cos(phase)
+    y = amplitude * math.sin(phase)
+    if gap == 0:
+        settled = settling(w, restitution, x, y, amplitude)
+    elif emergence(gap, w, x, y, amplitude) == math.inf:
+        settled = 0.0
+    else:
+        settled = -1.0
+    if settled < 0:
+        return -1.0
+    return settled + until_lift_off(phase + settled, amplitude)
+
+
+@compiled
+def reduced(phase):
+    """The number of turns of the table in a phase, and what is left of it, from -π to π."""
+    turns = float(math.floor(phase / TURN + 0.5))
+    return turns, phase - turns * TURN
+
+
+@compiled
+def bounce(turns, phase, u, amplitude, restitution, out):
+    """Impacts of a ball with a restitution coefficient into the rows of ``out``: what the ball does
+    after them, and the turns, the phase and the closing speed of the impact that follows.
+    """
+    slow = slowest(amplitude)
+    for i in range(len(out)):
+        x = amplitude * math.cos(phase)
+        y = amplitude * math.sin(phase)
+        w = restitution * u
+        stay = -1.0
+        if w <= slow:
+            stay = rest(0.0, w, restitution, phase, amplitude)
+        if stay >= 0:
+            w = 0.0
+        out[i] = turns, phase, u, 0.0, max(stay, 0.0), w, math.nan
+        if stay == math.inf:
+            return True, turns, phase, u
+        if stay >= 0:
+            passed, phase = reduced(phase + stay)
+            turns += passed
+            # The state at the lift-off is the same each time, so that later motions are too.
+            phase = math.asin(1 / amplitude)
+            x = math.sqrt((amplitude - 1) * (amplitude + 1))
+            y = 1.0
+        fly, u = landing(earliest(w, x, y, amplitude), 0.0, w, x, y, amplitude)
+        out[i, 6] = fly
+        passed, phase = reduced(phase + fly)
+        turns += passed
+    return False, turns, phase, u
+
+
+@compiled
+def press(turns, phase, u, amplitude, ratio, zeta, kappa, out):
+    """The same for a spring and a damper with ζ < 1; where a contact resumes, u is negative."""
+    for i in range(len(out)):
+        x = amplitude * math.cos(phase)
+        y = amplitude * math.sin(phase)
+        gap = kappa * min(u, 0.0)
+        duration = release(gap, u, x, y, amplitude, ratio, zeta, kappa)
+        if duration == math.inf:
+            out[i] = turns, phase, u, math.nan, duration, math.nan, math.nan
+            return True, turns, phase, u
+        gap, w, _ = contact(duration, gap, u, x, y, ratio, zeta)
+        out[i] = turns, phase, u, duration * ratio, duration, w, math.nan
+        passed, phase = reduced(phase + duration)
+        turns += passed
+        x = amplitude * math.cos(phase)
+        y = amplitude * math.sin(phase)
+        resumes = False
+        if kappa > 0:
+            gap = -kappa * w
+            resumes, start = rise(gap, w, x, y, amplitude, kappa)
+        else:
+            gap = 0.0
+            w = max(w, 0.0)
+            start = earliest(w, x, y, amplitude)
+        if resumes:
+            fly = start
+            u = -flight(fly, gap, w, x, y)[1]
+        else:
+            fly, u = landing(start, gap, w, x, y, amplitude)
+        out[i, 6] = fly
+        passed, phase = reduced(phase + fly)
+        turns += passed
+    return False, turns, phase, u

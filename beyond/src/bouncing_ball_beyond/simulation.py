@@ -1,0 +1,772 @@
+"""Balls that are simulated from impact to impact, side by side, and their motions over time.
+
+A ball of the restitution model or of a spring and damper is followed by the scalar loops of
+:mod:`.one_ball`, and many balls, as well as those of other contacts, by the same steps on arrays. A
+ball whose bounces end on the table, or that does not rise above it, rests there until Λ sin τ rises
+to 1, or for ever if Λ ≤ 1 (Eq. 9).
+"""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import elementwise
+
+from bouncing_ball_beyond import one_ball
+from bouncing_ball_beyond.balls import Ball, Corrected, H, Rigid, SpringDamper
+from bouncing_ball_beyond.one_ball import COLUMNS, PATIENCE, REACH, ROUNDING, STEPS, TURN
+
+FEW = 40
+"""Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
+scalar ones."""
+AT_ONCE = 256
+MOST_IMPACTS = 1_000_000
+"""The number of impacts of a ball that :func:`history` follows, and of those after which it looks
+at the time."""
+TINY = 1e-300
+UNDERDAMPED = 0.99
+"""Contacts with a larger ζ are followed on arrays as well."""
+DELICATE = 0.25
+"""Contacts whose |ϖ² - 1 + 2iζϖ| is below this are followed on arrays: terms of their closed form
+cancel."""
+
+
+class Landings(NamedTuple):
+    """The time of flight up to first landings and the closing speeds there."""
+
+    time: np.ndarray
+    speed: np.ndarray
+
+
+class Leaving(NamedTuple):
+    """How balls leave the table.
+
+    ``own_time`` and ``duration`` are T and D of the impacts; D is infinite for a ball that stays.
+    ``turns`` and ``phase`` are those of the table at the end, ``gap`` and ``speed`` are δ and δ′
+    there.
+    """
+
+    own_time: np.ndarray
+    duration: np.ndarray
+    turns: np.ndarray
+    phase: np.ndarray
+    gap: np.ndarray
+    speed: np.ndarray
+
+
+@dataclass(frozen=True)
+class Balls:
+    """A row of balls, each before its next impact.
+
+    ``turns`` and ``phase`` are the whole turns of the table and its phase there, so that the phase
+    of a late impact has all digits, and ``speed`` is u. Parameters of the ball are numbers, or
+    arrays over the row.
+    """
+
+    ball: Ball
+    amplitude: np.ndarray
+    turns: np.ndarray
+    phase: np.ndarray
+    speed: np.ndarray
+
+    def take(self, which):
+        """Some of the balls, by a mask or their indices."""
+        rows = {name: value[which] for name, value in vars(self).items() if name != "ball"}
+        return Balls(ball=some_of(self.ball, which), **rows)
+
+
+def some_of(ball, which):
+    """The ball with the entries of its array parameters that belong to some of the rows."""
+    arrays = {name: value[which] for name, value in ball.parameters.items() if np.ndim(value)}
+    return ball.at(**arrays) if arrays else ball
+
+
+def root_of_parabola(f, slope, bend):
+    """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is none."""
+    root = np.sqrt(slope * slope + 2 * bend * f)
+    falls = slope < 0
+    # The quotient without a difference of nearly equal numbers.
+    part = np.where(falls, 2 * f, root + slope)
+    return part / np.where(falls, root - slope, np.maximum(bend, 0.0))
+
+
+def safe_steps(t, f, slope, second, bend, jerk):
+    """:func:`.one_ball.safe_step` for arrays."""
+    step = root_of_parabola(f, slope, bend)
+    reach = REACH * step
+    closer = root_of_parabola(f, slope, np.minimum(bend, jerk / 3 * reach - second))
+    step = np.maximum(step, np.fmin(reach, closer))
+    near = jerk * step * step * step <= -ROUNDING * slope * t
+    if near.any():
+        step[near] = root_of_parabola(f[near], slope[near], -second[near])
+    return step, near | (step <= ROUNDING * t)
+
+
+def flights(t, gap, w, x, y):
+    """:func:`.one_ball.flight` for arrays."""
+    half = np.tan(t / 2)
+    sine = 2 * half / (1 + half * half)
+    versine = half * sine
+    position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
+    rate = (w - t) + (y * sine + x * versine)
+    return position, rate, (y - 1) + (x * sine - y * versine)
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def landings(start, gap, w, x, y, amplitude):
+    """:func:`.one_ball.landing` for arrays of one shape."""
+    given = start, gap, w, x, y, amplitude
+    absolute = w + x
+    aloft = np.sqrt(np.maximum(absolute * absolute + 2 * (gap + (y - amplitude)), 0.0))
+    rows = np.array([*given, absolute - aloft, absolute + aloft])
+    time = np.empty_like(start)
+    speed = np.empty_like(start)
+    left = np.arange(start.size)
+    while left.size >= FEW:
+        t, gap, w, x, y, amplitude, ascent, descent = rows
+        t = np.where((ascent <= t) & (t < descent), descent, t)
+        position, rate, second = flights(t, gap, w, x, y)
+        f = np.maximum(position, 0.0)
+        step, last = safe_steps(t, f, rate, second, 1 + amplitude, amplitude)
+        down = (position <= 0) & (rate <= 0)
+        step[down] = 0.0
+        last |= down
+        rows[0] = t + step
+        if last.any():
+            third = x + w - t - rate
+            slowed = -rate - step * (second + step * third / 2)
+            time[left] = rows[0]
+            speed[left] = np.maximum(slowed, 0.0)
+            (going,) = (~last).nonzero()
+            left = left[going]
+            rows = rows.take(going, axis=1)
+    for i in left:
+        time[i], speed[i] = one_ball.landing(*(each[i] for each in given))
+    return Landings(time, speed)
+
+
+def instants(ball, landed, gap, w, x, y, amplitude):
+    r"""The times after landings at which the gap is that at which impacts of the ball start, and
+    the speeds.
+
+    f = δ - h(u) with the gap h(u) at the start has f″ ≥ -(1 + Λ)(1 + \|h′\|) if h′ is constant, as
+    it is for the instants of a linear contact.
+    """
+    t = landed.copy()
+    speed = np.empty_like(t)
+    for _ in range(STEPS):
+        position, rate, second = flights(t, gap, w, x, y)
+        start = ball.start(-rate + 1j * H)
+        slope_of_start = start.imag / H
+        f = position - start.real
+        slope = rate + slope_of_start * second
+        bend = (1 + amplitude) * (1 + np.abs(slope_of_start))
+        step = root_of_parabola(np.maximum(f, 0.0), slope, bend)
+        speed = -rate
+        if not np.any(step > 4 * ROUNDING * t):
+            break
+        t += step
+    return Landings(t, speed)
+
+
+def contacts(s, gap, u, x, y, ratio, zeta):
+    """:func:`.one_ball.contact` for arrays: δ, δ′, the height of the table and its velocity."""
+    loss = 2 * zeta * ratio
+    stiffness = ratio * ratio
+    detuning = (ratio - 1) * (ratio + 1)
+    omega = ratio * np.sqrt((1 - zeta) * (1 + zeta))
+    half = np.tan(s / 2)
+    sine = 2 * half / (1 + half * half)
+    cosine = 1 - half * sine
+    swing = np.tan(omega * s / 2)
+    swung = 2 * swing / (1 + swing * swing)
+    decay = np.exp(-zeta * ratio * s)
+    g = decay * swung / omega
+    slope = decay * (1 - swing * swung) - zeta * ratio * g
+    held = slope + loss * g
+    real = cosine - held
+    imaginary = sine - g
+    scale = detuning * detuning + loss * loss
+    in_phase = (real * detuning + imaginary * loss) / scale
+    quadrature = (imaginary * detuning - real * loss) / scale
+    position = gap * held - u * g - (1 - held) / stiffness + y * in_phase + x * quadrature
+    rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
+    return position, rate, y * cosine + x * sine, x * cosine - y * sine
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def releases(ball, phase, u, amplitude):
+    """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
+    releases: :func:`.one_ball.release` for arrays.
+    """
+    given = ball.start(u), u, amplitude * np.cos(phase), amplitude * np.sin(phase), amplitude
+    parameters = np.broadcast_arrays(u, ball.frequency_ratio, ball.zeta, ball.kappa)[1:]
+    rows = np.array([0 * u, *given])
+    duration = np.full(u.shape, np.inf)
+    speed = np.full(u.shape, np.nan)
+    left = np.arange(u.size)
+    while left.size >= FEW:
+        ratio, zeta, kappa = ball.frequency_ratio, ball.zeta, ball.kappa
+        loss = 2 * zeta * ratio
+        stiffness = ratio * ratio
+        detuning = (ratio - 1) * (ratio + 1)
+        scale = detuning * detuning + loss * loss
+        a = (detuning + kappa * loss) / scale
+        b = (kappa * detuning - loss) / scale
+        growth = 1 + 4 * zeta * zeta
+        s, gap, u, x, y, amplitude = rows
+        position, rate, push, shove = contacts(s, gap, u, x, y, ratio, zeta)
+        second = push - 1 - loss * rate - stiffness * position
+        third = shove - loss * second - stiffness * rate
+        f = -position - kappa * rate
+        slope = -rate - kappa * second
+        steady = amplitude * np.sqrt((1 + kappa * kappa) / scale)
+        free = f + a * push + b * shove - 1 / stiffness
+        free_rate = slope + a * shove - b * push
+        energy = np.sqrt(free_rate * free_rate + stiffness * free * free)
+        bend = ratio * np.sqrt(growth) * energy
+        jerk = ratio * np.sqrt(1 + growth) * bend + steady
+        above = np.maximum(f, 0.0)
+        step, last = safe_steps(s, above, slope, -second - kappa * third, bend + steady, jerk)
+        over = (f <= 0) & (s > 0)
+        step[over] = 0.0
+        last |= over
+        rows[0] = s + step
+        done = last | (energy / ratio + steady <= 1 / stiffness) | (s > PATIENCE)
+        if done.any():
+            released = left[last]
+            duration[released] = rows[0, last]
+            speed[released] = (rate + step * (second + step * third / 2))[last]
+            (going,) = (~done).nonzero()
+            left = left[going]
+            rows = rows.take(going, axis=1)
+            ball = some_of(ball, going)
+    for i in left:
+        gap, u, x, y, amplitude = (each[i] for each in given)
+        ratio, zeta, kappa = (each[i] for each in parameters)
+        duration[i] = one_ball.release(gap, u, x, y, amplitude, ratio, zeta, kappa)
+        if duration[i] < np.inf:
+            speed[i] = one_ball.contact(duration[i], gap, u, x, y, ratio, zeta)[1]
+    return duration, speed
+
+
+def has_closed_form(ball):
+    """Whether :func:`.one_ball.press` and :func:`releases` follow the contacts of a ball."""
+    if not isinstance(ball, SpringDamper):
+        return False
+    detuning = ball.frequency_ratio**2 - 1
+    loss = 2 * ball.zeta * ball.frequency_ratio
+    far = detuning * detuning + loss * loss >= DELICATE**2
+    return bool(np.all(far & (ball.zeta <= UNDERDAMPED)))
+
+
+def leave(balls):
+    """How balls leave the table after their impacts."""
+    ball, amplitude, u = balls.ball, balls.amplitude, balls.speed
+    if has_closed_form(ball):
+        duration, w = releases(ball, balls.phase, u, amplitude)
+        own_time = np.where(duration < np.inf, duration * ball.frequency_ratio, np.nan)
+    else:
+        own_time = ball.first_release(balls.phase, u, amplitude)
+        duration, gap, w, _ = ball.contact(balls.phase, u, own_time, amplitude)
+        duration = np.where(np.isnan(own_time), np.inf, duration)
+    if not ball.lasts:
+        return rest(balls, gap, w)
+    if isinstance(ball, SpringDamper):
+        # The release is a zero of δ + κδ′, but for rounding.
+        gap = -ball.kappa * w
+    ends = np.where(duration < np.inf, balls.phase + duration, 0.0)
+    turns, phase = reduced(ends)
+    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
+
+
+def rest(balls, gap, w):
+    """How balls leave after instantaneous impacts with δ and δ′, some of them after a rest on the
+    table.
+    """
+    amplitude = balls.amplitude
+    strongest = 1 + amplitude
+    slow = (gap == 0) & (w <= one_ball.slowest(amplitude))
+    sinks = (gap < 0) & ((w <= 0) | (w * w + 2 * strongest * gap <= 0))
+    duration = np.zeros(w.shape)
+    turns, phase = balls.turns, balls.phase
+    (candidates,) = (slow | sinks).nonzero()
+    if not candidates.size:
+        return Leaving(duration, duration, turns, phase, gap, w)
+    duration[candidates] = [
+        one_ball.rest(gap[i], w[i], w[i] / max(balls.speed[i], TINY), phase[i], amplitude[i])
+        for i in candidates
+    ]
+    rests = candidates[duration[candidates] >= 0]
+    duration = np.maximum(duration, 0.0)
+    gap, w, phase, turns = gap.copy(), w.copy(), phase.copy(), turns.copy()
+    gap[rests] = 0.0
+    w[rests] = 0.0
+    turns[rests] += reduced(phase[rests] + duration[rests])[0]
+    phase[rests] = np.arcsin(1 / np.maximum(amplitude[rests], 1.0))
+    return Leaving(0 * duration, duration, turns, phase, gap, w)
+
+
+def reduced(phase):
+    """:func:`.one_ball.reduced` for arrays."""
+    turns = np.floor(phase / TURN + 0.5)
+    return turns, phase - turns * TURN
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def fly(balls, leaving):
+    """The flights of balls up to their next impacts."""
+    ball, amplitude, gap, w = balls.ball, balls.amplitude, leaving.gap, leaving.speed
+    x = amplitude * np.cos(leaving.phase)
+    y = amplitude * np.sin(leaving.phase)
+    # A ball without a speed leaves because the table falls away: Y ≥ 1, but for rounding.
+    y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)
+    strongest = 1 + amplitude
+    at_level = np.sqrt(np.maximum(w * w + 2 * strongest * gap, 0.0))
+    start = (w + at_level) / strongest
+    fall = np.maximum(y - 1, 0.0)
+    left_behind = (2 * x + np.sqrt(4 * x * x + 12 * amplitude * fall)) / amplitude
+    start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
+    kappa = np.broadcast_to(ball.kappa, w.shape)
+    resumes = np.zeros(w.shape, bool)
+    slow = (gap < 0) & ((w < 0) | (at_level <= kappa * strongest))
+    for i in slow.nonzero()[0]:
+        given = gap[i], w[i], x[i], y[i], amplitude[i]
+        if ball.lasts:
+            resumes[i], start[i] = one_ball.rise(*given, kappa[i])
+        else:
+            start[i] = one_ball.emergence(*given)
+    landed, speed = landings(start, gap, w, x, y, amplitude)
+    if resumes.any():
+        landed[resumes] = start[resumes]
+        speed[resumes] = -flights(*(each[resumes] for each in (start, gap, w, x, y)))[1]
+    if isinstance(ball, Corrected):
+        return instants(ball, landed, gap, w, x, y, amplitude)
+    return Landings(landed, speed)
+
+
+def step(balls):
+    """One impact of each ball, and the flight after it.
+
+    Returns
+    -------
+    record : ndarray, shape (7, balls)
+        The columns of :data:`.one_ball.COLUMNS`.
+    going : ndarray of int
+        The indices of the balls that leave the table.
+    after : Balls
+        These, before their next impacts.
+    """
+    leaving = leave(balls)
+    (going,) = (leaving.duration < np.inf).nonzero()
+    before = (
+        balls.turns,
+        balls.phase,
+        balls.speed,
+        leaving.own_time,
+        leaving.duration,
+        leaving.speed,
+    )
+    record = np.full((len(COLUMNS), balls.phase.size), np.nan)
+    record[:-1] = before
+    if going.size < balls.phase.size:
+        balls = balls.take(going)
+        leaving = Leaving(*(each[going] for each in leaving))
+    landed = fly(balls, leaving)
+    record[-1, going] = landed.time
+    turns, phase = reduced(leaving.phase + landed.time)
+    after = replace(balls, turns=leaving.turns + turns, phase=phase, speed=landed.speed)
+    return record, going, after
+
+
+def follow_each(balls, run, parameters, impacts):
+    """:func:`follow` for some balls, one after the other, by a scalar loop with these parameters of
+    the ball.
+    """
+    state = balls.turns, balls.phase, balls.speed, balls.amplitude, *parameters
+    record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
+    ends = []
+    for j, given in enumerate(zip(*np.broadcast_arrays(*state), strict=True)):
+        out = np.full((impacts, len(COLUMNS)), np.nan)
+        ends.append(run(*map(float, given), out))
+        record[:, :, j] = out
+    stays, turns, phase, speed = (np.array(each) for each in zip(*ends, strict=True))
+    (going,) = (~stays).nonzero()
+    after = replace(balls, turns=turns, phase=phase, speed=speed)
+    return record, going, after.take(going)
+
+
+def follow(balls, impacts):
+    """A number of impacts of each ball.
+
+    Returns
+    -------
+    record : ndarray, shape (impacts, 7, balls)
+        The columns of :data:`.one_ball.COLUMNS`, NaN after the last impact of a ball that stays on
+        the table.
+    going : ndarray of int
+        The indices of the balls that do not stay.
+    after : Balls
+        These, before their next impacts.
+    """
+    ball = balls.ball
+    if balls.phase.size < FEW:
+        if isinstance(ball, Rigid) and not callable(ball.restitution):
+            return follow_each(balls, one_ball.bounce, (ball.restitution,), impacts)
+        if has_closed_form(ball):
+            given = ball.frequency_ratio, ball.zeta, ball.kappa
+            return follow_each(balls, one_ball.press, given, impacts)
+    record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
+    left = np.arange(balls.phase.size)
+    for impact in record:
+        if not left.size:
+            break
+        rows, going, balls = step(balls)
+        impact[:, left] = rows
+        left = left[going]
+    return record, left, balls
+
+
+def axis(name, value):
+    """An argument as a labelled array: a list is an axis with the name of the argument."""
+    if isinstance(value, xr.DataArray):
+        return value.astype(float)
+    value = np.asarray(value, float)
+    if value.ndim > 1:
+        raise ValueError(f"{name}: must be a number, a list of numbers or an xarray.DataArray")
+    if not np.isfinite(value).all():
+        raise ValueError(f"{name} = {value[~np.isfinite(value)].flat[0]}: must be finite")
+    return xr.DataArray(value, {name: value} if value.ndim else {}, [name] * value.ndim)
+
+
+def axes_of_ball(ball):
+    """The array parameters of a ball, which vary together along one axis: named after the
+    parameter, or "ball" if there are several.
+    """
+    arrays = {name: each for name, each in ball.parameters.items() if np.ndim(each)}
+    if len(arrays) == 1:
+        return {name: axis(name, value) for name, value in arrays.items()}
+    coordinates = {name: ("ball", value) for name, value in arrays.items()}
+    return {name: xr.DataArray(value, coordinates, ["ball"]) for name, value in arrays.items()}
+
+
+def grid_of(ball, **values):
+    """The grid that arguments and array parameters of a ball span.
+
+    Returns
+    -------
+    grid : xarray.DataArray
+        An array with the axes of the grid, whose values are of no interest.
+    ball : Ball
+        With parameters for each point of the grid, in one row.
+    rows : list of ndarray
+        The values at each point, in one row.
+    """
+    of_ball = axes_of_ball(ball)
+    arrays = [axis(name, value) for name, value in values.items()]
+    every = xr.broadcast(*arrays, *of_ball.values())
+    rows = [each.values.ravel() for each in every]
+    parameters = dict(zip(of_ball, rows[len(arrays) :], strict=True))
+    return every[0], ball.at(**parameters) if parameters else ball, rows[: len(arrays)]
+
+
+def first_impacts(ball, amplitude, phase, velocity, relative_velocity):
+    """The grid of first impacts and the balls before them; the arguments are those of
+    :func:`simulate`.
+    """
+    name = "velocity" if relative_velocity is None else "relative_velocity"
+    value = velocity if relative_velocity is None else relative_velocity
+    given = {"amplitude": amplitude, "phase": phase, name: value}
+    grid, ball, (amplitude, phase, value) = grid_of(ball, **given)
+    if (amplitude < 0).any():
+        raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
+    table = amplitude * np.cos(phase) if relative_velocity is None else 0.0
+    speed = table - value
+    if (speed < 0).any():
+        i = np.argmin(speed)
+        raise ValueError(
+            f"{name} = {value[i]:g}: the ball rises from the table, whose velocity is"
+            f" {amplitude[i] * np.cos(phase[i]):g}"
+        )
+    return grid, Balls(ball, amplitude, *reduced(phase), speed)
+
+
+DESCRIPTIONS = {
+    "time": ("time since the start", "τ", "1"),
+    "impact_phase": ("phase of the table at the impact", "φ", "rad"),
+    "impact_velocity": ("velocity of the ball before the impact", "z′", "1"),
+    "relative_impact_velocity": ("velocity relative to the table before the impact", "δ′", "1"),
+    "contact_duration": ("duration of the contact, or of the rest on the table", "D", "1"),
+    "bounce_velocity": ("velocity of the ball after the impact", "z′", "1"),
+    "relative_bounce_velocity": ("velocity relative to the table after the impact", "δ′", "1"),
+    "flight_time": ("time of flight after the impact", "", "1"),
+    "status": ("what the ball does after the last impact", "", "1"),
+    "ball": ("height of the ball", "z", "1"),
+    "ball_velocity": ("velocity of the ball", "z′", "1"),
+    "table": ("height of the table", "w", "1"),
+    "contact": ("whether the ball touches the table", "", "1"),
+    "impact": ("number of the impact", "", "1"),
+    "amplitude": ("excitation amplitude", "Λ", "1"),
+    "phase": ("phase of the table at the first impact", "φ", "rad"),
+    "velocity": ("velocity of the ball before the first impact", "z′", "1"),
+    "relative_velocity": ("velocity relative to the table before the first impact", "δ′", "1"),
+    "height": ("height from which the ball is dropped", "h", "1"),
+    "restitution": ("restitution coefficient", "r", "1"),
+    "frequency_ratio": ("frequency ratio", "ϖ", "1"),
+    "damping_ratio": ("damping ratio", "ζ", "1"),
+}
+"""Long name, symbol and unit of variables of datasets. All times are Ωt and all lengths Ω²y/g."""
+
+
+def dataset(grid, variables, descriptions, **coordinates):
+    """Values over the points of a grid as a labelled dataset.
+
+    Parameters
+    ----------
+    grid : xarray.DataArray
+    variables : dict
+        An array for each name, with the points of the grid as its first axis, and the axes of the
+        ``coordinates`` after it.
+    """
+    found = xr.Dataset(coords=dict(grid.coords) | coordinates)
+    names = list(coordinates)
+    for name, value in variables.items():
+        value = np.reshape(value, grid.shape + np.shape(value)[1:])
+        found[name] = ((*grid.dims, *names[: value.ndim - grid.ndim]), value)
+    for name in found.variables:
+        if name in descriptions:
+            labels = zip(("long_name", "symbol", "units"), descriptions[name], strict=True)
+            found[name].attrs.update(labels)
+    return found
+
+
+def simulate(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=100):
+    """The impacts of a ball that begins with a given first impact.
+
+    Parameters
+    ----------
+    ball : Ball
+        Its parameters may be arrays.
+    amplitude : float or array
+        Excitation amplitude Λ ≥ 0. Here and below a list is an axis of the result with the name of
+        the argument, and several span a grid; an ``xarray.DataArray`` has its own axes.
+    phase : float or array
+        Phase of the table at the first impact.
+    velocity : float or array
+        Absolute velocity of the ball before it, in units of g/Ω.
+    relative_velocity : float or array, optional
+        In its place, the velocity relative to the table, δ′ ≤ 0.
+    impacts : int
+        Largest number of impacts.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``time``, ``impact_phase``, ``impact_velocity``, ``bounce_velocity``, ``contact_duration``
+        and ``flight_time`` of each ``impact``, with the velocities relative to the table, NaN after
+        the last one; and the ``status`` of the ball, "bouncing" or "permanent contact". Bounces
+        that end on the table are summed up in the ``contact_duration`` of one impact, with the rest
+        up to the lift-off.
+
+    Raises
+    ------
+    ValueError
+        If Λ is negative, an argument is no number, or the ball rises from the table at first.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> simulate(Rigid(0.5), amplitude=0.0, velocity=-4.0, impacts=3).time.values.tolist()
+    [0.0, 4.0, 6.0]
+    """
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    record, going, _ = follow(balls, int(impacts))
+    turns, start, u, _, duration, w, flight_time = np.moveaxis(record, 1, 0)
+    before = balls.amplitude * np.cos(start)
+    after = balls.amplitude * np.cos(start + np.where(duration < np.inf, duration, np.nan))
+    status = np.full(balls.phase.shape, "permanent contact")
+    status[going] = "bouncing"
+    found = {
+        "time": TURN * (turns - balls.turns) + (start - balls.phase),
+        "impact_phase": start,
+        "impact_velocity": before - u,
+        "relative_impact_velocity": -u,
+        "contact_duration": duration,
+        "bounce_velocity": after + w,
+        "relative_bounce_velocity": w,
+        "flight_time": flight_time,
+    }
+    found = {name: value.T for name, value in found.items()} | {"status": status}
+    return dataset(grid, found, DESCRIPTIONS, impact=np.arange(len(record)))
+
+
+def history(
+    ball,
+    *,
+    amplitude,
+    phase=0.0,
+    velocity=-np.pi,
+    relative_velocity=None,
+    periods=10.0,
+    samples=200,
+):
+    """A ball over time, from a first impact as in :func:`simulate`.
+
+    Parameters
+    ----------
+    ball, amplitude, phase, velocity, relative_velocity
+        As in :func:`simulate`.
+    periods : float
+        Number of periods 2π of the table.
+    samples : int
+        Number of samples in each period.
+
+    Returns
+    -------
+    xarray.Dataset
+        Height and velocity of the ``ball``, height of the ``table`` and whether they are in
+        ``contact``, over ``time``. Times are Ωt and heights Ω²y/g.
+
+    Raises
+    ------
+    ValueError
+        As :func:`simulate`, or if a ball has more than a million impacts in this time.
+    """
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    times = np.linspace(0, TURN * periods, round(periods * samples) + 1)
+    return over_time(grid, times, balls)
+
+
+def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
+    """A ball that is dropped at rest above the table, over time.
+
+    Parameters
+    ----------
+    height : float or array
+        Height above the middle of the motion of the table, in units of g/Ω².
+    ball, amplitude, phase, periods, samples
+        As in :func:`history`; the phase is that of the table when the ball is dropped.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of :func:`history`.
+
+    Raises
+    ------
+    ValueError
+        As :func:`history`, or if the ball is dropped below the table.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = drop(Rigid(0.5), height=[2.0, 8.0], periods=1.0)
+    >>> found.ball.sel(time=0).values.tolist()
+    [2.0, 8.0]
+    """
+    given = {"height": height, "amplitude": amplitude, "phase": phase}
+    grid, ball, (height, amplitude, phase) = grid_of(ball, **given)
+    gap = height - amplitude * np.sin(phase)
+    if (gap < 0).any():
+        raise ValueError(f"height = {height[np.argmin(gap)]:g}: is below the table")
+    turns, phase = reduced(phase)
+    nothing = np.zeros_like(gap)
+    w = -amplitude * np.cos(phase)
+    balls = Balls(ball, amplitude, turns, phase, nothing)
+    falling = Leaving(nothing, nothing, turns, phase, gap, w)
+    landed = fly(balls, falling)
+    passed, later = reduced(phase + landed.time)
+    first = replace(balls, turns=turns + passed, phase=later, speed=landed.speed)
+    times = np.linspace(0, TURN * periods, round(periods * samples) + 1)
+    return over_time(grid, times, first, falling)
+
+
+def over_time(grid, times, balls, falling=None):
+    """The dataset of balls over time, from their first impacts, or from falls before them."""
+    shape = balls.phase.size, times.size
+    found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
+    found["contact"] = np.empty(shape, bool)
+    for j in range(balls.phase.size):
+        one = balls.take([j])
+        fall = falling and Leaving(*(each[[j]] for each in falling))
+        start = balls.phase[j] if falling is None else falling.phase[j]
+        gap, rate, found["contact"][j] = states_at(pieces_of(one, times[-1], fall), one, times)
+        found["table"][j] = balls.amplitude[j] * np.sin(start + times)
+        found["ball"][j] = gap + found["table"][j]
+        found["ball_velocity"][j] = rate + balls.amplitude[j] * np.cos(start + times)
+    return dataset(grid, found, DESCRIPTIONS, time=times)
+
+
+class Pieces(NamedTuple):
+    """Impacts of a ball, each with the flight after it: when it begins, how it begins and how it
+    ends.
+    """
+
+    begin: np.ndarray
+    phase: np.ndarray
+    speed: np.ndarray
+    own_time: np.ndarray
+    duration: np.ndarray
+    gap: np.ndarray
+    bounce_speed: np.ndarray
+
+
+def pieces_of(balls, end, fall):
+    """Those of one ball up to a time; the first is a fall, if there is one."""
+    ball, amplitude = balls.ball, balls.amplitude
+    first = balls if fall is None else fall
+    start = TURN * first.turns + first.phase
+    parts = []
+    while balls.phase.size and (not parts or (TURN * balls.turns + balls.phase - start < end)):
+        record, _, balls = follow(balls, AT_ONCE)
+        parts.append(record[:, :, 0])
+        if len(parts) * AT_ONCE > MOST_IMPACTS:
+            raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
+    record = np.concatenate(parts)
+    turns, phase, u, own_time, duration, w, _ = record[np.isfinite(record[:, 0])].T
+    gap = ball.contact(phase, u, own_time, amplitude).gap
+    if not ball.lasts:
+        gap = np.where(duration > 0, 0.0, gap)
+    pieces = Pieces(TURN * turns + phase - start, phase, u, own_time, duration, gap, w)
+    if fall is None:
+        return pieces
+    falls = np.zeros(1), fall.phase, np.zeros(1), np.zeros(1), np.zeros(1), fall.gap, fall.speed
+    return Pieces(*(np.concatenate(each) for each in zip(falls, pieces, strict=True)))
+
+
+def states_at(pieces, balls, times):
+    """δ, δ′ and whether the ball is in contact, of one ball at some times."""
+    ball, amplitude = balls.ball, balls.amplitude
+    piece = np.searchsorted(pieces.begin, times, side="right") - 1
+    here = Pieces(*(each[piece] for each in pieces))
+    since = times - here.begin
+    contact = since < here.duration
+    gap, rate = np.zeros(times.shape), np.zeros(times.shape)
+    flying = Pieces(*(each[~contact] for each in here))
+    leaves = flying.phase + flying.duration
+    table = amplitude * np.cos(leaves), amplitude * np.sin(leaves)
+    passed = since[~contact] - flying.duration
+    gap[~contact], rate[~contact], _ = flights(passed, flying.gap, flying.bounce_speed, *table)
+    if ball.lasts and contact.any():
+        touching = Pieces(*(each[contact] for each in here))
+        own_time = own_times(ball, amplitude, touching, since[contact])
+        _, gap[contact], rate[contact], _ = ball.contact(
+            touching.phase, touching.speed, own_time, amplitude
+        )
+    return gap, rate, contact
+
+
+def own_times(ball, amplitude, pieces, since):
+    """T after the times ``since`` the starts of contacts, by a bracket of the duration as a
+    function of T.
+    """
+
+    def late(T, phase, speed, since):
+        return ball.contact(phase, speed, T, amplitude).duration - since
+
+    given = pieces.phase, pieces.speed, since
+    above = np.where(np.isfinite(pieces.own_time), pieces.own_time, 1.0)
+    while np.any(late(above, *given) < 0):
+        above = np.where(late(above, *given) < 0, 2 * above, above)
+    return elementwise.find_root(late, (np.zeros_like(above), above), args=given).x

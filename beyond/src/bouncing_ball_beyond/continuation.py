@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
+from bouncing_ball_beyond.forms import one_impact_more
 from bouncing_ball_beyond.orbits import (
     OrbitNotFound,
     PeriodicOrbit,
@@ -57,6 +58,10 @@ KINDS = {
         lambda equations, z, linear: equations.halving(z),
         "the orbit merges with one of half its period",
     ),
+    "vanishing flight": Kind(
+        lambda equations, z, linear: linear.flights.min(axis=1),
+        "the contacts before and after a flight merge",
+    ),
     "grazing of an impact": Kind(
         lambda equations, z, linear: equations.least_speed(z),
         "an impact vanishes, because the ball lands with the speed of the table",
@@ -77,6 +82,7 @@ def tests_on_the_way(equations: OrbitEquations, z: NDArray, linear: Linear) -> d
         "period doubling": 1 + turn,
         "grazing of an impact": equations.least_speed(z),
         "lost release": equations.least_release(linear, z),
+        "vanishing flight": linear.flights.min(axis=1),
     }
 
 
@@ -242,7 +248,7 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
     halves = equations.halves(z)
     tests["period halving"] = np.linalg.norm(halves, axis=1)
     history = [_Visited(np.ones(rows, bool), z, t, tests)]
-    count, end = np.ones(rows, int), np.full(rows, "", object)
+    count, end, farthest = np.ones(rows, int), np.full(rows, "", object), np.zeros(rows)
     active, part = np.arange(rows), equations
     while active.size:
         unit, here, ahead, before = units[active], z[active], t[active], step[active]
@@ -284,8 +290,10 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
         for name, value in tests.items():
             value[accepted] = values[name][taken]
         count[accepted] += 1
-        closed = (count > 5) & _back_at_start(start, z, t, units, step)
-        end[closed & (end == "")] = "the branch is closed: it is back at its start"
+        away, same_way = _from_start(start, z, t, units)
+        closed = same_way & (np.linalg.norm(away, axis=1) < step / 2) & (farthest > 2 * step)
+        farthest = np.maximum(farthest, np.linalg.norm(away, axis=1))
+        end[closed & (end == "")] = _CLOSED
         end[(count >= points) & (end == "")] = f"all {points} points are used"
         end[(step < SHORTEST_STEP) & (end == "")] = "no further orbit is found"
         history.append(_Visited(np.isin(np.arange(rows), accepted), z, t, tests))
@@ -297,6 +305,7 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
 
 
 _AT_GOAL = "the end of the window"
+_CLOSED = "the branch is closed: it is back at its start"
 
 
 class _Visited(NamedTuple):
@@ -328,19 +337,21 @@ def _ends_on_the_way(tests, values, active, until) -> NDArray:
     return ends
 
 
-def _back_at_start(start: _Start, z, t, units, step) -> NDArray:
-    """Whether branches are next to their starts, in the direction in which they left."""
+def _from_start(start: _Start, z, t, units) -> tuple[NDArray, NDArray]:
+    """How far branches are from their starts, up to whole turns, and whether they go the same way."""
     away = z - start.z
-    q = start.equations.unknowns
     turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
-    away[:, : start.equations.size : q] -= turns
+    away[:, : start.equations.size : start.equations.unknowns] -= turns
     same_way = np.sum(t * _unit(start.direction / units), axis=1) > STRAIGHT
-    return same_way & (np.linalg.norm(away / units, axis=1) < step / 2)
+    return away / units, same_way
 
 
 def _row_of(history: list[_Visited], units, end, i) -> _Steps:
-    """The accepted steps of one row."""
+    """The accepted steps of one row; a closed branch ends exactly at its start."""
     taken = [each for each in history if each.moved[i]]
+    if end[i] == _CLOSED:
+        ahead = taken[0].t[i] @ ((taken[-1].z[i] - taken[0].z[i]) / units[i]) > 0
+        taken = [*(taken[:-1] if ahead else taken), taken[0]]
     tests = {name: np.array([each.tests[name][i] for each in taken]) for name in taken[0].tests}
     z = np.array([each.z[i] for each in taken])
     t = np.array([each.t[i] * units[i] for each in taken])
@@ -374,7 +385,12 @@ def _crossings(equations, steps: list[_Steps]) -> _Crossings:
     values = np.array(list(tests.values()))
     number = np.arange(len(z))
     within = row[1:] == row[:-1]
-    which, at = np.nonzero((values[:, :-1] * values[:, 1:] < 0) & within)
+    # Where tr/(1 + det) has a pole, it changes its sign without passing 1 or -1.
+    turn = np.arctan(tests["period doubling"] - 1)
+    pole = np.abs(np.diff(turn)) > np.pi / 2
+    by_turn = np.isin(names, ["saddle-node", "period doubling"])[:, np.newaxis]
+    crossed = (values[:, :-1] * values[:, 1:] < 0) & within & ~(by_turn & pole)
+    which, at = np.nonzero(crossed)
     return _Crossings(
         row[at],
         number[at],
@@ -421,7 +437,7 @@ def _located(equations, crossings: _Crossings) -> tuple[NDArray, NDArray]:
     # The equations are singular at a period halving, which is found by those of half the period.
     found = crossings.kind != "period halving"
     each, latest = np.arange(len(chord)), np.full(len(chord), -1)
-    z = ends[0].copy()
+    z = _cubic(weights[0] / (weights[0] - weights[1]), ends, slopes)
     for _ in range(60):
         step = place[1] - place[0]
         part = weights[0] / (weights[0] - weights[1])
@@ -467,12 +483,20 @@ def _followed(start: _Start, points, until, own) -> list[FollowedBranch]:
                 passed.append((number, place, PeriodicOrbit(alone, here, kind)))
         passed.sort(key=lambda entry: entry[:2])
         ending = [n for n, entry in enumerate(passed) if _ends_at(entry[2].kind, until)]
-        special, path = [entry[2] for entry in passed], each.z
+        path, near = each.z, np.nan
+        if each.end in KINDS and not ending:
+            # The equations are singular where a flight vanishes.
+            path, near = each.z[:-1], z[np.flatnonzero(crossings.row == i)[-1], -1]
+            passed = [entry for entry in passed if entry[0] + 1 < len(path)]
+        special = [entry[2] for entry in passed]
         if ending:
             number, _, last = passed[ending[0]]
             special = special[: ending[0] + 1]
             path = np.concatenate([path[: number + 1], last.z[np.newaxis]])
-        end = _end_in_words(each.end, alone, special, path, float(start.goal[i]), bool(ending))
+        if each.end in KINDS and not ending:
+            end = f"{each.end} near {alone.along[-1].name} = {near:.4g}: {KINDS[each.end].end}"
+        else:
+            end = _end_in_words(each.end, alone, special, path, float(start.goal[i]), bool(ending))
         branches.append(FollowedBranch(alone, path, tuple(special), "", end))
     return branches
 
@@ -489,8 +513,6 @@ def _end_in_words(end, equations, special, path, goal, at_special) -> str:
     if at_special:
         reason = KINDS[special[-1].kind].end
         return f"{special[-1].kind} at {here}" + (f": {reason}" if reason else "")
-    if end in KINDS:
-        return f"{end} near {here}, which is not found"
     if end != _AT_GOAL:
         return f"{end}; the last one is at {here}"
     if abs(value - goal) <= 1e-12 * abs(goal):
@@ -848,6 +870,33 @@ def _fold_start(task: _Task, way: int) -> _Start:
     return _Start(equations, z, stable, step, goal, window, None, reasons)
 
 
+def _grazing_start(task: _Task, way: int) -> _Start:
+    """The branch with one impact more, from orbits with a flight that touches the table."""
+    rows, name = len(task.z), task.equations.along[-1].name
+    size, q = task.equations.length, task.equations.unknowns
+    origin, direction = np.zeros((2, rows, size + q))
+    reasons = np.full(rows, "", object)
+    more = replace(task.equations, impacts=task.equations.impacts + 1)
+    for i in range(rows):
+        try:
+            _, origin[i], direction[i] = one_impact_more(single(task.equations, i), task.z[i])
+        except OrbitNotFound as error:
+            reasons[i] = str(error)
+    # One step away from the touch, where the added impact has the speed 0.
+    units, step = scales(more, origin), np.full(rows, 1e-3)
+    ahead = np.where((reasons == "")[:, np.newaxis], _unit(direction / units), 0.0)
+    start = newton(more, origin + step[:, np.newaxis] * ahead * units, ahead / units)
+    goal = task.goals[:, way]
+    reasons[(reasons == "") & ~start.found] = "the orbits with one impact more are not found"
+    away = start.z[:, -1] - origin[:, -1]
+    for i in np.flatnonzero((reasons == "") & (away * (goal - origin[:, -1]) <= 0)):
+        side = "above" if away[i] > 0 else "below"
+        place = f"{name} = {origin[i, -1]:.10g}"
+        reasons[i] = f"the orbits with one impact more are {side} the grazing at {place}"
+    window = _windows(origin, goal, task.limits)
+    return _Start(more, start.z, start.z - origin, step, goal, window, origin, reasons)
+
+
 def _halved_start(task: _Task, way: int) -> _Start:
     """The branch of half the period."""
     equations, z = halves_of(task.equations, task.z)
@@ -924,6 +973,7 @@ _STARTS = {
     "saddle-node": _fold_start,
     "period doubling": _doubled_start,
     "period halving": _halved_start,
+    "grazing of a flight": _grazing_start,
 }
 
 

@@ -28,11 +28,12 @@ class Linear(NamedTuple):
 
     ``legs`` has the shape (rows, k, q) for q unknowns of an impact. ``derivatives`` has the shape
     (rows, k, q, q + 2 + p): by the unknowns of the impact, by τ and u of the next one, and by the p
-    parameters.
+    parameters. ``flights`` are the times between contacts, shape (rows, k).
     """
 
     legs: NDArray
     derivatives: NDArray
+    flights: NDArray
 
 
 class Ends(NamedTuple):
@@ -140,26 +141,31 @@ class OrbitEquations:
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
         of_legs, of_parameters = self._steps
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
-        legs = self._legs(y, *self.at(z[:, self.size :] + of_parameters))
-        return Linear(legs[0].real, np.moveaxis(legs.imag, 0, -1) / H)
+        legs, flights = self._legs(y, *self.at(z[:, self.size :] + of_parameters))
+        return Linear(legs[0].real, np.moveaxis(legs.imag, 0, -1) / H, flights[0].real)
 
     def legs(self, z) -> NDArray:
         """The legs alone, shape (rows, k, q)."""
         x, ball, amplitude = self.split(z)
-        return self._legs(np.concatenate([x, self.following(x)[..., :2]], axis=-1), ball, amplitude)
+        y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
+        return self._legs(y, ball, amplitude)[0]
 
-    def _legs(self, y, ball, amplitude) -> NDArray:
-        """Legs between impacts and the next ones: y has q unknowns of the former, then τ, u of the latter."""
+    def _legs(self, y, ball, amplitude) -> tuple[NDArray, NDArray]:
+        """Legs between impacts and the next ones, and their times of flight.
+
+        y has the q unknowns of the former, then τ and u of the latter.
+        """
         q = self.unknowns
         impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude)
         leaves = y[..., 0] + impact.duration
-        gap, rate = flight(y[..., q] - leaves, leaves, impact.gap, impact.speed, amplitude)
+        flights = y[..., q] - leaves
+        gap, rate = flight(flights, leaves, impact.gap, impact.speed, amplitude)
         legs = np.empty((*y.shape[:-1], q), y.dtype)
         if self.ball.lasts:
             legs[..., 0] = impact.release
         legs[..., q - 2] = gap - ball.start(y[..., q + 1])
         legs[..., q - 1] = rate + y[..., q + 1]
-        return legs
+        return legs, flights
 
     def residuals(self, z) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""

@@ -141,15 +141,22 @@ def _settings(texts: tuple[str, ...]) -> dict[str, float]:
     return values
 
 
+def given(phase: float | None, velocity: float | None) -> dict[str, float]:
+    """The arguments of a first impact, without those that are not given."""
+    start = {"phase": phase, "velocity": velocity}
+    return {name: value for name, value in start.items() if value is not None}
+
+
 def with_branch(function: Callable) -> Callable:
     """A command that gets a branch, in place of the options of a ball, an orbit and a parameter."""
 
     @wraps(function)
     def command(ball, amplitude, n, phase, velocity, along, to, doublings, **others):
-        if phase is None and velocity is None:
-            start = bb.orbit(ball, amplitude=amplitude, n=n)
+        motion = given(phase, velocity)
+        if motion:
+            start = bb.orbit_of_motion(ball, amplitude=amplitude, **motion)
         else:
-            start = bb.orbit_of_motion(ball, amplitude=amplitude, phase=phase, velocity=velocity)
+            start = bb.orbit(ball, amplitude=amplitude, n=n)
         branch = bb.follow(start, along=along, to=to)
         for _ in range(doublings):
             branch = bb.follow(branch.first("period doubling"), along=along, to=to)
@@ -168,9 +175,8 @@ def with_branch(function: Callable) -> Callable:
     return with_ball(decorate(command))
 
 
-def show(found: Any, output: str | None) -> None:
-    """Print what was found and, if wanted, write it to a file."""
-    click.echo(found)
+def write(found: Any, output: str | None) -> None:
+    """Write orbits, a branch or a dataset to a file, if one is wanted."""
     if output is None:
         return
     suffix = Path(output).suffix
@@ -206,7 +212,9 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 @OUTPUT
 def orbit(ball, amplitude, n, side, output):
     """The n-T orbit, with one impact in n periods of the table."""
-    show(bb.orbit(ball, amplitude=amplitude, n=n, side=side), output)
+    found = bb.orbit(ball, amplitude=amplitude, n=n, side=side)
+    click.echo(found)
+    write(found, output)
 
 
 @commands.command()
@@ -215,8 +223,10 @@ def orbit(ball, amplitude, n, side, output):
 @OUTPUT
 def limits(ball, n, output):
     """The saddle-node and the period doubling of n-T orbits."""
-    for special in bb.limits(ball, n=n):
-        show(special, output)
+    found = [special for special in bb.limits(ball, n=n) if special is not None]
+    for special in found:
+        click.echo(special)
+    write(found, output)
 
 
 @commands.command()
@@ -224,7 +234,8 @@ def limits(ball, n, output):
 @OUTPUT
 def follow(branch, output):
     """A branch of orbits along a parameter, with its special orbits."""
-    show(branch, output)
+    click.echo(branch)
+    write(branch, output)
 
 
 @commands.command()
@@ -242,7 +253,8 @@ def curve(branch, kind, across, ranges, output):
         along=(branch.along, across),
         ranges={name: (low, high) for name, low, high in ranges},
     )
-    show(found, output)
+    click.echo(found)
+    write(found, output)
 
 
 @commands.command()
@@ -276,8 +288,9 @@ def diagram(ball, amplitude, points, output):
 @OUTPUT
 def simulate(ball, amplitude, phase, velocity, impacts, output):
     """The impacts that follow a given one."""
-    found = bb.simulate(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
-    show(found, output)
+    found = bb.simulate(ball, amplitude=amplitude, impacts=impacts, **given(phase, velocity))
+    click.echo(found.to_dataframe().to_string())
+    write(found, output)
 
 
 @commands.command()

@@ -172,9 +172,11 @@ DELICATE = [
     (1 - 1e-8, 1e-9),
     (1.0, 1e-13),
     (1.001, 0.0),
+    (1.02, 0.0),
     (0.9, 0.05),
     (0.5, 0.0),
     (2.0, 1.0),
+    (3.0, 1 - 1e-5),
     (3.0, 1 - 1e-8),
     (3.0, 1 + 1e-8),
     (7.0, 1.01),
@@ -211,6 +213,22 @@ def test_all_digits_near_resonance_and_critical_damping(ratio, zeta):
             # Those of derivatives are of the size of the largest change of the motion itself.
             natural = scale / np.maximum(np.abs(given), 1e-3)[:, None] + np.abs(derivatives)
             assert (np.abs(errors) < 1e-13 * natural).all()
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.5, 0.8, 1 - 1e-6, 1.0, 1 + 1e-6, 1.3, 20.0])
+def test_free_contacts_that_end_by_the_force(zeta):
+    """T = 2 arccos ζ/√(1 - ζ²) and its derivative by 60 digits, through ζ = 1."""
+
+    def exact(zeta):
+        zeta = mpmath.mpc(zeta) + mpmath.mpf(10) ** -25
+        return mpmath.re(2 * mpmath.acos(zeta) / mpmath.sqrt(1 - zeta**2))
+
+    with mpmath.workdps(60):
+        slope = mpmath.diff(exact, mpmath.mpf(zeta), h=mpmath.mpf(10) ** -18)
+        expected = float(exact(zeta)), float(slope)
+    ball = SpringDamper(1.0, damping_ratio=0.5, release="force")
+    found = ball.at(damping_ratio=zeta + 1j * H).free(1.0)
+    np.testing.assert_allclose((found.real, found.imag / H), expected, rtol=4e-15)
 
 
 def test_derivatives_by_complex_steps():

@@ -22,39 +22,54 @@ TABLES = ["ext_orders", "ext_laws"]
 # Settings of the whole run on which the datasets of a stage depend.
 SETTINGS = {
     "impacts": ["release"],
-    "error_law": ["release"],
+    "error_law": [*ERRORS, *REPLICATED_ERRORS, "studies/orbits", *SAVING],
     "stiffness_map": [],
     "contact_laws": [],
     "explorer": [],
 }
 
+def modules(package, *names):
+    return [f"{package}/{name}" for name in names]
+
+
 # The modules that each script imports, directly or by another module. A change of one of them runs
 # the script again. A test compares these lists with the imports.
-BALLS = ["bouncing_ball_beyond/balls"]
+ORBITS = modules(
+    "bouncing_ball_beyond", "balls", "equations", "paths", "orbits", "continuation", "forms"
+)
+ERRORS = [*ORBITS, *modules("bouncing_ball_beyond", "laws", "root_time", "error_law")]
 SAVING = ["studies/variables", "bouncing_ball/datasets"]
-DRAWING = ["studies/figures", "bouncing_ball/drawing", "bouncing_ball/datasets"]
-NUMBERS = ["bouncing_ball/restitution", "bouncing_ball/spring_damper", "bouncing_ball/verdicts"]
-TABULATING = ["studies/tables", "bouncing_ball/tables", "bouncing_ball/claims", *NUMBERS]
-WRITING = ["studies/article", "bouncing_ball/article", *TABULATING]
+MODELS = modules("bouncing_ball", "restitution", "spring_damper")
+REPLICATED_ERRORS = [*MODELS, *modules("bouncing_ball", "orbits", "continuation", "errors")]
+DRAWING = ["studies/figures", "bouncing_ball/drawing", *SAVING]
+TABLES_OF_BOTH = [*MODELS, *modules("bouncing_ball", "tables", "claims", "verdicts")]
+TABULATING = ["studies/tables", *TABLES_OF_BOTH, *SAVING]
+WRITING = ["studies/article", *TABLES_OF_BOTH, *modules("bouncing_ball", "article", "datasets")]
 PAGE = ["studies/explorer", "bouncing_ball/datasets"]
 COMPARISON = [
     *DRAWING,
+    *TABULATING,
     *WRITING,
     *PAGE,
     "studies/products",
-    "bouncing_ball/compare",
-    "bouncing_ball/differences",
+    *modules("bouncing_ball", "compare", "differences"),
 ]
 MODULES = {
-    "impacts": [*BALLS, *SAVING],
-    "error_law": [*BALLS, *SAVING],
-    "stiffness_map": [*BALLS, *SAVING],
-    "contact_laws": [*BALLS, *SAVING],
-    "explorer": [*BALLS, *SAVING],
+    "impacts": [*ORBITS, *SAVING],
+    "error_law": [
+        *ERRORS,
+        *SAVING,
+        *MODELS,
+        "studies/orbits",
+        *(f"bouncing_ball/{module}" for module in ["orbits", "continuation", "errors"]),
+    ],
+    "stiffness_map": [*ERRORS, *SAVING, "bouncing_ball/restitution"],
+    "contact_laws": [],
+    "explorer": [],
     "draw": DRAWING,
-    "tables": [*TABULATING, "bouncing_ball/datasets"],
+    "tables": TABULATING,
     "explorer_page": PAGE,
-    "article": [*WRITING, "bouncing_ball/datasets"],
+    "article": WRITING,
     "compare": COMPARISON,
     "accept": COMPARISON,
 }
@@ -74,10 +89,10 @@ def package(path):
 
 def code(script):
     """The files that decide what a script makes: itself, and the modules that it imports."""
-    modules = [name.split("/") for name in dict.fromkeys(MODULES[script])]
-    packages = {folder for folder, _ in modules} - {"studies"}
-    modules = [*([folder, "__init__"] for folder in sorted(packages)), *modules]
-    files = [FOLDERS[folder] / folder / f"{module}.py" for folder, module in modules]
+    named = [name.split("/") for name in dict.fromkeys(MODULES[script])]
+    packages = dict.fromkeys(folder for folder, _ in named)
+    named = [*([folder, "__init__"] for folder in packages), *named]
+    files = [FOLDERS[folder] / folder / f"{module}.py" for folder, module in named]
     return [package(path) for path in [f"workflow/scripts/{script}.py", *files]]
 
 

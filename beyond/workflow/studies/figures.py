@@ -25,7 +25,7 @@ from bouncing_ball.drawing import (
     style,
     title,
 )
-from studies.tables import LAW_NAMES
+from studies.variables import LAW_NAMES
 
 TITLES: Mapping[str, str] = {
     "max_height": r"greatest height $\max\,z$",

@@ -4,15 +4,7 @@ import xarray as xr
 
 from bouncing_ball.datasets import parameters
 from bouncing_ball.tables import each, number
-
-LAW_NAMES = {
-    "linear": "linear",
-    "linear, force release": "linear, force release",
-    "hunt-crossley": "Hunt and Crossley",
-    "tsuji": "Tsuji",
-    "kuwabara-kono": "Kuwabara and Kono",
-}
-"""The contact laws in words."""
+from studies.variables import LAW_NAMES
 
 
 def in_words(name: xr.DataArray) -> str:

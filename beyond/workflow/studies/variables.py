@@ -127,3 +127,12 @@ VARIABLES = datasets.VARIABLES | {
         "time of that impact since the first one, or of the rest that follows it", "τ"
     ),
 }
+
+LAW_NAMES = {
+    "linear": "linear",
+    "linear, force release": "linear, force release",
+    "hunt-crossley": "Hunt and Crossley",
+    "tsuji": "Tsuji",
+    "kuwabara-kono": "Kuwabara and Kono",
+}
+"""The contact laws in words."""

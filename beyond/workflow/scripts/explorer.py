@@ -1,0 +1,1 @@
+"""Stage: random orbits and balls with which the explorer's page compares what it computes."""

@@ -22,11 +22,12 @@ TABLES = ["ext_orders", "ext_laws"]
 # Settings of the whole run on which the datasets of a stage depend.
 SETTINGS = {
     "impacts": ["release"],
-    "error_law": [*ERRORS, *REPLICATED_ERRORS, "studies/orbits", *SAVING],
+    "error_law": ["release"],
     "stiffness_map": [],
     "contact_laws": [],
     "explorer": [],
 }
+
 
 def modules(package, *names):
     return [f"{package}/{name}" for name in names]
@@ -56,13 +57,7 @@ COMPARISON = [
 ]
 MODULES = {
     "impacts": [*ORBITS, *SAVING],
-    "error_law": [
-        *ERRORS,
-        *SAVING,
-        *MODELS,
-        "studies/orbits",
-        *(f"bouncing_ball/{module}" for module in ["orbits", "continuation", "errors"]),
-    ],
+    "error_law": [*ERRORS, *REPLICATED_ERRORS, "studies/orbits", *SAVING],
     "stiffness_map": [*ERRORS, *SAVING, "bouncing_ball/restitution"],
     "contact_laws": [],
     "explorer": [],

@@ -1,14 +1,15 @@
 r"""Curves of special orbits in two parameters, with their points of codimension two.
 
-A special orbit solves the equations of an orbit and one more, g = 0. With two free parameters such orbits
-lie on a curve, which is followed by pseudo-arclength as branches are. At a saddle-node and a period
-doubling the matrix A of the chain of legs, which is closed with the multiplier 1 or -1, is singular.
-There g comes from a matrix that is bordered by the null vectors of a neighbour, c and b::
+A special orbit solves the equations of an orbit and one more, g = 0. With two free parameters such
+orbits lie on a curve, which is followed by pseudo-arclength as branches are. At a saddle-node and a
+period doubling the matrix A of the chain of legs, which is closed with the multiplier 1 or -1, is
+singular. There g comes from a matrix that is bordered by the null vectors of a neighbour, c and b::
 
     A v + g b = 0,   c v = 1,        wA + g c = 0,   w b = 1,        ∂g/∂z = -w (∂A/∂z) v
 
-A is also singular where a release is lost, for every orbit: the rate ρ of the release function is zero
-there, and with it the whole column of T. These zeros are divided out: Newton's method solves g/∏ρ = 0.
+A is also singular where a release is lost, for every orbit: the rate ρ of the release function is
+zero there, and with it the whole column of T. These zeros are divided out: Newton's method solves
+g/∏ρ = 0.
 
 Other special orbits have the tests of `continuation.KINDS`. On a curve these points are named:
 
@@ -17,8 +18,8 @@ Other special orbits have the tests of `continuation.KINDS`. On a curve these po
 * the resonances 1:1 and 1:2, where both multipliers are 1, or -1: their product is 1;
 * special orbits of another kind, where for example a flight begins to graze the table.
 
-A fold-flip, with the multipliers 1 and -1, does not occur, because the determinant of the return map is a
-product of positive numbers.
+A fold-flip, with the multipliers 1 and -1, does not occur, because the determinant of the return
+map is a product of positive numbers.
 
 Source: W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM (2000), for
 bordered matrices; Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
@@ -71,7 +72,8 @@ RESONANT = 1e-6
 a range's end, the determinant has at least ten digits."""
 
 ZERO = 1e-6
-"""A test that is larger where it changes its sign jumps there: shares of steps are found to 1e-12."""
+"""A test is zero if it is smaller: before a last step of 1e-8. Where it changes its sign, at a share of
+a step that is known to 1e-12, it jumps if it is larger than so much of its values at the ends."""
 
 OTHER = 1e-3
 """A start that is farther from the corrected special orbit is no special orbit of its kind."""
@@ -116,8 +118,8 @@ class _Border(NamedTuple):
 class _Point(NamedTuple):
     """A special orbit of a curve: z, and the tangent with normal · tangent = 1, shape (N,).
 
-    ``border`` are its null vectors and ``bent`` the derivatives of the legs along v; both are None for
-    kinds without a multiplier.
+    ``border`` are its null vectors and ``bent`` the derivatives of the legs along v; both are None
+    for kinds without a multiplier.
     """
 
     z: NDArray
@@ -179,7 +181,7 @@ class _System:
 
     @cached_property
     def shifts(self) -> NDArray:
-        """Shifts of z at which the legs are needed: none, and of all T to both sides if there are any."""
+        """Shifts of z at which the legs are needed: none, and to both sides of all T."""
         shift = np.zeros(self.equations.length)
         if not self.equations.ball.lasts:
             return shift[np.newaxis]
@@ -213,7 +215,8 @@ class _System:
             except np.linalg.LinAlgError:
                 break
             z = z + step
-            if np.abs(step).max() < tolerance * (1 + np.abs(z).max()):
+            small = np.abs(step).max() < tolerance * (1 + np.abs(z).max())
+            if small and abs(value) < ZERO:
                 return _Point(z, tangent, new, bent)
         raise OrbitNotFound(f"no {self.kind} is found: Newton's method does not converge")
 
@@ -373,7 +376,7 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
         except OrbitNotFound:
             length /= 2
             if length < SHORTEST_STEP:
-                return points, f"no further {system.kind} is found"
+                return points, _lost(system, here)
             continue
         points.append(point)
         new = system.tests([point], system.ends)
@@ -393,18 +396,24 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
 def _solved(system, here: _Point, guess, normal, limits) -> tuple[_Point, str]:
     """The special orbit near a guess, or at the end of a range, and then the words for this end."""
     size, paths = system.equations.size, system.equations.along
-    point = system.solve(guess, normal, here.border)
-    old, values = here.z[size:], point.z[size:]
-    outside = (values < limits[0]) | (values > limits[1])
-    if not outside.any():
-        return point, ""
-    bound = np.where(values < old, *limits)
-    share = np.where(outside, (bound - old) / (values - old), np.inf)
-    j = int(share.argmin())
-    guess = here.z + share[j] * (point.z - here.z)
-    guess[size + j] = bound[j]
-    normal = np.eye(len(guess))[size + j] * np.sign(values[j] - old[j])
-    return system.solve(guess, normal, here.border), f"{paths[j].name} = {bound[j]:.10g} is reached"
+    point, end = system.solve(guess, normal, here.border), ""
+    old = here.z[size:]
+    # A point at the end of one range may still be outside the other one.
+    for _ in paths:
+        values = point.z[size:]
+        outside = (values < limits[0]) | (values > limits[1])
+        if not outside.any():
+            break
+        bound = np.where(values < old, *limits)
+        share = np.where(outside, (bound - old) / (values - old), np.inf)
+        j = int(share.argmin())
+        guess = here.z + share[j] * (point.z - here.z)
+        guess[size + j] = bound[j]
+        normal = np.eye(len(guess))[size + j] * np.sign(values[j] - old[j])
+        point = system.solve(guess, normal, here.border)
+        point.z[size + j] = bound[j]
+        end = f"{paths[j].name} = {bound[j]:.10g} is reached"
+    return point, end
 
 
 def _half(system: _System, points: list[_Point], end: str) -> _Half:
@@ -438,7 +447,14 @@ def _half(system: _System, points: list[_Point], end: str) -> _Half:
             found.append((*last, name, row))
     found = sorted((each for each in found if each[3] is not None), key=lambda each: each[:2])
     special = tuple(PeriodicOrbit(system.equations, row, name) for _, _, name, row in found)
-    return _Half(z, special, end)
+    return _Half(z, special, end or _lost(system, points[-1]))
+
+
+def _lost(system: _System, point: _Point) -> str:
+    """Why a curve ends if none of its ends is found."""
+    values = zip(system.equations.along, point.z[system.equations.size :], strict=True)
+    place = ", ".join(f"{path.name} = {value:.7g}" for path, value in values)
+    return f"no further {system.kind} is found beyond {place}"
 
 
 def _changes(values: NDArray) -> NDArray:
@@ -454,26 +470,28 @@ def _located(system: _System, name: str, points: list[_Point], i: int, upto: flo
     known = {normal @ (point.z - here.z): point for point in points[max(i - 3, 0) : i]}
     known |= {0.0: here, 1.0: points[i + 1]}
 
+    def interpolated(share):
+        return BarycentricInterpolator(list(known), [each.z for each in known.values()])(share)
+
     def at(share):
-        if share in known:
-            return known[share]
-        guess = BarycentricInterpolator(list(known), [point.z for point in known.values()])(share)
-        try:
+        if share not in known:
+            guess = interpolated(share)
             known[share] = system.solve(guess, normal, here.border, tolerance=1e-11)
-        except OrbitNotFound:
-            # Next to an end the equations are singular, but the curve is smooth.
-            if name not in system.ends:
-                raise
-            return here._replace(z=guess)
         return known[share]
 
     def test(share):
-        return system.tests([at(share)], [name])[name][0]
+        # At an end the equations are singular, but the curve is smooth.
+        point = here._replace(z=interpolated(share)) if name in system.ends else at(share)
+        return system.tests([point], [name])[name][0]
 
     try:
+        if name in system.ends:
+            for share in (0.25, 0.5, 0.75):
+                at(share)
         share = brentq(test, 0.0, upto)
     except (OrbitNotFound, ValueError):
         # The orbits cannot be continued, or the test changes its sign behind `upto`.
         return 1.0, None
     # A clearance jumps to FAR where flights or contacts no longer turn back.
-    return (share, at(share).z) if abs(test(share)) < ZERO else (1.0, None)
+    jumps = abs(test(share)) > ZERO * max(abs(test(0.0)), abs(test(upto)))
+    return (1.0, None) if jumps else (share, interpolated(share))

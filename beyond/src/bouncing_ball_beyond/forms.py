@@ -1,17 +1,18 @@
 r"""Normal forms of saddle-nodes and period doublings, and what happens at a grazing flight.
 
 The legs of an orbit are a chain L_i(x_i, x_{i+1}) = 0, which is closed by x_k = x_0. Where a
-multiplier μ is 1 or -1, the chain has a vector v ≠ 0 with v_k = μ v_0 that its derivatives L′ take to
-zero, and a left vector w with w L′ = 0. On the centre manifold, along v, the return map is ::
+multiplier μ is 1 or -1, the chain has a vector v ≠ 0 with v_k = μ v_0 that its derivatives L′ take
+to zero, and a left vector w with w L′ = 0. On the centre manifold, along v, the return map is ::
 
     saddle-node, μ = 1:        ξ → ξ + rate dλ + a ξ²,        a = w B(v, v)/2
     period doubling, μ = -1:   ξ → -(1 + rate dλ) ξ + b ξ³,   b = w B(v, h) + w C(v, v, v)/6
 
-with the second and third derivatives B and C of the legs and the periodic h of L′h = -B(v, v)/2. Here
-|v_0| = 1, and w is scaled so that it is the left eigenvector p of the return map, with p v_0 = 1.
+with the second and third derivatives B and C of the legs and the periodic h of L′h = -B(v, v)/2.
+Here |v_0| = 1, and w is scaled so that it is the left eigenvector p of the return map, with
+p v_0 = 1.
 
-The legs are explicit in the unknowns, and smooth far beyond an orbit, so that differences of their first
-derivatives, which have all digits, give B and C to some twelve digits.
+The legs are explicit in the unknowns, and smooth far beyond an orbit, so that differences of their
+first derivatives, which have all digits, give B and C to some twelve digits.
 
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.3, 4.5 and 5.4; for
 chains, Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM J. Numer. Anal. 43, 1407
@@ -38,7 +39,7 @@ SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 for polynomials up to the eighth degree."""
 
 SHARE = 0.1
-"""Step of the differences: the largest change of an unknown, relative to the least speed and to 1."""
+"""Step of the differences: the largest change of an unknown over the least speed, or over 1."""
 
 
 # Normal forms
@@ -126,8 +127,10 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool:
-        """Whether a period doubling has b > 0: the orbits of twice the period are where the orbit is
-        unstable, and stable if the other multiplier is inside the unit circle.
+        """Whether a period doubling has b > 0.
+
+        The orbits of twice the period are then where the orbit is unstable, and they are stable
+        if the other multiplier is inside the unit circle.
 
         Raises
         ------
@@ -140,8 +143,9 @@ class NormalForm:
 
     @property
     def opens_upwards(self) -> bool:
-        """Whether the two orbits of a saddle-node, or those of twice the period, are at larger values
-        of the parameter.
+        """Whether the parameter is larger on the orbits that branch off.
+
+        These are the two orbits of a saddle-node, or those of twice the period.
         """
         return -MULTIPLIERS[self.kind] * self.rate * self.coefficient > 0
 
@@ -205,7 +209,7 @@ SAMPLES = 2001
 """Samples of a flight among which its lowest point is searched."""
 
 TOUCHES = 1e-9
-"""A flight with its lowest point at this height touches the table. Grazings are located to 1e-12."""
+"""A flight touches the table if its lowest point is this near: grazings are located to 1e-12."""
 
 SLOW = 1e-3
 """An added impact is slow if it lasts for this share of a free impact and of a radian."""
@@ -214,8 +218,8 @@ SLOW = 1e-3
 class Touch(NamedTuple):
     """The lowest turning point of the flights of an orbit.
 
-    ``leg`` is the number of the impact before it, ``time`` that of the point, ``acceleration`` is δ″,
-    and ``height`` is δ.
+    ``leg`` is the number of the impact before it, ``time`` that of the point, ``acceleration`` is
+    δ″, and ``height`` is δ.
     """
 
     leg: int
@@ -265,7 +269,7 @@ def _grazing(equations: OrbitEquations, z: NDArray) -> Touch:
     found = touch(equations, z)
     if not abs(found.height) < TOUCHES:
         raise OrbitNotFound(
-            f"no flight of the orbit touches the table: the lowest turns back at δ = {found.height:.2g}"
+            f"no flight of the orbit touches the table: the least gap is {found.height:.2g}"
         )
     return found
 
@@ -275,10 +279,10 @@ def one_impact_more(
 ) -> tuple[OrbitEquations, NDArray, NDArray]:
     """The orbits with one impact more that branch off where a flight touches the table.
 
-    Their equations are smooth if the speed of the added impact is an unknown, although the return map
-    has a square root there. An instantaneous impact begins with the speed 0. A contact of finite
-    duration has no regular equation there, because it ends as it starts; it begins with a slow
-    impact, which lasts for 2u/a, as if there were no contact force.
+    Their equations are smooth if the speed of the added impact is an unknown, although the return
+    map has a square root there. An instantaneous impact begins with the speed 0. A contact of
+    finite duration has no regular equation there, because it ends as it starts; it begins with a
+    slow impact, which lasts for 2u/a, as if there were no contact force.
 
     Parameters
     ----------
@@ -329,8 +333,8 @@ class GrazingForm:
 
     ``leg`` is the number of the impact before the flight, counted from 0, ``phase`` the phase of
     the table at the touch, and ``acceleration`` a = δ″ there; ``coefficient`` is S. ``slope`` is
-    the derivative of the parameter ``along`` by the speed of the added impact, and 0 for contacts of
-    finite duration. ``opens_upwards`` says whether the orbits with one impact more are at larger
+    the derivative of the parameter ``along`` by the speed of the added impact, and 0 for contacts
+    of finite duration. ``opens_upwards`` says whether the orbits with one impact more are at larger
     values of the parameter, and ``persists`` whether they are where the flight would be below the
     table; otherwise both orbits exist on one side and disappear together.
     """
@@ -354,9 +358,9 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
         S = (1 + r) √(2a)
 
-    and r at the speed 0, so that the derivative of the return map is infinite. A contact of finite duration
-    has S = 0: a slow impact lasts for about 2√(2d/a), and in this time the spring and the damper
-    change the velocity by a multiple of d only.
+    and r at the speed 0, so that the derivative of the return map is infinite. A contact of finite
+    duration has S = 0: a slow impact lasts for about 2√(2d/a), and in this time the spring and the
+    damper change the velocity by a multiple of d only.
 
     Raises
     ------

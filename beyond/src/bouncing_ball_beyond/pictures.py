@@ -84,9 +84,7 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
         for branch, colour in zip(branches, colours(len(branches)), strict=True):
             entries |= _draw(axes, branch, quantity, colour)
             lines[_name(branch)] = sample(color=colour)
-        # First the kinds of lines, then the marks, then the branches.
-        entries = dict(sorted(entries.items(), key=lambda entry: entry[1].get_marker() != "None"))
-        entries |= lines if len(lines) > 1 else {}
+        entries = dict(sorted(entries.items(), key=_order)) | (lines if len(lines) > 1 else {})
         axes.set_xlabel(_label(names[0]))
         axes.set_ylabel(_label(names[1]))
         axes.set_title(_title(branches))
@@ -115,8 +113,10 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
     stable = np.ones(len(x), bool) if is_curve else whole.stable
     looks = 2 * whole.admissible + stable
     special = [i for i, each in enumerate(orbits) if each in branch.special]
-    for i in reversed(special):
+    # A special orbit looks as the orbits behind it, and the last orbit as those before it.
+    for i in [*reversed(special), 0]:
         looks[i] = looks[min(i + 1, len(x) - 1)]
+    looks[-1] = looks[max(len(x) - 2, 0)]
     entries = {}
     for part in pieces(looks):
         admissible, steady = divmod(int(looks[part.start]), 2)
@@ -134,6 +134,12 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
         axes.plot(np.full(y[i].shape, x[i]), y[i], color=colour, **look)
         entries[orbits[i].kind] = sample(**look)
     return entries
+
+
+def _order(entry: tuple[str, Any]) -> tuple[bool, bool, bool]:
+    """The order of a legend: lines, from those of stable orbits on, before marks."""
+    text, line = entry
+    return line.get_linestyle() == "None", "no ball" in text, text == "unstable"
 
 
 def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArray]:
@@ -181,7 +187,7 @@ def _label(name: str) -> str:
 def _name(branch: FollowedBranch) -> str:
     """What a legend says of the colour of a branch."""
     impacts, periods = branch.impacts, branch.periods
-    return f"{impacts} impact{'s'[: impacts - 1]} in {periods} period{'s'[: periods - 1]}"
+    return f"{impacts} impact{'s'[: impacts - 1]} in {periods} T"
 
 
 def _title(branches: list[FollowedBranch]) -> str:

@@ -118,7 +118,8 @@ def _checked(name, value, low, high, *, low_allowed):
 
 def _check_function(restitution):
     """Raise ValueError unless complex steps give the derivative of r(u), as differences do."""
-    u, step = np.array([0.5, 1.0, 2.0]), 1e-5
+    u = np.array([0.5, 1.0, 2.0])
+    step = 1e-5
     try:
         along = np.imag(restitution(u + 1j * H)) / H
         across = (restitution(u + step) - restitution(u - step)) / (2 * step)
@@ -206,20 +207,20 @@ def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
 
 def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     """Eqs. 12 and 13: a decaying oscillation about a steady one, a sin(τ + s) + b cos(τ + s)."""
-    stiffness, decay = ratio * ratio, zeta * ratio
+    stiffness = ratio * ratio
+    decay = zeta * ratio
     scale = amplitude / ((stiffness - 1) * (stiffness - 1) + 4 * decay * decay)
-    a, b = scale * (stiffness - 1), -2 * scale * decay
+    a = scale * (stiffness - 1)
+    b = -2 * scale * decay
     rest = -gravity / stiffness
     sin_start, cos_start = _sin_cos(tau)
     sin_end, cos_end = _sin_cos(tau + s)
     c = gap - rest - a * sin_start - b * cos_start
     d = -u - a * cos_start + b * sin_start + decay * c
     cosine, sine = _decaying(s, ratio, zeta)
-    free_rate = (d - decay * c) * cosine - (stiffness * (1 - zeta * zeta) * c + decay * d) * sine
-    return (
-        c * cosine + d * sine + rest + a * sin_end + b * cos_end,
-        free_rate + a * cos_end - b * sin_end,
-    )
+    position = c * cosine + d * sine
+    rate = (d - decay * c) * cosine - (stiffness * (1 - zeta * zeta) * c + decay * d) * sine
+    return position + rest + a * sin_end + b * cos_end, rate + a * cos_end - b * sin_end
 
 
 def _decaying(s, ratio, zeta):
@@ -229,15 +230,15 @@ def _decaying(s, ratio, zeta):
     omega = ratio * np.sqrt(np.where(over, 0.75, square))
     envelope = np.exp(-np.where(over, 0.5, zeta) * ratio * s)
     sin, cos = _sin_cos(omega * s)
-    cosine, sine = envelope * cos, envelope * sin / omega
+    cosine = envelope * cos
+    sine = envelope * sin / omega
     if not np.any(over):
         return cosine, sine
     root = np.sqrt(np.where(over, -square, 0.75))
-    slow, fast = np.exp(-ratio * s / (zeta + root)), np.exp(-ratio * s * (zeta + root))
-    return (
-        np.where(over, (slow + fast) / 2, cosine),
-        np.where(over, (slow - fast) / (2 * ratio * root), sine),
-    )
+    slow = np.exp(-ratio * s / (zeta + root))
+    fast = np.exp(-ratio * s * (zeta + root))
+    cosine = np.where(over, (slow + fast) / 2, cosine)
+    return cosine, np.where(over, (slow - fast) / (2 * ratio * root), sine)
 
 
 def _by_doubling(s, tau, gap, u, amplitude, gravity, ratio, zeta):
@@ -249,24 +250,31 @@ def _by_doubling(s, tau, gap, u, amplitude, gravity, ratio, zeta):
 
         g″ + 2ζϖg′ + ϖ²g = 0,   g′(0) = 1,    G′ = g,    S′ = C,    C′ = g - S
     """
-    loss, stiffness = 2 * zeta * ratio, ratio * ratio
+    loss = 2 * zeta * ratio
+    stiffness = ratio * ratio
+
+    def rates(g, rate, load, sine, cosine):
+        return np.array([rate, -loss * rate - stiffness * g, g, cosine, g - sine])
+
     size = np.max(np.abs(s) * (1 + ratio.real * (1 + 2 * zeta.real)))
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
-    x = s / 2.0**doublings
-    g, rate, load, sine, cosine = term = 0 * x, 1 + 0 * x, 0 * x, 0 * x, 0 * x
+    x = (s + 0 * loss) / 2.0**doublings
+    term = np.array([0 * x, 1 + 0 * x, 0 * x, 0 * x, 0 * x])
+    responses = term.copy()
     for k in range(1, 21):
-        p, q, _, v, w = term
-        term = x / k * q, -x / k * (loss * q + stiffness * p), x / k * p, x / k * w, x / k * (p - v)
-        g, rate, load = g + term[0], rate + term[1], load + term[2]
-        sine, cosine = sine + term[3], cosine + term[4]
+        term = x / k * rates(*term)
+        responses += term
+    g, rate, load, sine, cosine = responses
     for _ in range(doublings):
         held = rate + loss * g
-        a, b = held + np.cos(x), g + np.sin(x)
-        sine, cosine = a * sine + b * cosine, a * cosine - b * sine + g * g
+        a = held + np.cos(x)
+        b = g + np.sin(x)
         load = (1 + held) * load + g * g
+        sine, cosine = a * sine + b * cosine, a * cosine - b * sine + g * g
         g, rate = g * (held + rate), rate * rate - stiffness * g * g
         x = 2 * x
-    sin_start, cos_start = np.sin(tau), np.cos(tau)
+    sin_start = np.sin(tau)
+    cos_start = np.cos(tau)
     forced = sin_start * cosine + cos_start * sine
     forced_rate = sin_start * (g - sine) + cos_start * cosine
     return (
@@ -278,7 +286,8 @@ def _by_doubling(s, tau, gap, u, amplitude, gravity, ratio, zeta):
 def _arc_over_root(zeta):
     """2 arccos ζ/√(1 - ζ²), which is analytic at ζ = 1: 4A/(1 + ζ) with A = arctan(√t)/√t."""
     t = (1 - zeta) / (1 + zeta)
-    near, over = np.abs(t) < 0.1, np.real(t) < 0
+    near = np.abs(t) < 0.1
+    over = np.real(t) < 0
     root = np.sqrt(np.where(near, 1.0, np.where(over, -t, t)))
     arc = np.where(over, np.arctanh(np.where(over & ~near, root, 0.0)), np.arctan(root)) / root
     series = sum((-np.where(near, t, 0.0)) ** k / (2 * k + 1) for k in range(17))
@@ -387,7 +396,8 @@ class SpringDamper(Ball):
     def signature(self, u):
         """r = e^{-ζT}, D = T/ϖ, t_c = r (D + κ)/(1 + r), σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ."""
         T = self.free(u)
-        r, duration = np.exp(-self.zeta * T), T / self.frequency_ratio
+        r = np.exp(-self.zeta * T)
+        duration = T / self.frequency_ratio
         through = duration + self.kappa
         loss = (1 - r) * through - 2 * self.zeta * (1 + r) / self.frequency_ratio
         return Signature(r, duration, r * through / (1 + r), loss)
@@ -403,11 +413,15 @@ class SpringDamper(Ball):
         >>> ball.first_release(0.0, np.array([1.0, 1e-3]), amplitude=0.9).round(3)
         array([3.478,   nan])
         """
-        ratio, zeta, kappa = self.frequency_ratio, self.zeta, self.kappa
+        ratio = self.frequency_ratio
+        zeta = self.zeta
+        kappa = self.kappa
         start = kappa * np.minimum(u, 0.0)
         acceleration = amplitude * np.sin(tau) - gravity + 2 * zeta * ratio * u - ratio**2 * start
-        phase, strength = tau + np.arctan(kappa), amplitude * np.sqrt(1 + kappa**2)
-        f, slope = start - kappa * u, kappa * acceleration - u
+        phase = tau + np.arctan(kappa)
+        strength = amplitude * np.sqrt(1 + kappa**2)
+        f = start - kappa * u
+        slope = kappa * acceleration - u
         early = self._certainly_in_contact(u, np.abs(amplitude) + np.abs(gravity))
         # A ball that is laid on the table is pressed on it as long as δ″ < 0 outweighs δ‴.
         pressed = np.maximum(-acceleration, 0.0)
@@ -427,7 +441,8 @@ class SpringDamper(Ball):
         are log-concave. The sum is thus negative before the time at which sin(ω(D - s)) = q, where
         it is negative because k ≥ rq/ω there.
         """
-        zeta, ratio = self.zeta, self.frequency_ratio
+        zeta = self.zeta
+        ratio = self.frequency_ratio
         omega = ratio * np.sqrt(np.maximum((1 - zeta) * (1 + zeta), 0.0))
         r, duration, _, _ = self.signature(u)
         q = strength * (1 + r) * omega / (ratio**2 * r * np.maximum(u, 1e-300))
@@ -450,7 +465,8 @@ def first_rise(early, *given):
     given : numbers or arrays of shape (n,)
         The phase of the forcing, f and -f′ at the start, the amplitude of the forcing, g, ϖ and ζ.
     """
-    time, found = np.array(early), np.full(early.shape, np.nan)
+    time = np.array(early)
+    found = np.full(early.shape, np.nan)
     left = np.arange(early.size)
     for count in itertools.count(1):
         now = time[left]
@@ -482,10 +498,12 @@ def safe_step(s, f, slope, phase, strength, gravity, ratio, zeta):
     step, last : array
         The step, and whether it ends on the zero.
     """
-    stiffness, loss = ratio * ratio, 2 * zeta * ratio
+    stiffness = ratio * ratio
+    loss = 2 * zeta * ratio
     static = strength / stiffness
     sin, cos = _sin_cos(phase + s)
-    height, rate = f + gravity / stiffness - static * sin, slope - static * cos
+    height = f + gravity / stiffness - static * sin
+    rate = slope - static * cos
     second = -stiffness * height - loss * slope
     load = np.abs(static) * np.sqrt(1 + loss * loss)
     speed = np.sqrt(rate * rate + stiffness * height * height) + 2 * load / ratio
@@ -517,9 +535,11 @@ def stays_negative(s, f, slope, phase, strength, gravity, ratio, zeta):
     The steady response is at most Λ/√γ - g/ϖ², γ = (ϖ² - 1)² + (2ζϖ)². What is left of the
     transient is at most e/ϖ, where its e = √(f′² + ϖ²f²) never rises.
     """
-    stiffness, loss = ratio * ratio, 2 * zeta * ratio
+    stiffness = ratio * ratio
+    loss = 2 * zeta * ratio
     gamma = np.maximum((stiffness - 1) * (stiffness - 1) + loss * loss, 1e-300)
-    a, b = strength * (stiffness - 1) / gamma, -strength * loss / gamma
+    a = strength * (stiffness - 1) / gamma
+    b = -strength * loss / gamma
     sin, cos = _sin_cos(phase + s)
     transient = f + gravity / stiffness - a * sin - b * cos
     transient_slope = slope - a * cos + b * sin

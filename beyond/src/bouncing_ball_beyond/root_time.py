@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.balls import H, PATIENCE
 
 ORDER = 20
 """Gauss nodes of a panel."""
@@ -38,23 +38,30 @@ FALLING, SMOOTH = 0.02, 1e-13
 function do. After a jump of the slope the quotient is (1/2)² to (1/2)³, and the square of the last ones
 is no measure of the error: they must be as small as SMOOTH."""
 
-EARLY, SWEEPS, SETTLED, CONVERGED = 3, 20, 1e-11, 1e-12
+SWEEPS, CONVERGED, SETTLED = 20, 1e-13, 1e-12
 """The largest number of sweeps of a panel. They stop where all panels have changed by less than
 CONVERGED in a sweep, and the panel is right if it has changed by less than SETTLED."""
 
-STEPS, NEAR = 8, 1e-8
-"""Newton's steps to an event, and the last one over the length of the panel: the error is its square."""
+EARLY, WANTED, LONGER = 3, 0.03, 2.0
+"""The change in the sweep EARLY that the next panel should have, and the largest ratio of two lengths.
+They are the ones with the least work in contacts of four laws."""
+
+NEAR = 1e-8
+"""The last step of Newton's method to an event over the length of the panel: the error is its square."""
 
 MOST_PANELS = 4000
-"""The largest number of panels of a contact: an oscillation takes about eight."""
+"""The largest number of panels of a contact: an oscillation takes about six."""
+
+STEADY = 1e-9
+"""A motion that has changed by less in a period of the table, relatively, is a permanent contact."""
 
 ROWS = 500
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
 
-LONGER = 2.0
-WANTED = 3e-2
-
 TINY = 1e-300
+
+LISTED = ("tau", "u", "T")
+"""What is an array for each contact, also where it is the same number for all."""
 
 
 def _gauss(n):
@@ -70,6 +77,49 @@ _TWICE = _INTEGRALS @ _INTEGRALS
 _LAST, _MIDDLE = _COEFFICIENTS[-2:], _COEFFICIENTS[ORDER // 2 : ORDER // 2 + 2]
 
 
+class Rows(NamedTuple):
+    """Numbers and arrays of one shape, real or complex, as rows of contacts and directions of steps.
+
+    ``given`` has real numbers, or arrays of the shape (rows,), and ``steps`` the imaginary parts that
+    are not zero, of the shape (rows, directions). Along the first axis of complex arrays are the
+    directions if the real parts are the same along it.
+    """
+
+    shape: tuple
+    given: dict
+    steps: dict
+    size: int
+    directions: int
+
+    def joined(self, real, imaginary):
+        """Results (k, rows) and their derivatives (k, rows, directions) in the shape of what is given."""
+        if not self.directions:
+            return real.reshape(-1, *self.shape)
+        values = real[:, np.newaxis] + 1j * np.moveaxis(imaginary, 2, 1)
+        return values.reshape(-1, *self.shape)
+
+
+def rows_of(values):
+    """:class:`Rows` of numbers and arrays that broadcast."""
+    arrays = {name: np.asarray(value) for name, value in values.items()}
+    shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
+    is_complex = any(np.iscomplexobj(x) for x in arrays.values())
+    ahead = [x.real for x in arrays.values() if x.ndim == len(shape) > 0]
+    beside = is_complex and all(np.array_equal(x, x[:1] + 0 * x, equal_nan=True) for x in ahead)
+    inner = shape[1:] if beside and shape else shape
+    directions = (shape[0] if beside and shape else 1) if is_complex else 0
+    size = int(np.prod(inner))
+    given, steps = {}, {}
+    for name, x in arrays.items():
+        real = x.real[0] if x.ndim > len(inner) else x.real
+        given[name] = np.broadcast_to(real, inner).ravel() if x.ndim or name in LISTED else real[()]
+        if np.any(x.imag):
+            every = np.broadcast_to(x.imag, shape).reshape(directions, size)
+            steps[name] = every.T
+            given[name] = np.broadcast_to(given[name], size)
+    return Rows(shape, given, steps, size, directions)
+
+
 class Motion(NamedTuple):
     """The equation of motion of contacts, and where panels end.
 
@@ -80,9 +130,9 @@ class Motion(NamedTuple):
     force : callable
         f(p, v, a, given).
     release : callable
-        The release function of (q, v, a, given), negative in a contact and zero at its end.
+        The release function of (q, v, t, given), negative in a contact and zero at its end.
     kinks : tuple of callables
-        Functions of (q, v, a, given) whose zeros are kinks of the force.
+        Functions of (q, v, t, given) whose zeros are kinks of the force.
     given : mapping
         Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity" and what the force needs.
     steps : mapping
@@ -131,15 +181,16 @@ def rates(motion, state):
 
 def event_rate(motion, event, state):
     """A function of an event and its derivative with respect to s along the motion."""
-    q, v, t = (y + 1j * H * rate for y, rate in zip(state, rates(motion, state), strict=True))
-    value = event(q, v, load(t, motion.given), motion.given)
+    beside = (y + 1j * H * rate for y, rate in zip(state, rates(motion, state), strict=True))
+    value = event(*beside, motion.given)
     return value.real, value.imag / H
 
 
 class Panel(NamedTuple):
-    """q, v, t at the nodes and at the end of panels, their lengths, and the changes in two sweeps.
+    """Solved panels.
 
-    ``early`` is that of the sweep EARLY and ``change`` that of the last one.
+    ``nodes`` and ``end`` are (q, v, t) at the nodes and at the end. ``early`` is the change of v in
+    the sweep EARLY, and ``change`` that in the last one.
     """
 
     nodes: tuple
@@ -148,42 +199,42 @@ class Panel(NamedTuple):
     early: np.ndarray
     change: np.ndarray
 
+    def replace_some(self, at, new):
+        """Write other panels into these."""
+        old = (*self.nodes, *self.end, *self[2:])
+        for whole, part in zip(old, (*new.nodes, *new.end, *new[2:]), strict=True):
+            whole[..., at] = part
+
 
 def solve_panel(motion, start, h, event=None):
-    """The motion on panels from (q, v, t) at their starts, of the lengths h or to an event.
+    """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
     In each sweep Newton's method moves the end of a panel towards the event.
     """
     q0, v0, t0 = start
-    m, force, given = motion.root, motion.force, motion.given
-    v = np.broadcast_to(v0, (ORDER, v0.size))
-    moved = 0.0
+    v, moved, near = np.broadcast_to(v0, (ORDER, v0.size)), 0.0, True
     for sweep in range(SWEEPS):
+        h = h + moved
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
         t = t0 + h * (_INTEGRALS @ lever)
-        a = load(t, given)
-        push = lever * (a - force(q * lever / m, v, a, given))
+        a = load(t, motion.given)
+        push = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         before, v = v, v0 + h * (_INTEGRALS @ push)
         if sweep < EARLY:
             continue
         change = np.abs(v - before).max(0)
         early = change if sweep == EARLY else early
+        end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
         if event:
-            end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
             value, slope = event_rate(motion, event, end)
-            moved = -value / slope
-            if (np.abs(moved) <= NEAR * h).all() and (change <= CONVERGED * np.abs(v).max(0)).all():
-                break
-            moved = np.clip(moved, -0.5 * h, 0.5 * h)
-            h = h + moved
-        elif (change <= CONVERGED * np.abs(v).max(0)).all():
+            moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
+            near = np.abs(moved) <= NEAR * h
+        if np.all(near & (change <= CONVERGED * np.abs(v).max(0))):
             break
-    end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
     if event:
         end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
-        change = np.where(np.abs(moved) <= NEAR*h, change, np.inf)
-    return Panel((q, v, t), end, h + moved, early, change)
+    return Panel((q, v, t), end, h + moved, early, np.where(near, change, np.inf))
 
 
 def carried(motion, nodes, by, h):
@@ -210,17 +261,23 @@ def carried(motion, nodes, by, h):
     f_q, f_v, f_t = f_q[..., None], f_v[..., None], f_t[..., None]
     known = f_q * q_alone + f_v * v0 + f_t * (t0 + bent @ q_alone)
     if motion.steps:
-        stepped = {name: np.expand_dims(x, 1) if np.ndim(x) else x for name, x in motion.stepped().items()}
+        stepped = {
+            name: np.expand_dims(x, 1) if np.ndim(x) else x for name, x in motion.stepped().items()
+        }
         step = load(t[..., None], stepped)
-        known = known + lever[..., None] * (
-            step - motion.force(p[..., None], v[..., None], step, stepped)
-        ).imag
+        known = (
+            known
+            + lever[..., None]
+            * (step - motion.force(p[..., None], v[..., None], step, stepped)).imag
+        )
     matrix = np.eye(ORDER) - f_q * twice - f_v * once - f_t * (bent @ twice)
     force = np.linalg.solve(matrix, known)
     rate = v0 + once @ force
     root = q0 + once @ rate
     sums = (h * (_WEIGHTS @ each)[:, None] for each in (rate, force, bend[..., None] * root))
-    return np.array([before + more for before, more in zip((q0, v0, t0), sums, strict=True)])[:, :, 0]
+    return np.array([before + more for before, more in zip((q0, v0, t0), sums, strict=True)])[
+        :, :, 0
+    ]
 
 
 def _resolved(panel, size):
@@ -237,16 +294,15 @@ def _resolved(panel, size):
 
 
 def _first_event(motion, events, side, start, panel):
-    """The first event of each panel and about its place on [0, 1]; -1 and infinity if there is none.
+    """The first event of each panel, about its place on [0, 1], and the sides; -1 if there is none.
 
-    ``side`` has the signs of the functions before their events, and 0 where that is not known yet.
+    The sides are the signs of the functions before their events, 0 where they are not known yet.
     """
-    q, v, t = (np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True))
-    a = load(t, motion.given)
-    which, place = np.full(q.shape[1], -1), np.full(q.shape[1], np.inf)
+    states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
+    which, place = np.full(start[0].size, -1), np.full(start[0].size, np.inf)
     x = np.concatenate([[0.0], _NODES, [1.0]])
     for k, event in enumerate(events):
-        values = event(q, v, a, motion.given)
+        values = event(*states, motion.given)
         side[k] = np.where(side[k] == 0, np.sign(values[1]), side[k])
         over = values[1:] * side[k] < 0
         crossed = np.flatnonzero(over.any(0))
@@ -255,26 +311,44 @@ def _first_event(motion, events, side, start, panel):
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
         first = here < place[crossed]
         place[crossed[first]], which[crossed[first]] = here[first], k
-    return which, place
+    return which, place, side
 
 
 def _shift(motion, event, state, by):
-    """How much later in s an event is: derivatives (rows, directions), from those of the state."""
+    """Derivatives of s at an event, from those of (q, v, t), (3, rows, directions)."""
     _, slope = event_rate(motion, event, state)
-    q, v, t = (y[:, None] + 1j * each for y, each in zip(state, by, strict=True))
-    given = motion.stepped()
-    return -event(q, v, load(t, given), given).imag / slope[:, None]
+    beside = (y[:, None] + 1j * each for y, each in zip(state, by, strict=True))
+    return -event(*beside, motion.stepped()).imag / slope[:, None]
+
+
+def _next_panel(motion, events, side, start, length):
+    """The next panels, which end at their first events, the events (-1 is none), and their sides."""
+    panel = solve_panel(motion, start, length)
+    which, place, side = _first_event(motion, events, side, start, panel)
+    for k in np.unique(which[which >= 0]):
+        at = np.flatnonzero(which == k)
+        begin = [y[at] for y in start]
+        short = length[at] * place[at]
+        panel.replace_some(at, solve_panel(motion.of(at), begin, short, events[k]))
+    return panel, which, side
+
+
+def _turn(q, v, t, given):
+    """The event that ends each period of the table."""
+    return t - given["turn"]
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, h, until=None, by_until=0.0):
+def follow(motion, q, v, by, length, until=None, by_until=0.0):
     """Contacts from their starts to the first releases, or to root times.
+
+    A contact is permanent if its motion repeats after a period of the table, or if it lasts PATIENCE.
 
     Parameters
     ----------
     motion : Motion
-        The equation of motion, with a value of "tau" for each contact.
-    q, v, h : array, shape (rows,)
+        The equation of motion.
+    q, v, length : array, shape (rows,)
         q and v at the start, and the length of the first panel.
     by : array, shape (2, rows, directions)
         Derivatives of q and v.
@@ -284,64 +358,58 @@ def follow(motion, q, v, by, h, until=None, by_until=0.0):
     Returns
     -------
     ends, derivatives : array, shapes (4, rows) and (4, rows, directions)
-        Root time, q, v and the time after the start; NaN for contacts that are not released.
+        Root time, q, v and the time after the start; NaN for permanent contacts.
     """
     rows, directions = by.shape[1:]
     now, by = np.array([0 * v, q, v, 0 * v]), np.array([0 * by[0], *by, 0 * by[0]])
-    kinks, h, size = len(motion.kinks), h.copy(), np.abs(v)
-    events = motion.kinks if until is not None else (*motion.kinks, motion.release)
+    length, size, before, turn = length.copy(), np.abs(v), now[1:3].copy(), np.full(rows, 2 * np.pi)
+    motion = motion._replace(given={**motion.given, "turn": turn})
+    release = len(motion.kinks)
+    events = motion.kinks if until is not None else (*motion.kinks, motion.release, _turn)
     side = np.zeros((len(events), rows))
-    side[kinks:] = -1.0
-    ended = ~np.isfinite(now[:, :]).all(0)
-    lost = ended.copy()
+    side[release:] = -1.0
+    ended, lost = np.zeros(rows, bool), ~np.isfinite(now).all(0)
     for _ in range(MOST_PANELS):
-        active = np.flatnonzero(~ended)
+        active = np.flatnonzero(~(ended | lost))
         if not active.size:
             break
         for here in np.array_split(active, -(-active.size // ROWS)):
-            part, (s, *start), length = motion.of(here), now[:, here], h[here]
-            last = np.zeros(here.size, bool)
+            part, (s, *start), h = motion.of(here), now[:, here], length[here]
             if until is not None:
                 left = until[here] - s
-                pieces = np.ceil(left / length - 1e-9)
-                length, last = left / pieces, pieces <= 1
-            panel = solve_panel(part, start, length)
-            sides = side[:, here]
-            which, place = _first_event(part, events, sides, start, panel)
-            side[:, here] = sides
-            h[here] = length
-            for k in np.unique(which[which >= 0]):
-                at = np.flatnonzero(which == k)
-                begin = [y[at] for y in start]
-                new = solve_panel(part.of(at), begin, length[at] * place[at], events[k])
-                for whole, piece in zip((*panel.nodes, *panel.end), (*new.nodes, *new.end), strict=True):
-                    whole[..., at] = piece
-                length[at], panel.change[at] = new.length, new.change
+                pieces = np.fmax(np.ceil(left / h - 1e-9), 1)
+                h = left / pieces
+            panel, which, side[:, here] = _next_panel(part, events, side[:, here], start, h)
             size[here] = np.fmax(size[here], np.abs(panel.nodes[1]).max(0))
             good, factor = _resolved(panel, size[here])
-            h[here] *= np.where(good & (which >= 0), 1.0, factor)
-            good = np.flatnonzero(good)
-            kept, part = here[good], part.of(good)
-            now[:, kept] = np.array([s + length, *panel.end])[:, good]
+            length[here] = h * np.where(good & (which >= 0), 1.0, factor)
+            if until is not None:
+                ended[here] = good & (pieces == 1) & (which < 0)
+            here, which, part = here[good], which[good], part.of(good)
+            now[:, here] = np.array([s + panel.length, *panel.end])[:, good]
             if directions:
                 nodes = [y[:, good] for y in panel.nodes]
-                by[1:, kept] = carried(part, nodes, by[1:, kept], length[good])
-            final = last[good] & (which[good] < 0)
-            for k in range(len(events)):
-                at = np.flatnonzero(which[good] == k)
-                if at.size and directions:
-                    turn = part.of(at)
-                    state = now[1:, kept[at]]
-                    shift = _shift(turn, events[k], state, by[1:, kept[at]])
-                    pace = np.array([np.ones(at.size), *rates(turn, state)])
-                    by[:, kept[at]] += pace[..., None] * shift
-                side[k, kept[at]] *= -1
-                final[at] |= k == kinks
-            ended[kept[final]] = True
+                by[1:, here] = carried(part, nodes, by[1:, here], panel.length[good])
+                for k in np.unique(which[which >= 0]):
+                    at = np.flatnonzero(which == k)
+                    i, turned = here[at], part.of(at)
+                    shift = _shift(turned, events[k], now[1:, i], by[1:, i])
+                    by[:, i] += _pace(turned, now[1:, i]) * shift
+            crossed, which = here[which >= 0], which[which >= 0]
+            side[which, crossed] *= -1
+            ended[crossed] |= which == release
+            crossed = crossed[which > release]
+            state, scale = now[1:3, crossed], np.array([now[1, crossed], size[crossed]])
+            steady = (np.abs(state - before[:, crossed]) <= STEADY * scale).all(0)
+            lost[crossed] = steady | (turn[crossed] > PATIENCE)
+            before[:, crossed], side[release + 1 :, crossed] = state, -1.0
+            turn[crossed] += 2 * np.pi
     if until is not None and directions:
-        state = now[1:]
-        pace = np.array([np.ones(rows), *rates(motion, state)])
-        by += pace[..., None] * (by_until - by[0])
-    lost |= ~ended
-    now[:, lost] = np.nan
+        by += _pace(motion, now[1:]) * (by_until - by[0])
+    now[:, ~ended] = np.nan
     return now, by
+
+
+def _pace(motion, state):
+    """Derivatives of (s, q, v, t) with respect to s, beside directions."""
+    return np.array([np.ones_like(state[0]), *rates(motion, state)])[..., None]

@@ -72,8 +72,10 @@ RESONANT = 1e-6
 a range's end, the determinant has at least ten digits."""
 
 ZERO = 1e-6
-"""A test is zero if it is smaller: before a last step of 1e-8. Where it changes its sign, at a share of
-a step that is known to 1e-12, it jumps if it is larger than so much of its values at the ends."""
+"""A test is zero if it is smaller, before a last step of 1e-8.
+
+Where it changes its sign, at a share of a step that is known to 1e-12, it jumps if it is larger
+than so much of its values at the ends."""
 
 OTHER = 1e-3
 """A start that is farther from the corrected special orbit is no special orbit of its kind."""

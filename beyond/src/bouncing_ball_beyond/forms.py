@@ -212,7 +212,9 @@ TOUCHES = 1e-9
 """A flight touches the table if its lowest point is this near: grazings are located to 1e-12."""
 
 SLOW = 1e-3
-"""An added impact is slow if it lasts for this share of a free impact and of a radian."""
+"""An added impact is slow if its speed is this share of aD², for free impacts of duration D ≤ 1.
+
+The orbits with a stiff contact can turn back at a few hundredths of aD²."""
 
 
 class Touch(NamedTuple):
@@ -310,7 +312,7 @@ def one_impact_more(
     if equations.ball.lasts:
         _, ball, amplitude = equations.split(z[np.newaxis])
         free = float(np.ravel(ball.signature(SLOW).duration)[0])
-        u = SLOW * at.acceleration * np.fmin(1.0, free) / 2
+        u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
         start = at.time - u / at.acceleration
         added = np.array([start, u, np.ravel(ball.first_release(start, u, amplitude))[0]])
     place = (at.leg + 1) * equations.unknowns

@@ -385,17 +385,28 @@ def contact_values(
     blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
     for block in blocks if of_orbits else []:
         equations = OrbitEquations(row, 1, periods).rows(block)
-        guess = guess_of_instants(equations.ball, periods[block], amplitudes[block])
-        solution = newton(equations, guess)
-        good = solution.found & (equations.turn(solution.linear) < 1)
-        # On compliant contacts Newton's method may run to a solution that is no orbit.
-        leaves = equations.ends(solution.z).speed[:, 0] > 0
-        good &= leaves & (np.abs(solution.z - guess)[:, 0] < np.pi)
+        z = rows_of_orbits(equations, amplitudes[block])
+        good = np.isfinite(z[:, 0])
         if good.any():
-            of_block = _values(equations.rows(good), solution.z[good])
+            of_block = _values(equations.rows(good), z[good])
             for name in of_orbits:
                 found[name][block[good]] = of_block[name]
     return {name: values.reshape(shape) for name, values in found.items()}
+
+
+def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
+    """The n-T orbits on the stable side of the saddle-node, shape (rows, N), NaN where there is none.
+
+    They are solved from the instants of the corrected model, and are not searched for elsewhere.
+    """
+    periods = np.broadcast_to(equations.periods, amplitude.shape)
+    guess = guess_of_instants(equations.ball, periods, amplitude)
+    solution = newton(equations, guess)
+    good = solution.found & (equations.turn(solution.linear) < 1)
+    # On compliant contacts Newton's method may run to a solution that is no orbit.
+    leaves = equations.ends(solution.z).speed[:, 0] > 0
+    good &= leaves & (np.abs(solution.z - guess)[:, 0] < np.pi)
+    return np.where(good[:, np.newaxis], solution.z, np.nan)
 
 
 def _bifurcation(row: Ball, periods: NDArray, name: str) -> NDArray:

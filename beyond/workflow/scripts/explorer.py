@@ -1,1 +1,119 @@
 """Stage: random orbits and balls with which the explorer's page compares what it computes."""
+
+import sys
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from bouncing_ball import restitution
+from bouncing_ball.datasets import grid, save_stage
+from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
+from bouncing_ball_beyond.motions import motion_of
+from bouncing_ball_beyond.one_ball import settling
+from bouncing_ball_beyond.orbits import OrbitNotFound, orbit
+from bouncing_ball_beyond.simulation import simulate
+from studies.orbits import random_orbits
+from studies.variables import VARIABLES
+
+# The part of the stable range of the restitution model in which Λ is drawn, from near its saddle-node
+# (0) to beyond its period doubling (1).
+PLACES = (0.02, 1.2)
+# Balls that end at rest, on an orbit, on a doubled orbit, and on an orbit with rests. None is near
+# chaos, where the results of two computers differ.
+BALL = {"restitution": 0.5, "frequency_ratio": 80.0}
+AMPLITUDES = [0.6, 1.2, 1.6, 2.5]
+START = {"phase": 1.0, "velocity": -3.0}
+IMPACTS = 100
+
+
+def orbits_of(ball: Ball, n: NDArray, amplitude: NDArray, saddle_node: NDArray):
+    """Equations of n-T orbits and their rows; those above the saddle-node are searched for if they
+    are not near the instants of the corrected model.
+    """
+    equations = OrbitEquations(ball, 1, n)
+    z = rows_of_orbits(equations, amplitude)
+    for row in np.flatnonzero(np.isnan(z[:, 0]) & ~(amplitude < saddle_node)):
+        one = equations.rows(row).ball
+        try:
+            z[row] = orbit(one, amplitude=amplitude[row], n=n[row]).z
+        except OrbitNotFound:
+            continue
+    return equations, z
+
+
+def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
+    """One random orbit for each ϖ under a release, over `sample`."""
+    n, zeta, amplitude, _ = random_orbits(ratios.size, seed, release, PLACES)
+    r = SpringDamper(1.0, damping_ratio=zeta).signature(1.0).restitution
+    ball = SpringDamper(ratios, restitution=r, release=release)
+    limits = ("saddle_node", "period_doubling")
+    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=limits)
+    equations, z = orbits_of(ball, n, amplitude, exact["saddle_node"])
+    own = ball.signature(1.0).restitution
+    lift = np.sqrt(amplitude**2 - restitution.saddle_node(n, own) ** 2)
+    corrected = Corrected(ball)
+    instant = contact_values(corrected, amplitude=amplitude, n=n)
+    of_instants = OrbitEquations(corrected, 1, n)
+    instants = at_orbits(traces, of_instants, rows_of_orbits(of_instants, amplitude))
+    values = {
+        "n": n,
+        "restitution": r,
+        "frequency_ratio": ratios,
+        "amplitude": amplitude,
+        **at_orbits(observables, equations, z),
+        "saddle_node_amplitude": exact["saddle_node"],
+        "period_doubling_amplitude": exact["period_doubling"],
+        "restitution_phase": restitution.impact_phase(n, own, amplitude),
+        # The trace is 1 + r² at the saddle-node, where Y = 0, and -1 - r² at the period doubling.
+        "restitution_trace": 1 + own**2 - (1 + own) ** 2 * lift,
+        "restitution_period_doubling": restitution.period_doubling(n, own),
+        "corrected_phase": instant["phase"],
+        "corrected_max_height": instant["max_height"],
+        "corrected_trace": instants["trace"],
+        "corrected_saddle_node": instant["saddle_node"],
+        "corrected_period_doubling": instant["period_doubling"],
+    }
+    return xr.Dataset({name: ("sample", value) for name, value in values.items()})
+
+
+def at_orbits(quantities, equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
+    """A function of equations and orbits, whose values are NaN in rows without an orbit."""
+    known = np.isfinite(z[:, 0])
+    found = {}
+    for name, values in quantities(equations.rows(known), z[known]).items():
+        found[name] = np.full(len(z), np.nan)
+        found[name][known] = values
+    return found
+
+
+def traces(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
+    """Traces and determinants of the derivatives of return maps."""
+    trace, determinant = equations.trace_and_determinant(equations.linear(z))
+    return {"trace": trace, "determinant": determinant}
+
+
+def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
+    """The quantities of orbits, and height and force in the middle of the contact."""
+    impacts, _, amplitudes = equations.split(z)
+    touch, speed, own_time = impacts[:, 0].T
+    amplitude = amplitudes[:, 0]
+    ends = equations.ends(z)
+    duration = ends.leaves[:, 0] - touch
+    bounce = ends.speed[:, 0]
+    ball = equations.ball
+    middle = ball.contact(touch, speed, own_time / 2, amplitude)
+    ratio = ball.frequency_ratio
+    return {
+        "phase": np.pi - (np.pi - touch) % (2 * np.pi),
+        "contact_duration": duration,
+        "impact_velocity": amplitude * np.cos(touch) - speed,
+        "bounce_velocity": amplitude * np.cos(touch + duration) + bounce,
+        "apparent_restitution": bounce / speed,
+        "max_height": equations.max_height(z),
+        **traces(equations, z),
+        "ball": amplitude * np.sin(touch + duration / 2) + middle.gap,
+        "contact_force": -2 * ball.zeta * ratio * middle.speed - ratio**2 * middle.gap,
+    }

@@ -21,7 +21,7 @@ SLOWEST = 1e-12
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
 """Names that parameters must not have."""
 
-DEPTHS = (-46.0, 23.0)
+LIMITS = (-46.0, 23.0)
 """The range of ln p in which the depth of an impact is looked for: p from 1e-20 to 1e10."""
 
 FIRST_PANEL = 0.4
@@ -180,7 +180,7 @@ class ForceLaw(Ball):
         """About the depth P at which the force would stop a ball of the speed u: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
-        low, high = (np.full(shape, end) for end in DEPTHS)
+        low, high = (np.full(shape, end) for end in LIMITS)
         for _ in range(12):
             middle = (low + high) / 2
             depth = np.exp(middle)
@@ -198,11 +198,12 @@ class ForceLaw(Ball):
         return {name: given[name] for name in self.values}
 
     def _release(self, q, v, t, given):
-        """The release function: -q, -(p + κp′) or -f. It crosses zero with a slope."""
+        """The release function: -q, or (-κp′)^{1/m} - q, or -f."""
         if self.release == "displacement":
             return -q
         if self.lag:
-            return -(q**self.root) - self.lag(**self._own(given)) * v
+            # q at which p + κp′ = 0, so that the zero is a simple one for κ = 0 as well.
+            return (self.lag(**self._own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load(t, given), given)
 
     def _followed(self, tau, u, amplitude, gravity, T=None):
@@ -232,14 +233,81 @@ class ForceLaw(Ball):
 
 
 def check_force(law):
-    pass
+    """Raise ValueError, in one line, unless the force of a law is as :class:`ForceLaw` describes it.
+
+    Along lines of constant rates and of constant depths the change of the force between neighbours must
+    be the integral of its derivative by complex steps. It is not where the force is not analytic, and
+    over a kink.
+    """
+    given = {name: np.ravel(np.real(x))[0] for name, x in law.values.items()} | {"u": 1.0}
+    try:
+        probe = law.force_at(np.array([1.0 + 1j * H]), np.array([1.0 + 0j]), 0.0, given)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise ValueError(f"force: fails for arrays of complex numbers ({reason})") from None
+    if np.shape(probe) != (1,):
+        raise ValueError(f"force: must have the shape of p and v, not {np.shape(probe)} for (1,)")
+    with np.errstate(all="ignore"):
+        depth = float(law.at(**{name: given[name] for name in law.values}).depth(1.0))
+        if not LIMITS[0] + 1 < np.log(depth) < LIMITS[1] - 1:
+            raise ValueError("force: stops no ball of the speed 1 at any depth")
+        depths, rates = depth * np.geomspace(1e-3, 30.0, 321), np.linspace(-3.003, 3.0, 241)
+        some_rates = np.array([-1.9, -0.4, 0.3, 1.7])[:, np.newaxis]
+        some_depths = depth * np.array([0.02, 0.3, 1.1, 8.0])[:, np.newaxis]
+        _check_line(law, given, "p", depths, lambda p: (p + 0 * some_rates, some_rates + 0 * p))
+        _check_line(law, given, "v", rates, lambda v: (some_depths + 0 * v, v + 0 * some_depths))
+        _check_root(law, given, depth)
 
 
-def tsuji(stiffness=None, damping=None):
-    """f = K p^{3/2} + C √K p^{1/4} p′."""
+def _check_line(law, given, name, x, place):
+    """Compare the changes of the force along lines with the integrals of its complex steps."""
 
-    def force(p, v, stiffness, damping):
-        root = np.sqrt(p)
-        return stiffness * p * root + damping * np.sqrt(stiffness) * np.sqrt(root) * v
+    def force(x):
+        return law.force_at(*place(x), 1.0, given)
 
-    return ForceLaw(force, {"stiffness": stiffness, "damping": damping}, root=4)
+    def side(x):
+        return np.array([np.sign(kink(*place(x), **law._own(given))) for kink in law.kinks])
+
+    nodes, weights = legendre.leggauss(4)
+    width = np.diff(x)
+    inner = x[:-1, np.newaxis] + width[:, np.newaxis] * (nodes + 1) / 2
+    slopes = force(inner.ravel() + 1j * H).imag / H
+    expected = slopes.reshape(-1, *inner.shape) @ weights / 2 * width
+    values = force(x)
+    change = np.diff(values)
+    scale = np.abs(change) + 1e-6 * np.abs(values[:, 1:])
+    wrong = np.abs(change - expected) > 1e-5 * scale
+    if law.kinks:
+        wrong &= (side(x)[..., 1:] * side(x)[..., :-1] > 0).all(0)
+    if not wrong.any():
+        return
+    line, at = np.argwhere(wrong)[0]
+    where = ", ".join(
+        f"{n} = {each.flat[0]:.3g}"
+        for n, each in zip("pv", (y[line, at] for y in place(x)), strict=True)
+    )
+    if np.count_nonzero(wrong) > 8:
+        raise ValueError(
+            f"force: is not analytic in {name} at {where}, where its derivative is"
+            f" {change[line, at] / width[at]:.4g} by a difference and"
+            f" {expected[line, at] / width[at]:.4g} by a complex step; write it without abs, real and sign"
+        )
+    raise ValueError(
+        f"force: has a kink or a jump near {where}; declare kinks=(function, …) with a zero there"
+    )
+
+
+def _check_root(law, given, depth):
+    """Whether the force is an analytic function of q = p^{1/m} at q = 0."""
+
+    def falls(root):
+        """Whether the Legendre coefficients of f on a short range of q fall as those of an analytic function."""
+        q = ((legendre.leggauss(24)[0] + 1) / 2) * (0.01 * depth) ** (1 / root)
+        values = law.force_at(q**root, 0.5 + 0 * q, 1.0, given)
+        sizes = np.abs(np.linalg.solve(legendre.legvander(legendre.leggauss(24)[0], 23), values))
+        return sizes[-4:].max() <= max(1e-12 * sizes.max(), 1e-3 * sizes[8:12].max())
+
+    if not falls(law.root):
+        others = [m for m in (1, 2, 4, 6, 8) if falls(m)]
+        hint = f"; root={others[0]} would do" if others else ""
+        raise ValueError(f"force: is not an analytic function of p^(1/{law.root}) at p = 0{hint}")

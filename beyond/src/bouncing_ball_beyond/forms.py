@@ -379,7 +379,10 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
     Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
     """
-    equations, z = orbit.equations, orbit.z
+    # On a curve two parameters change, of which the first one counts.
+    path, size = orbit.equations.along[0], orbit.equations.size
+    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
+    equations, z = OrbitEquations(*given, (path,)), orbit.z[: size + 1]
     at = _grazing(equations, z)
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)
@@ -394,7 +397,7 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
         at.acceleration,
         (1 + r) * float(np.sqrt(2 * at.acceleration)),
         0.0 if orbit.ball.lasts else float(direction[-1]),
-        equations.along[-1].name,
+        path.name,
         opens_upwards,
         opens_upwards == (above < below),
     )

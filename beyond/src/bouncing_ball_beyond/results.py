@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball_beyond.balls import Ball
+from bouncing_ball_beyond.balls import Ball, Corrected
 from bouncing_ball_beyond.continuation import FollowedBranch, scales
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations
@@ -55,6 +55,8 @@ PARAMETERS = {
 }
 """Parameters; those of laws have their names as long names."""
 
+PACKAGE = "bouncing_ball_beyond"
+
 Found = PeriodicOrbit | FollowedBranch | Sequence
 """What a dataset is made of, and read as: an orbit, a branch or a curve, or a list of orbits."""
 
@@ -85,7 +87,7 @@ def to_dataset(found: Found) -> xr.Dataset:
     along = [path.name for path in first.equations.along]
     data = xr.Dataset(
         attrs={
-            "source": "bouncing_ball_beyond",
+            "source": PACKAGE,
             "impacts": first.impacts,
             "ball": json.dumps(described(first.ball)),
             "along": json.dumps(along),
@@ -160,17 +162,25 @@ def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
 
 
 def described(ball: Ball) -> dict[str, Any]:
-    """A ball as its class and its fields; a function among them is left out, with its name."""
-    text: dict[str, Any] = {"class": type(ball).__name__}
-    for field in fields(ball):
-        value = getattr(ball, field.name)
-        if isinstance(value, Ball):
-            text[field.name] = described(value)
-        elif callable(value):
-            text["function"] = getattr(value, "__name__", repr(value))
-        elif value is not None:
-            text[field.name] = value if isinstance(value, str) else float(value)
-    return text
+    """A ball as its class and its fields, or as the name and the parameters of a law.
+
+    Of a ball with a function that was written by its user only the function's name remains.
+    """
+    kind = {"class": type(ball).__name__}
+    if isinstance(ball, Corrected):
+        return kind | {"of": described(ball.of)}
+    if getattr(ball, "name", ""):
+        values = {name: float(value) for name, value in ball.parameters.items()}
+        return {"law": ball.name, **values, "release": ball.release}
+    values = {field.name: getattr(ball, field.name) for field in fields(ball)}
+    for value in values.values():
+        if callable(value):
+            return kind | {"function": getattr(value, "__name__", repr(value))}
+    return kind | {
+        name: value if isinstance(value, str) else float(value)
+        for name, value in values.items()
+        if value is not None
+    }
 
 
 def ball_of(text: dict[str, Any]) -> Ball:
@@ -185,11 +195,12 @@ def ball_of(text: dict[str, Any]) -> Ball:
         raise ValueError(
             f"the ball is a {text['class']} with a function, {text['function']}: give it as ball="
         )
-    values = {
-        name: ball_of(value) if isinstance(value, dict) else value for name, value in text.items()
-    }
-    kind = getattr(import_module("bouncing_ball_beyond"), values.pop("class"))
-    return kind(**values)
+    values = dict(text)
+    if "law" in text:
+        return getattr(import_module(f"{PACKAGE}.named_laws"), values.pop("law"))(**values)
+    if "of" in text:
+        return Corrected(ball_of(text["of"]))
+    return getattr(import_module(f"{PACKAGE}.balls"), values.pop("class"))(**values)
 
 
 def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) -> Found:

@@ -1,0 +1,155 @@
+"""Curves of special orbits: closed forms, flights sampled anew, and orbits on both sides."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball_beyond import (
+    OrbitNotFound,
+    Rigid,
+    SpringDamper,
+    follow,
+    normal_form,
+    orbit,
+    special_curve,
+)
+from bouncing_ball_beyond.equations import flight
+
+# Orbits are found to rounding errors of numbers up to ten.
+ROUNDED = 1e-12
+
+COMPLIANT = SpringDamper(2.0, restitution=0.85)
+STIFFNESS = ("amplitude", "frequency_ratio")
+
+
+def height(restitution, n=1):
+    """The amplitude of the saddle-node of the restitution model, πn (1 - r)/(1 + r)."""
+    return np.pi * n * (1 - restitution) / (1 + restitution)
+
+
+@pytest.fixture(scope="module")
+def rigid():
+    """A branch from a saddle-node to a period doubling."""
+    return follow(orbit(Rigid(0.5), amplitude=1.4), to=(0.9, 1.8))
+
+
+@pytest.fixture(scope="module")
+def compliant():
+    """The branch of a contact with ϖ = 2, which turns back twice."""
+    return follow(orbit(COMPLIANT, amplitude=0.9), to=0.1)
+
+
+@pytest.mark.parametrize("kind", ["saddle-node", "period doubling"])
+def test_curves_of_the_restitution_model_are_closed_forms(rigid, kind):
+    ranges = {"amplitude": (0.05, 3.0), "restitution": (0.1, 1.0)}
+    curve = special_curve(rigid.first(kind), ranges=ranges)
+    amplitude, r = curve.z[:, -2:].T
+    expected = height(r)
+    if kind == "period doubling":
+        expected = np.hypot(expected, 2 * (1 + r**2) / (1 + r) ** 2)
+    assert amplitude == pytest.approx(expected, rel=ROUNDED)
+    # Adjacent points are close enough for a picture, in units that are changes of the logarithm.
+    assert np.abs(np.diff(np.log(amplitude))).max() < 0.25
+    assert curve.kind == kind
+    assert {each.kind for each in curve.orbits} == {kind}
+    if kind == "period doubling":
+        assert [each.kind for each in curve.special] == ["1:2 resonance"]
+        assert (curve.start, curve.end) == (
+            "amplitude = 3 is reached",
+            "restitution = 1 is reached",
+        )
+        assert curve.special[0].multipliers == pytest.approx([-1, -1], abs=1e-6)
+    else:
+        assert "amplitude = 0.05 is reached" in (curve.start, curve.end)
+
+
+def test_two_saddle_nodes_meet_at_a_cusp(compliant):
+    ranges = {"amplitude": (0.01, 2.0), "frequency_ratio": (0.9, 3.0)}
+    curve = special_curve(compliant.first("saddle-node"), along=STIFFNESS, ranges=ranges)
+    cusp = next(each for each in curve.special if each.kind == "cusp")
+    assert cusp.parameters["frequency_ratio"] == pytest.approx(1.0261355, abs=5e-8)
+    assert cusp.parameters["amplitude"] == pytest.approx(0.1151558, abs=5e-8)
+    # At a cusp both parameters turn back: no saddle-node is beyond it.
+    assert curve.z[:, -1].min() >= cusp.parameters["frequency_ratio"] - 1e-9
+    assert curve.end == "frequency_ratio = 3 is reached"
+    # The other end is where the ball no longer leaves the table at the end of its contact.
+    assert curve.start.startswith("lost release")
+    lost = curve.special[0]
+    assert lost.kind == "lost release"
+    assert abs(lost.relative_bounce_velocity) < 1e-6
+    assert not np.any(np.isnan(curve.z))
+
+
+def test_the_coefficient_changes_its_sign_at_generalized_period_doublings(compliant):
+    ranges = {"amplitude": (0.1, 3.0), "frequency_ratio": (0.8, 6.0)}
+    curve = special_curve(compliant.first("period doubling"), along=STIFFNESS, ranges=ranges)
+    found = [each for each in curve.special if each.kind == "generalized period doubling"]
+    # The first one is known from the library before this one.
+    assert found[0].amplitude == pytest.approx(1.1205100809, abs=1e-8)
+    assert found[0].parameters["frequency_ratio"] == pytest.approx(2.0065215585, abs=1e-8)
+    for each in found:
+        distance = np.linalg.norm(curve.z - each.z, axis=1)
+        place = np.argmin(distance[:-1] + distance[1:])
+        before, behind = (normal_form(each).coefficient for each in curve.orbits[place:][:2])
+        assert before * behind < 0
+
+
+def test_a_curve_of_doubled_orbits_goes_through_their_doublings(rigid):
+    doubled = follow(rigid.first("period doubling"), to=1.8)
+    ranges = {"amplitude": (0.5, 2.0), "restitution": (0.3, 0.9)}
+    curve = special_curve(doubled.first("period doubling"), ranges=ranges)
+    assert (curve.impacts, curve.periods) == (2, 2)
+    point = curve.orbits[len(curve) // 3]
+    assert point.turn == pytest.approx(-1, abs=1e-10)
+    ball = Rigid(point.parameters["restitution"])
+    one = orbit(ball, amplitude=1.02 * height(ball.restitution))
+    first = follow(one, to=3.0).first("period doubling")
+    second = follow(first, to=3.0).first("period doubling")
+    assert second.amplitude == pytest.approx(point.amplitude, rel=1e-10)
+
+
+def test_flights_graze_along_a_curve():
+    start = orbit(Rigid(0.5), amplitude=2.0, side="unstable")
+    grazing = follow(start, to=3.0).first("grazing of a flight")
+    ranges = {"amplitude": (0.5, 4.0), "restitution": (0.1, 1.0)}
+    curve = special_curve(grazing, ranges=ranges)
+    assert "restitution = 1 is reached" in (curve.start, curve.end)
+    for each in curve.orbits[1:-1]:
+        times = np.linspace(0.5, each.flight_time - 0.01, 20001)
+        speed = each.relative_bounce_velocity
+        gaps = flight(times, each.times[0], 0.0, speed, each.amplitude)[0]
+        # Samples miss the lowest point by half a step: δ″ (1.5e-4)²/2.
+        assert gaps.min() == pytest.approx(0.0, abs=1e-7)
+
+
+def test_a_frequency_is_one_of_two_parameters():
+    ball = SpringDamper(25.0, restitution=0.85)
+    doubling = follow(orbit(ball, amplitude=0.9), to=1.3).first("period doubling")
+    ranges = {"frequency": (0.5, 1.5), "restitution": (0.5, 1.0)}
+    curve = special_curve(doubling, along=("frequency", "restitution"), ranges=ranges)
+    for each in curve.orbits[::4]:
+        assert each.amplitude == pytest.approx(each.parameters["frequency"] ** 2, rel=ROUNDED)
+        stroke = each.parameters["frequency_ratio"] ** 2 * each.amplitude
+        assert stroke == pytest.approx(25.0**2 * doubling.amplitude, rel=ROUNDED)
+
+
+def test_a_period_halving_is_a_period_doubling(rigid):
+    doubling = rigid.first("period doubling")
+    doubled = follow(doubling, to=1.6).orbits[-1]
+    halving = follow(doubled, to=1.0).first("period halving")
+    ranges = {"amplitude": (1.0, 2.0), "restitution": (0.4, 0.6)}
+    curve = special_curve(halving, ranges=ranges)
+    assert (curve.impacts, curve.kind) == (1, "period doubling")
+
+
+def test_wrong_arguments_are_named(rigid):
+    doubling = rigid.first("period doubling")
+    with pytest.raises(OrbitNotFound, match="kind = ''"):
+        special_curve(rigid.orbits[0])
+    with pytest.raises(ValueError, match="along = 'stiffness'"):
+        special_curve(doubling, along=("amplitude", "stiffness"))
+    with pytest.raises(ValueError, match="two different parameters"):
+        special_curve(doubling, along=("amplitude", "amplitude"))
+    with pytest.raises(ValueError, match=r"restitution = 0\.5 is not in its range"):
+        special_curve(doubling, ranges={"restitution": (0.6, 0.9)})
+    with pytest.raises(ValueError, match="frequency_ratio: the parameters are"):
+        special_curve(doubling, ranges={"frequency_ratio": (1, 9)})

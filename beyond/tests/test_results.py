@@ -1,0 +1,218 @@
+"""Datasets and their files: the same orbits come back; and what a picture shows."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bouncing_ball_beyond import (
+    Corrected,
+    ParameterPath,
+    Rigid,
+    SpringDamper,
+    follow,
+    orbit,
+    plot,
+    read_orbits,
+    special_curve,
+    to_dataset,
+)
+from bouncing_ball_beyond.orbits import orbits
+
+BALLS = [
+    Rigid(0.5),
+    SpringDamper(10.0, restitution=0.85),
+    SpringDamper(20.0, damping_ratio=0.1, release="force"),
+    Corrected(SpringDamper(30.0, restitution=0.6)),
+]
+
+
+@pytest.fixture(scope="module")
+def rigid():
+    """A branch from a saddle-node to a period doubling, both ways."""
+    return follow(orbit(Rigid(0.5), amplitude=1.4), to=(0.9, 1.8))
+
+
+def same(first, second):
+    """Whether two orbits have the same bits."""
+    return np.array_equal(first.z, second.z) and first.parameters == second.parameters
+
+
+@pytest.mark.parametrize("ball", BALLS, ids=lambda ball: type(ball).__name__)
+def test_a_branch_comes_back_from_its_file(ball, tmp_path):
+    branch = follow(orbit(ball, amplitude=1.2), to=1.6)
+    file = tmp_path / "branch.nc"
+    to_dataset(branch).to_netcdf(file)
+    again = read_orbits(file)
+    assert repr(again) == repr(branch)
+    assert np.array_equal(again.z, branch.z)
+    assert again.equations.ball.parameters == branch.equations.ball.parameters
+    assert type(again.equations.ball) is type(ball)
+    assert len(again.special) == len(branch.special)
+    for one, other in zip(again.special, branch.special, strict=True):
+        assert one.kind == other.kind
+        assert same(one, other)
+    longer = follow(again.orbits[-1], to=1.7)
+    assert longer.orbits[-1].distance(follow(branch.orbits[-1], to=1.7).orbits[-1]) < 1e-12
+
+
+def test_orbits_alone_and_in_lists_come_back():
+    ball = Rigid(0.5)
+    several = orbits(ball, impacts=3, periods=3, amplitude=1.6)
+    data = to_dataset(several)
+    assert data.sizes["impact"] == 3
+    assert all(map(same, read_orbits(data), several))
+    assert same(read_orbits(to_dataset(several[0])), several[0])
+    row = orbit(
+        SpringDamper(10.0, restitution=np.array([0.6, 0.7, 0.8])), amplitude=[1.0, 0.1, 1.0]
+    )
+    data = to_dataset(row)
+    assert data.restitution.values.tolist() == [0.6, 0.8]
+    again = read_orbits(data)
+    assert [each.ball.restitution for each in again] == [0.6, 0.8]
+    assert same(again[1], row[2])
+
+
+def test_a_part_of_a_dataset_has_its_orbits(rigid):
+    data = to_dataset(rigid)
+    part = read_orbits(data.isel(point=[0, 1, 2]))
+    assert same(part.orbits[1], rigid.orbits[1])
+    doubling = data.isel(point=np.flatnonzero(data.kind == "period doubling"))
+    assert same(read_orbits(doubling.assign_attrs(form="list"))[0], rigid.first("period doubling"))
+
+
+def test_a_curve_comes_back(rigid, tmp_path):
+    ranges = {"amplitude": (0.5, 3.0), "restitution": (0.1, 1.0)}
+    curve = special_curve(rigid.first("period doubling"), ranges=ranges)
+    file = tmp_path / "curve.nc"
+    to_dataset(curve).to_netcdf(file)
+    again = read_orbits(file)
+    assert repr(again) == repr(curve)
+    assert np.array_equal(again.z, curve.z)
+    assert again.special[0].kind == "1:2 resonance"
+
+
+def test_a_path_and_a_function_of_a_user_are_given_again(tmp_path):
+    path = ParameterPath(
+        "hertz",
+        low=15.0,
+        high=30.0,
+        amplitude=lambda f: 2.0e-3 * f**2,
+        frequency_ratio=lambda f: 500.0 / f,
+    )
+    ball = SpringDamper(500.0 / 20.0, restitution=0.85)
+    branch = follow(orbit(ball, amplitude=0.8), along=path, to=24.0)
+    data = to_dataset(branch)
+    assert data.hertz.dims == ("point",)
+    with pytest.raises(ValueError, match="on a path 'hertz' of their user: give it as along="):
+        read_orbits(data)
+    again = read_orbits(data, along=path)
+    assert np.array_equal(again.z, branch.z)
+    assert again.orbits[-1].defect < 1e-12
+
+    def slower(u):
+        return 0.5 + 0.1 / (1 + u)
+
+    ball = Rigid(slower)
+    one = orbit(ball, amplitude=1.4)
+    data = to_dataset(one)
+    with pytest.raises(ValueError, match="a Rigid with a function, slower: give it as ball="):
+        read_orbits(data)
+    assert read_orbits(data, ball=ball).distance(one) == 0
+
+
+def test_quantities_are_those_of_the_orbits(rigid):
+    data = to_dataset(rigid)
+    assert data.amplitude.dims == ("point",)
+    assert "amplitude" in data.coords
+    for name, variable in data.variables.items():
+        assert variable.attrs["long_name"], name
+        assert variable.attrs["units"] == ("rad" if "phase" in name else "1")
+    # In the restitution model the ball leaves with πn, and falls with the same velocity.
+    assert data.bounce_velocity.values == pytest.approx(np.pi, rel=1e-12)
+    assert data.impact_velocity.values == pytest.approx(-np.pi, rel=1e-12)
+    ordinary = data.kind.values == ""
+    assert np.array_equal(data.stable.values[ordinary], rigid.stable)
+    assert np.array_equal(data.admissible.values[ordinary], rigid.admissible)
+    # Special orbits are where the branch passes them.
+    assert data.kind.values[~ordinary].tolist() == [each.kind for each in rigid.special]
+    phase = data.phase.values[:, 0]
+    assert np.all(np.diff(phase) > 0) or np.all(np.diff(phase) < 0)
+    modulus = np.hypot(data.multiplier_real, data.multiplier_imag)
+    assert modulus.prod("multiplier").values == pytest.approx(0.25, rel=1e-12)
+
+
+def test_what_is_no_dataset_of_orbits_is_refused(tmp_path):
+    file = tmp_path / "other.nc"
+    xr.Dataset({"x": 1.0}).to_netcdf(file)
+    with pytest.raises(ValueError, match=r"other\.nc: no dataset of orbits"):
+        read_orbits(file)
+    one = orbit(Rigid(0.5), amplitude=1.6)
+    several = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
+    with pytest.raises(ValueError, match="orbits with 1, 3 impacts"):
+        to_dataset([one, *several])
+    with pytest.raises(ValueError, match="balls of one kind"):
+        to_dataset([one, orbit(SpringDamper(10.0, restitution=0.5), amplitude=1.6)])
+    with pytest.raises(ValueError, match="there is no orbit"):
+        to_dataset(orbit(Rigid(0.5), amplitude=[0.1]))
+
+
+def test_a_ball_is_stored_by_its_class_and_parameters():
+    one = orbit(Corrected(SpringDamper(30.0, restitution=0.6)), amplitude=1.2)
+    text = json.loads(to_dataset(one).attrs["ball"])
+    assert text["class"] == "Corrected"
+    assert text["of"]["class"] == "SpringDamper"
+    assert text["of"]["frequency_ratio"] == 30.0
+
+
+# Pictures
+
+
+def boxes_of(figure):
+    """The extents of all texts of a figure."""
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    texts = [axes.title, axes.xaxis.label, axes.yaxis.label, *figure.legends[0].get_texts()]
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        texts += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    return [text.get_window_extent() for text in texts if text.get_text()]
+
+
+def test_texts_do_not_overlap_and_are_inside_the_picture(rigid):
+    doubled = follow(rigid.first("period doubling"), to=1.8)
+    for figure in (plot(rigid), plot(rigid, doubled, quantity="relative_bounce_velocity")):
+        boxes = boxes_of(figure)
+        for i, box in enumerate(boxes):
+            assert box.count_overlaps(boxes[:i]) == 0
+            assert figure.bbox.count_contains(box.corners()) == 4
+
+
+def test_lines_are_solid_where_orbits_are_stable(rigid):
+    axes = plot(rigid).axes[0]
+    solid = [line for line in axes.lines if line.get_linestyle() == "-"]
+    assert len(solid) == 1
+    x, y = solid[0].get_data()
+    ends = [rigid.first(kind) for kind in ("saddle-node", "period doubling")]
+    assert sorted(x[[0, -1]]) == [each.amplitude for each in ends]
+    assert sorted(y[[0, -1]]) == pytest.approx([each.phase / np.pi for each in ends], abs=1e-12)
+    marks = [line.get_marker() for line in axes.lines if line.get_linestyle() == "None"]
+    assert sorted(marks) == ["o", "s"]
+
+
+def test_a_wide_range_has_a_logarithmic_axis():
+    ball = SpringDamper(2.0, restitution=0.85)
+    one = orbit(ball, amplitude=0.9)
+    near = follow(one, along="frequency_ratio", to=20.0)
+    far = follow(one, along="frequency_ratio", to=300.0)
+    assert plot(near, quantity="max_height").axes[0].get_xscale() == "linear"
+    assert plot(far, quantity="max_height").axes[0].get_xscale() == "log"
+
+
+def test_pictures_refuse_what_they_cannot_draw(rigid):
+    with pytest.raises(ValueError, match="quantity = 'colour': must be one of max_height"):
+        plot(rigid, quantity="colour")
+    softer = follow(orbit(Rigid(0.5), amplitude=1.4), along="restitution", to=0.6)
+    with pytest.raises(ValueError, match="all along the same parameters"):
+        plot(rigid, softer)

@@ -513,13 +513,15 @@ def _end_in_words(end, equations, special, path, goal, at_special) -> str:
     if at_special:
         reason = KINDS[special[-1].kind].end
         return f"{special[-1].kind} at {here}" + (f": {reason}" if reason else "")
+    if end == _CLOSED:
+        return end
     if end != _AT_GOAL:
         return f"{end}; the last one is at {here}"
     if abs(value - goal) <= 1e-12 * abs(goal):
         return f"{here} is reached"
     folds = [each.z[-1] for each in special if each.kind == "saddle-node"]
-    turned = f"; the branch has turned back at the saddle-node at {folds[-1]:.10g}" if folds else ""
-    return f"{here} is reached behind the start, and not {goal:.10g}{turned}"
+    turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
+    return f"{here} is reached, as far behind the start as the goal is ahead of it{turned}"
 
 
 def test_with_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:

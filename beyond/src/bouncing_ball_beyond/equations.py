@@ -220,7 +220,7 @@ class OrbitEquations:
         def rate(t):
             return flight(t, *start, amplitude)[1]
 
-        least = least_turn(rate, gap, ends.flight, samples)
+        least = turns_back(rate, gap, ends.flight, samples)
         if np.any(ball.kappa):
             kappa = np.broadcast_to(ball.kappa, (len(z), 1))[..., np.newaxis]
 
@@ -233,7 +233,7 @@ class OrbitEquations:
             def free_below(t):
                 return np.where(gap(t) < 0, free(t), FAR)
 
-            least = np.minimum(least, least_turn(free_rate, free_below, ends.flight, samples))
+            least = np.minimum(least, turns_back(free_rate, free_below, ends.flight, samples))
         return least.min(axis=-1)
 
     def contact_clearance(self, z) -> NDArray:
@@ -249,7 +249,7 @@ class OrbitEquations:
         def pressed(t):
             return -end(t).release
 
-        return least_turn(falls, pressed, x[..., 2], _samples(x[..., 2])).min(axis=-1)
+        return turns_back(falls, pressed, x[..., 2], _samples(x[..., 2])).min(axis=-1)
 
     def max_height(self, z) -> NDArray:
         """The greatest height of the ball, shape (rows,): at the summit of a flight or in a contact,
@@ -274,7 +274,7 @@ class OrbitEquations:
             impact = end(t)
             return -impact.gap - amplitude * np.sin(tau + impact.duration)
 
-        in_contact = -least_turn(falls, depth, x[..., 2], _samples(x[..., 2]))
+        in_contact = -turns_back(falls, depth, x[..., 2], _samples(x[..., 2]))
         return np.maximum(height, in_contact).max(axis=-1)
 
     def _during(self, x, ball, amplitude):
@@ -290,21 +290,40 @@ class OrbitEquations:
         return np.abs(speeds).min(axis=-1) * np.sign(speeds).prod(axis=-1)
 
     def least_release(self, linear: Linear, z) -> NDArray:
-        """The least speed with which a release function passes zero, or with which a ball leaves."""
+        """How well balls leave the table after impacts: the least of all, zero if one does not.
+
+        It is the speed with which the release function passes zero, or the relative speed after an
+        instant. After an instant below the table it is the height of the summit of the flight.
+        """
         if self.ball.lasts:
             return linear.derivatives[..., 0, 2].min(axis=-1)
-        return self.ends(z).speed.min(axis=-1)
+        ends = self.ends(z)
+        if np.all(ends.gap >= 0):
+            return ends.speed.min(axis=-1)
+        _, _, amplitude = self.split(z)
+        amplitude = np.broadcast_to(amplitude, (len(z), 1))[..., np.newaxis]
+        start = [each[..., np.newaxis] for each in (ends.leaves, ends.gap, ends.speed)]
+
+        def falls(t):
+            return -flight(t, *start, amplitude)[1]
+
+        def depth(t):
+            return -flight(t, *start, amplitude)[0]
+
+        return -turns_back(falls, depth, ends.flight, _samples(ends.flight), first=True).max(
+            axis=-1
+        )
 
     def halves(self, z) -> NDArray:
         """Differences of the impacts half an orbit apart, shape (rows, kq/2): zero if the orbit is one
-        of half the period, taken twice; ones for an odd number of impacts."""
+        of half the period, taken twice; ones if the impacts or the periods have no half."""
         if self.impacts % 2:
             return np.ones((len(z), 1))
         x, _, _ = self.split(z)
-        half = self.impacts // 2
+        half, periods = self.impacts // 2, np.reshape(self.periods, (-1, 1))
         apart = x[:, :half] - x[:, half:]
-        apart[..., 0] += np.pi * np.reshape(self.periods, (-1, 1))
-        return apart.reshape(len(z), -1)
+        apart[..., 0] += np.pi * periods
+        return np.where(periods % 2 == 0, apart.reshape(len(z), -1), 1.0)
 
     def halving(self, z) -> NDArray:
         """Difference of the speeds at two impacts half an orbit apart, shape (rows,).
@@ -350,7 +369,7 @@ def flight(s, leaves, gap, speed, amplitude):
     return gap + (rate - s / 2) * s + table, rate - s - amplitude * np.cos(ends)
 
 
-def least_turn(slope, value, ends, samples: int) -> NDArray:
+def turns_back(slope, value, ends, samples: int, *, first: bool = False) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
 
     Parameters
@@ -361,6 +380,8 @@ def least_turn(slope, value, ends, samples: int) -> NDArray:
     ends : ndarray
     samples : int
         Minima are found if the slope changes its sign between two of so many samples.
+    first : bool
+        Whether the value is that of the first minimum and not of the lowest.
 
     Returns
     -------
@@ -372,8 +393,8 @@ def least_turn(slope, value, ends, samples: int) -> NDArray:
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
     if not turns.any():
         return np.full(ends.shape, FAR)
-    values = np.where(turns, value(times)[..., 1:], np.inf)
-    which = values.argmin(axis=-1)[..., np.newaxis]
+    lowest = np.where(turns, value(times)[..., 1:], np.inf).argmin(axis=-1)
+    which = (turns.argmax(axis=-1) if first else lowest)[..., np.newaxis]
     low = np.take_along_axis(times, which, axis=-1)
     high = np.take_along_axis(times, which + 1, axis=-1)
     middle = (low + high) / 2

@@ -614,24 +614,28 @@ def _landing(leaves, gap, speed, amplitude, samples: int = 200):
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     """One row for each orbit: its first impact is the one of the greatest speed.
 
-    Orbits of a shorter period, taken several times, are left out.
+    Solutions that are no orbits and orbits of a shorter period, taken several times, are left out.
     """
+    if not len(z):
+        return z
     k, q = equations.impacts, equations.unknowns
     x = z[:, : equations.size].reshape(len(z), k, q)
-    kept = []
-    for row in x[(x[..., 1] > 0).all(axis=1)]:
-        later = row.copy()
-        later[:, 0] += 2 * np.pi * equations.periods
-        first = int(np.argmax(np.round(row[:, 1], 6)))
-        row = np.concatenate([row, later])[first : first + k]
-        row[:, 0] -= 2 * np.pi * np.floor(row[0, 0] / (2 * np.pi) + 1e-9)
-        repeats = [j for j in range(1, k) if k % j == 0]
-        if any(np.allclose(np.roll(row[:, 1:], j, axis=0), row[:, 1:], atol=1e-7) for j in repeats):
-            continue
-        if not any(np.allclose(row, other, atol=1e-7) for other in kept):
-            kept.append(row)
-    rows = np.array(kept).reshape(len(kept), k * q)
-    return np.concatenate([rows, np.full((len(rows), 1), z[0, -1] if len(z) else 0.0)], axis=1)
+    lasting = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
+    x = x[(x[..., 1] > 0).all(axis=1) & lasting & (equations.ends(z).flight > 0).all(axis=1)]
+    later = x.copy()
+    later[..., 0] += 2 * np.pi * equations.periods
+    first = x[..., 1].round(6).argmax(axis=1)[:, np.newaxis] + np.arange(k)
+    x = np.take_along_axis(np.concatenate([x, later], axis=1), first[..., np.newaxis], axis=1)
+    x[..., 0] -= 2 * np.pi * np.floor(x[:, :1, 0] / (2 * np.pi) + 1e-9)
+    for j in range(1, k):
+        again = np.abs(np.roll(x, j, axis=1) - x)[..., 1:].max(axis=(1, 2)) < 1e-7
+        x = x[~again] if k % j == 0 else x
+    rows = x.reshape(len(x), k * q)
+    rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]
+    # Two roundings of one orbit.
+    apart = np.abs(rows[:, np.newaxis] - rows).max(axis=-1, initial=0.0)
+    rows = rows[~np.tril(apart < 1e-5, -1).any(axis=1)]
+    return np.concatenate([rows, np.full((len(rows), 1), z[0, -1])], axis=1)
 
 
 def orbit_near(

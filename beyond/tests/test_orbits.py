@@ -1,0 +1,245 @@
+"""Periodic orbits against closed forms, an integrator with events, and the code of the replication."""
+
+import warnings
+from functools import cache
+
+import numpy as np
+import pytest
+from integrated import around
+
+from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.equations import OrbitEquations, dense, newton, solve_bordered
+from bouncing_ball_beyond.orbits import OrbitNotFound, apart, orbit, orbit_near, orbits
+
+# Rounding errors of an orbit: some hundred times eps for numbers up to 20.
+ROUNDED = 1e-12
+# An integrator with the tolerance 1e-13 over some hundred steps, on orbits that stretch errors by 10.
+INTEGRATED = 1e-9
+
+RNG = np.random.default_rng(78)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_the_orbits_of_the_restitution_model_are_its_closed_form(n):
+    """cos φ = nπ(1 - r)/(1 + r)/Λ, tr = 1 + r² - (1 + r)² Λ sin φ and det = r²."""
+    r = RNG.uniform(0.2, 0.95, 20)
+    x = n * np.pi * (1 - r) / (1 + r)
+    amplitude = np.hypot(x, RNG.uniform(0.1, 1.5, 20))
+    for side, sign in (("stable", 1), ("unstable", -1)):
+        found = orbit(Rigid(r), amplitude=amplitude, n=n, side=side)
+        phase = sign * np.arccos(x / amplitude)
+        trace = 1 + r**2 - (1 + r) ** 2 * amplitude * np.sin(phase)
+        for i, each in enumerate(found):
+            assert each.phase == pytest.approx(phase[i], abs=ROUNDED)
+            assert each.speeds[0] == pytest.approx(2 * np.pi * n / (1 + r[i]), abs=ROUNDED)
+            expected = trace[i], r[i] ** 2
+            assert each.trace_and_determinant == pytest.approx(expected, abs=100 * ROUNDED)
+            assert each.stable == (abs(trace[i]) < 1 + r[i] ** 2)
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("n", [1, 2])
+def test_the_orbits_of_the_replication_from_half_on(n, release):
+    """A second code with other unknowns, from ϖ = 0.5 on and without damping."""
+    ratios = np.array([0.5, 0.8, 1.0, 4.0, 30.0])
+    for r, share in ((1.0, 0.7), (0.85, 1.1), (0.4, 1.05)):
+        amplitude = np.hypot(n * np.pi * (1 - r) / (1 + r), 0.6) * share
+        y = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+        zeta = damping_ratio(r)
+        contact = Contact(ratios, zeta, release)
+        family = Family(n, contact)
+        seen = np.isfinite(y[0]) & (family.clearance(y) > 0)
+        quantities = {name: np.broadcast_to(v, 5) for name, v in family.observables(y).items()}
+        for i in np.flatnonzero(seen):
+            ball = SpringDamper(ratios[i], damping_ratio=zeta, release=release)
+            every = orbits(ball, amplitude=amplitude, periods=n)
+            near = [each for each in every if _same_phase(each.phase, quantities["phase"][i])]
+            assert len(near) == 1, (r, ratios[i])
+            for name in ("impact_velocity", "bounce_velocity", "contact_duration"):
+                assert getattr(near[0], name) == pytest.approx(quantities[name][i], abs=1e-10)
+            assert near[0].max_height == pytest.approx(quantities["max_height"][i], abs=1e-10)
+            # An orbit without damping attracts nothing: here it is stable if motions stay near.
+            assert near[0].stable == quantities["stable"][i] or r == 1
+
+
+def _same_phase(one, other):
+    return abs(np.exp(1j * one) - np.exp(1j * other)) < 1e-9
+
+
+@cache
+def several_orbits():
+    """Orbits of each model that is simulated, with one, two and three impacts."""
+    doubled = orbit_near(Rigid(0.5), amplitude=1.6, phases=[0.404, 1.194], velocities=[-2.9, -3.41])
+    return [
+        orbit(Rigid(0.5), amplitude=1.3),
+        doubled,
+        *orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6),
+        orbit(SpringDamper(10.0, restitution=0.85), amplitude=1.0, n=2),
+        orbit(SpringDamper(3.0, damping_ratio=0.2), amplitude=1.5),
+        orbit(SpringDamper(4.0, restitution=0.7, release="force"), amplitude=1.0),
+        *orbits(SpringDamper(2.0, restitution=0.85), amplitude=0.9),
+        *orbits(SpringDamper(20.0, restitution=0.5), impacts=2, periods=2, amplitude=1.7)[:1],
+    ]
+
+
+def test_an_integrated_ball_follows_the_orbits_and_their_derivatives():
+    """A period by an integrator leads back, and differences of it are the monodromy matrix."""
+    for each in several_orbits():
+        start = np.array([each.times[0], each.speeds[0]])
+        end, highest = around(each)
+        stretch = 1 + np.abs(each.multipliers).max()
+        assert np.abs(end - start).max() < INTEGRATED * stretch
+        # Heights are sampled 20001 times in a contact.
+        assert each.max_height == pytest.approx(highest, abs=1e-6)
+        h = 1e-4
+        columns = []
+        for shift in np.eye(2) * h:
+            columns.append((around(each, shift)[0] - around(each, -shift)[0]) / (2 * h))
+        by_speed = np.diag([1, -1])
+        numeric = by_speed @ np.array(columns).T @ by_speed
+        # The differences err by h² times third derivatives, which are larger for unstable orbits.
+        assert np.abs(numeric - each.monodromy).max() < 1e-5 * stretch**3
+        assert each.admissible
+
+
+def test_a_table_may_lift_a_ball_higher_in_contact_than_it_flies():
+    ball = SpringDamper(1.94317663, damping_ratio=0.60729752)
+    found = orbit(ball, amplitude=0.96596752)
+    assert found.stable and found.admissible
+    assert found.max_height == pytest.approx(0.9157, abs=5e-5)
+    assert found.max_height == pytest.approx(around(found)[1], abs=1e-6)
+
+
+def test_multipliers_are_those_of_the_monodromy_matrix():
+    for each in several_orbits():
+        expected = np.linalg.eigvals(each.monodromy)
+        expected = expected[np.argsort(-np.abs(expected))]
+        ours = each.multipliers
+        if abs(ours[0].imag) > 0:
+            assert np.abs(ours.imag).max() == pytest.approx(np.abs(expected.imag).max(), abs=1e-9)
+        assert ours.prod() == pytest.approx(expected.prod(), abs=1e-9)
+        assert ours.sum() == pytest.approx(expected.sum(), abs=1e-9)
+
+
+def test_a_compliant_contact_has_three_orbits():
+    """The third one stays on the table for longer than one of its oscillations."""
+    found = orbits(SpringDamper(2.0, restitution=0.85), amplitude=0.9)
+    durations = [(round(each.contact_duration, 4), each.stable) for each in found]
+    assert durations == [(1.6018, True), (2.2489, False), (5.1824, True)]
+
+
+@pytest.mark.parametrize(
+    ("ball", "amplitude", "n"),
+    [
+        (SpringDamper(18.2, restitution=0.87), 1.69, 1),
+        (SpringDamper(2.3, restitution=0.96, release="force"), 1.0, 2),
+        (SpringDamper(0.61, damping_ratio=0.0), 2.0, 1),
+        (Corrected(SpringDamper(8.0, restitution=0.6)), 2.0, 2),
+        (Rigid(lambda u: 0.9 / (1 + 0.05 * u)), 1.9, 1),
+    ],
+)
+def test_the_list_of_orbits_with_one_impact_is_complete(ball, amplitude, n):
+    """Newton's method finds nothing else from 5,000 random starts."""
+    listed = orbits(ball, amplitude=amplitude, periods=n)
+    assert listed
+    equations = OrbitEquations(ball, 1, n)
+    random = np.random.default_rng(1)
+    size = 5000
+    columns = [random.uniform(0, 2 * np.pi, size), random.uniform(0, 2.2 * np.pi * n, size)]
+    if ball.lasts:
+        columns.append(random.uniform(0, 2 * np.pi * n * ball.frequency_ratio, size))
+    z = np.stack([*columns, np.full(size, amplitude)], axis=-1)
+    solution = newton(equations, z, iterations=15)
+    z = solution.z[solution.found]
+    z = z[(z[:, 1:-1] > 0).all(axis=1) & (np.abs(z[:, 0]) < 1e3)]
+    z = z[np.unique(z.round(6), axis=0, return_index=True)[1]]
+    z = z[equations.admissible(z)]
+    distance = [np.abs(np.exp(1j * z[:, 0]) - np.exp(1j * each.phase)) for each in listed]
+    distance = np.array(distance) + [np.abs(z[:, 1] - each.speeds[0]) for each in listed]
+    assert len(z)
+    assert distance.min(axis=0).max() < 1e-6
+
+
+def test_orbits_with_several_impacts_are_found_by_their_number():
+    found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
+    heights = [(round(each.max_height, 3), each.stable) for each in found]
+    assert heights == [(8.209, True), (8.007, False)]
+    guess = {"phases": found[1].phase + 0.02, "velocities": found[1].impact_velocity}
+    near = orbit_near(Rigid(0.5), amplitude=1.61, **guess)
+    assert (near.impacts, near.periods, near.stable) == (3, 3, False)
+    assert found[1].distance(near) < 0.1 < found[0].distance(near)
+    rolled = {name: np.roll(value, 1) for name, value in guess.items()}
+    again = orbit_near(Rigid(0.5), amplitude=1.61, **rolled)
+    assert again.distance(near) < 1e-10
+
+
+def test_rows_have_an_orbit_or_a_reason_each():
+    """At an amplitude below the saddle-node there is the reason in place of an orbit."""
+    found = orbit(Rigid([0.85, 0.85, 0.5]), amplitude=[0.1, 0.9, 1.3], n=[1, 2, 1])
+    assert isinstance(found[0], OrbitNotFound)
+    for each, r, amplitude, n in ((found[1], 0.85, 0.9, 2), (found[2], 0.5, 1.3, 1)):
+        assert each.distance(orbit(Rigid(r), amplitude=amplitude, n=n)) < ROUNDED
+        assert (each.periods, each.amplitude, each.ball.restitution) == (n, amplitude, r)
+
+
+def test_a_reason_has_the_digits_that_tell_two_amplitudes_apart():
+    fold = np.pi / 3
+    with pytest.raises(OrbitNotFound) as raised:
+        orbit(Rigid(0.5), amplitude=1.047197)
+    text = str(raised.value)
+    assert "\n" not in text
+    assert "Λ = 1.047197 " in text and text.endswith("below the saddle-node at Λ = 1.047198")
+    assert apart(fold, fold * (1 + 1e-9)) == ("1.047197551", "1.047197552")
+    assert apart(0.2, 0.24) == ("0.2", "0.24")
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda: orbit(Rigid(0.5), amplitude=-1), "amplitude = -1: must be a positive number"),
+        (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be a whole number from 1"),
+        (lambda: orbit(Rigid(0.5), amplitude=1, side="left"), "side = 'left': must be 'stable' or"),
+        (lambda: orbit_near(Rigid(0.5), amplitude=1, phases=[0, 1], velocities=[-1]), "one entry"),
+    ],
+)
+def test_wrong_arguments_are_named_in_one_line(call, text):
+    with pytest.raises(ValueError, match="must") as raised:
+        call()
+    assert text in str(raised.value) and "\n" not in str(raised.value)
+
+
+def test_digits_that_are_left_are_no_more_than_another_rounding_leaves():
+    """Λ is changed by its last digit: the orbit moves by less than the uncertainty that is given."""
+    moved = []
+    for each in several_orbits():
+        equations = each.equations
+        near = each.z.copy()
+        near[-1] *= 1 + 4 * np.finfo(float).eps
+        change = newton(equations, near[np.newaxis]).z[0, :-1] - each.z[:-1]
+        moved.append(-np.log10(np.abs(change).max() + 1e-17) - each.digits_left)
+        assert 8 < each.digits_left < 16
+    assert min(moved) > -0.7
+
+
+@pytest.mark.parametrize("k", [1, 2, 16, 17, 37, 64])
+@pytest.mark.parametrize(("q", "p"), [(2, 1), (3, 1), (3, 2)])
+def test_the_elimination_by_pairs_solves_the_linear_equations(k, q, p):
+    random = np.random.default_rng(k)
+    derivatives = random.normal(size=(3, k, q, q + 2 + p))
+    right, border = random.normal(size=(3, k, q, 2)), random.normal(size=(3, p, k * q + p))
+    border_right = random.normal(size=(3, p, 2))
+    found = solve_bordered(derivatives, right, border, border_right)
+    matrix = np.concatenate([dense(derivatives).reshape(3, k * q, -1), border], axis=1)
+    expected = np.linalg.solve(matrix, np.concatenate([right.reshape(3, -1, 2), border_right], 1))
+    size = np.linalg.cond(matrix).max() * np.abs(expected).max()
+    assert np.abs(found - expected).max() < 100 * np.finfo(float).eps * size
+
+
+def test_nothing_warns_where_rows_have_no_solution():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = orbit(SpringDamper([0.7, 30.0], restitution=0.5), amplitude=[0.01, 1.4])
+    assert isinstance(found[0], OrbitNotFound) and found[1].stable

@@ -165,21 +165,23 @@ class _System:
         size = len(border.v)
         matrix = np.zeros((size + 1, size + 1))
         matrix[:-1, :-1] = closed(derivatives[0], self.multiplier)
-        matrix[:-1, -1], matrix[-1, :-1] = border.w, border.v
+        matrix[:-1, -1] = border.w
+        matrix[-1, :-1] = border.v
         right = np.zeros(size + 1)
         right[-1] = 1.0
-        v, w = np.linalg.solve(matrix, right), np.linalg.solve(matrix.T, right)
-        value, v, w = v[-1], v[:-1], w[:-1]
-        step = longest_step(self.equations, z, v)
-        bent = curvature(self.twice, z, v, self.multiplier, step)
-        gradient = -w @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
+        *v, value = np.linalg.solve(matrix, right)
+        *w, _ = np.linalg.solve(matrix.T, right)
+        new = _Border(np.array(v), np.array(w))
+        step = longest_step(self.equations, z, new.v)
+        bent = curvature(self.twice, z, new.v, self.multiplier, step)
+        gradient = -new.w @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
         if len(derivatives) > 1:
             rates = np.zeros((len(derivatives[0]), 3))
             rates[:, 0] = derivatives[0, :, 0, 2]
             bends = (derivatives[1] - derivatives[2]) / (2 * SHIFT)
             inverse = np.divide(1.0, rates, out=rates, where=rates != 0).ravel()
             gradient -= value * inverse @ dense(bends[np.newaxis])[0].reshape(size, -1)
-        return value, gradient, _Border(v, w), bent
+        return value, gradient, new, bent
 
     @cached_property
     def shifts(self) -> NDArray:
@@ -211,7 +213,8 @@ class _System:
                 value, gradient, new, bent = self.condition(z, linear.derivatives, border)
                 matrix = np.vstack([jacobian, gradient, normal])
                 right = np.zeros((len(z), 2))
-                right[:-2, 0], right[-2, 0] = -linear.legs[0].ravel(), -value
+                right[:-2, 0] = -linear.legs[0].ravel()
+                right[-2, 0] = -value
                 right[-1] = normal @ (guess - z), 1.0
                 step, tangent = np.linalg.solve(matrix, right).T
             except np.linalg.LinAlgError:
@@ -224,14 +227,14 @@ class _System:
 
     def tests(self, points: list[_Point], names: Iterable[str]) -> dict[str, NDArray]:
         """What is zero at the points of codimension two, by their names, shape (points,)."""
-        equations, z = self.equations, np.array([point.z for point in points])
-        linear = equations.linear(z)
+        z = np.array([point.z for point in points])
+        linear = self.equations.linear(z)
         tests = {}
         for name in names:
             if name in KINDS:
-                tests[name] = KINDS[name].test(equations, z, linear)
+                tests[name] = KINDS[name].test(self.equations, z, linear)
             elif "resonance" in name:
-                tests[name] = equations.trace_and_determinant(linear)[1] - 1
+                tests[name] = self.equations.trace_and_determinant(linear)[1] - 1
             else:
                 values = [coefficient(each.bent, *each.border, self.multiplier) for each in points]
                 tests[name] = np.array(values)
@@ -322,40 +325,38 @@ class _Half(NamedTuple):
 
 def _start(special: PeriodicOrbit, along) -> tuple[_System, NDArray]:
     """The equations of special orbits along two parameters, and one of them."""
-    kind, ball, amplitude = special.kind, special.ball, special.amplitude
-    if kind not in KINDS:
+    if special.kind not in KINDS:
         raise OrbitNotFound(
-            f"kind = {kind!r}: a curve goes through a special orbit of a branch: {', '.join(KINDS)}"
+            f"kind = {special.kind!r}: a curve goes through a special orbit of a branch:"
+            f" {', '.join(KINDS)}"
         )
-    paths = tuple(path_of(each, ball) for each in along)
+    paths = tuple(path_of(each, special.ball) for each in along)
     if len({path.name for path in paths}) != 2:
         raise ValueError(f"along = {along!r}: must be two different parameters")
-    equations = OrbitEquations(ball, special.impacts, special.periods, amplitude, paths)
-    values = [float(path.place(ball, amplitude)) for path in paths]
+    given = special.ball, special.impacts, special.periods, special.amplitude
+    equations = OrbitEquations(*given, paths)
+    values = [float(path.place(special.ball, special.amplitude)) for path in paths]
     z = np.append(special.z[: equations.size], values)
-    if kind == "period halving":
+    if special.kind == "period halving":
         halves, rows = halves_of(equations, z[np.newaxis])
         return _System(replace(halves, periods=int(halves.periods)), "period doubling"), rows[0]
-    return _System(equations, kind), z
+    return _System(equations, special.kind), z
 
 
 def _limits(equations, z, special, ranges) -> NDArray:
     """The ends of both parameters, shape (2, 2): the least and the greatest values."""
-    given, ends = dict(ranges or {}), []
+    wanted = dict(ranges or {})
+    ends = []
     for path, value in zip(equations.along, z[equations.size :], strict=True):
-        low, high = path.limits(special.ball, special.amplitude)
-        high = high if high <= 10 else min(high, max(10.0, 10 * value))
-        wanted = given.pop(path.name, (low, high))
-        low, high = (
-            max(low, wanted[0]),
-            min(path.limits(special.ball, special.amplitude)[1], wanted[1]),
-        )
-        if not low <= value <= high:
+        least, greatest = path.limits(special.ball, special.amplitude)
+        usual = greatest if greatest <= 10 else min(greatest, max(10.0, 10 * value))
+        low, high = wanted.pop(path.name, (least, usual))
+        if not max(low, least) <= value <= min(high, greatest):
             raise ValueError(f"{path.name} = {value:.10g} is not in its range, [{low:g}, {high:g}]")
-        ends.append((low, high))
-    if given:
+        ends.append((max(low, least), min(high, greatest)))
+    if wanted:
         names = " and ".join(path.name for path in equations.along)
-        raise ValueError(f"ranges: {', '.join(given)}: the parameters are {names}")
+        raise ValueError(f"ranges: {', '.join(wanted)}: the parameters are {names}")
     return np.array(ends).T
 
 
@@ -365,8 +366,11 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
     The predictor is a parabola with the tangents at the last two points.
     """
     units = scales(system.equations, first.z[np.newaxis])[0]
-    here, ahead = first, direction / units / np.linalg.norm(direction / units)
-    points, length, bend = [first], FIRST_STEP, np.zeros(len(units))
+    here = first
+    ahead = direction / units / np.linalg.norm(direction / units)
+    bend = np.zeros(len(units))
+    length = FIRST_STEP
+    points = [first]
     tests = system.tests([first], system.ends)
     while len(points) < most:
         try:
@@ -390,15 +394,19 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
         bend = (following - ahead) / (2 * length) * units / wider
         if following @ ahead > 0.99:
             length = min(1.5 * length, LONGEST_STEP)
-        here, tests, units = point, new, wider
+        here = point
+        tests = new
+        units = wider
         ahead = point.tangent / units / np.linalg.norm(point.tangent / units)
     return points, "all points are used"
 
 
 def _solved(system, here: _Point, guess, normal, limits) -> tuple[_Point, str]:
     """The special orbit near a guess, or at the end of a range, and then the words for this end."""
-    size, paths = system.equations.size, system.equations.along
-    point, end = system.solve(guess, normal, here.border), ""
+    size = system.equations.size
+    paths = system.equations.along
+    point = system.solve(guess, normal, here.border)
+    end = ""
     old = here.z[size:]
     # A point at the end of one range may still be outside the other one.
     for _ in paths:
@@ -421,12 +429,13 @@ def _solved(system, here: _Point, guess, normal, limits) -> tuple[_Point, str]:
 def _half(system: _System, points: list[_Point], end: str) -> _Half:
     """One direction of a curve with its points of codimension two, up to one where it ends."""
     tests = system.tests(points, system.names)
-    last, final = (len(points), 0.0), None
+    ends = [(len(points), 0.0, "", None)]
     for name in system.ends:
         for i in _changes(tests[name]):
-            share, z = _located(system, name, points, i, 1.0)
-            last, final = min((last, final), ((i, share), (name, z)), key=lambda each: each[0])
-    found = []
+            share, row = _located(system, name, points, i, 1.0)
+            ends.append((i, share, name, row))
+    *last, final, row = min(ends, key=lambda each: each[:2])
+    found = [] if row is None else [(*last, final, row)]
     for name in set(system.names) - set(system.ends):
         values = tests[name]
         if "resonance" in name:
@@ -438,18 +447,15 @@ def _half(system: _System, points: list[_Point], end: str) -> _Half:
             if i <= last[0]:
                 upto = last[1] if i == last[0] else 1.0
                 share, z = _located(system, name, points, i, upto)
-                found.append((i, share, name, z))
-    z = np.array([point.z for point in points])
-    if final is not None:
-        name, row = final
-        end = f"{name}: {KINDS[name].end}"
-        z = z[: last[0] + 1]
-        if row is not None:
-            z = np.vstack([z, row])
-            found.append((*last, name, row))
-    found = sorted((each for each in found if each[3] is not None), key=lambda each: each[:2])
-    special = tuple(PeriodicOrbit(system.equations, row, name) for _, _, name, row in found)
-    return _Half(z, special, end or _lost(system, points[-1]))
+                found += [] if z is None else [(i, share, name, z)]
+    found.sort(key=lambda each: each[:2])
+    special = tuple(PeriodicOrbit(system.equations, z, name) for _, _, name, z in found)
+    rows = [point.z for point in points[: last[0] + 1]]
+    if row is not None:
+        rows.append(row)
+    if final:
+        end = f"{final}: {KINDS[final].end}"
+    return _Half(np.array(rows), special, end or _lost(system, points[-1]))
 
 
 def _lost(system: _System, point: _Point) -> str:
@@ -466,7 +472,8 @@ def _changes(values: NDArray) -> NDArray:
 
 def _located(system: _System, name: str, points: list[_Point], i: int, upto: float):
     """The share of the step i at which a test is zero, and the orbit; or its end and None."""
-    here, chord = points[i], points[i + 1].z - points[i].z
+    here = points[i]
+    chord = points[i + 1].z - here.z
     normal = chord / (chord @ chord)
     # The share is a linear function of z. The points before the step serve the predictor.
     known = {normal @ (point.z - here.z): point for point in points[max(i - 3, 0) : i]}

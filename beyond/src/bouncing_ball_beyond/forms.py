@@ -75,9 +75,9 @@ def curvature(twice: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, st
 
     They are those of the first half of the orbit taken twice, along which v is periodic.
     """
-    k, q, size = twice.impacts // 2, twice.unknowns, twice.size // 2
+    k, size = twice.impacts // 2, twice.size // 2
     later = z[:size].copy()
-    later[::q] += np.pi * twice.periods
+    later[:: twice.unknowns] += np.pi * twice.periods
     row = np.concatenate([z[:size], later, z[size:]])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - size)])
     rows = row + np.multiply.outer(step * NODES, direction)
@@ -174,7 +174,8 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
             f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
             ' such as branch.first("period doubling")'
         )
-    equations, z, multiplier = orbit.equations, orbit.z, MULTIPLIERS[orbit.kind]
+    equations, z = orbit.equations, orbit.z
+    multiplier = MULTIPLIERS[orbit.kind]
     q = equations.unknowns
     derivatives = equations.linear(z[np.newaxis]).derivatives[0]
     v, w = null_vectors(closed(derivatives, multiplier))
@@ -193,13 +194,13 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
         moved = np.linalg.solve(closed(derivatives, 1), -by_parameter)
         rate = -w @ (closed(fine.first, 1) @ moved + fine.first[..., q + 2].ravel())
     return NormalForm(
-        orbit.kind,
-        value,
-        abs(value - coefficient(coarse, v, w, multiplier)),
-        float(rate),
-        equations.along[0].name,
-        tuple((v[:2] * signs).tolist()),
-        orbit.trace_and_determinant[1] / multiplier,
+        kind=orbit.kind,
+        coefficient=value,
+        error=abs(value - coefficient(coarse, v, w, multiplier)),
+        rate=float(rate),
+        along=equations.along[0].name,
+        direction=tuple((v[:2] * signs).tolist()),
+        other=orbit.trace_and_determinant[1] / multiplier,
     )
 
 
@@ -380,9 +381,10 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
     """
     # On a curve two parameters change, of which the first one counts.
-    path, size = orbit.equations.along[0], orbit.equations.size
+    path = orbit.equations.along[0]
     given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
-    equations, z = OrbitEquations(*given, (path,)), orbit.z[: size + 1]
+    equations = OrbitEquations(*given, (path,))
+    z = orbit.z[: equations.length]
     at = _grazing(equations, z)
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)
@@ -392,12 +394,12 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     below, above = (touch(equations, z + side * step * tangent).height for side in (-1, 1))
     r = -1.0 if orbit.ball.lasts else float(orbit.ball.signature(0.0).restitution)
     return GrazingForm(
-        at.leg,
-        float(np.pi - (np.pi - at.time) % (2 * np.pi)),
-        at.acceleration,
-        (1 + r) * float(np.sqrt(2 * at.acceleration)),
-        0.0 if orbit.ball.lasts else float(direction[-1]),
-        path.name,
-        opens_upwards,
-        opens_upwards == (above < below),
+        leg=at.leg,
+        phase=float(np.pi - (np.pi - at.time) % (2 * np.pi)),
+        acceleration=at.acceleration,
+        coefficient=(1 + r) * float(np.sqrt(2 * at.acceleration)),
+        slope=0.0 if orbit.ball.lasts else float(direction[-1]),
+        along=path.name,
+        opens_upwards=opens_upwards,
+        persists=opens_upwards == (above < below),
     )

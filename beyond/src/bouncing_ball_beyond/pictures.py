@@ -186,18 +186,16 @@ def _label(name: str) -> str:
 
 def _name(branch: FollowedBranch) -> str:
     """What a legend says of the colour of a branch."""
-    impacts, periods = branch.impacts, branch.periods
-    return f"{impacts} impact{'s'[: impacts - 1]} in {periods} T"
+    return f"{branch.impacts} impact{'s'[: branch.impacts - 1]} in {branch.periods} T"
 
 
 def _title(branches: list[FollowedBranch]) -> str:
     """The parameters that do not change and are the same on all branches."""
-    first, last = branches[0].orbits[0].parameters, branches[0].orbits[-1].parameters
-    others = [each.orbits[0].parameters for each in branches]
+    others = [branch.orbits[i].parameters for branch in branches for i in (0, -1)]
     same = {
         name: value
-        for name, value in first.items()
-        if last[name] == value and all(each.get(name) == value for each in others)
+        for name, value in others[0].items()
+        if all(each.get(name) == value for each in others)
     }
     texts = [f"{PARAMETERS.get(name, ('', name))[1]} = {value:.4g}" for name, value in same.items()]
     counts = {_name(branch) for branch in branches}

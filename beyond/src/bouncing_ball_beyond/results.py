@@ -148,7 +148,8 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
 
 def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
     """The orbits of a branch with its special orbits, each in the step where it makes no detour."""
-    orbits, units = list(branch.orbits), scales(branch.equations, branch.z)[0]
+    orbits = list(branch.orbits)
+    units = scales(branch.equations, branch.z)[0]
     points = branch.z / units
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     for special in reversed(branch.special):
@@ -272,8 +273,8 @@ def _orbit_at(row: xr.Dataset, ball: Ball, paths: list[Path]) -> PeriodicOrbit:
     if ball.lasts:
         columns.append(row.scaled_duration.values)
     here = ball.at(**{name: float(row[name]) for name in ball.parameters})
-    amplitude, periods = float(row.amplitude), int(row.periods)
-    equations = OrbitEquations(here, len(columns[0]), periods, amplitude, tuple(paths))
+    given = len(columns[0]), int(row.periods), float(row.amplitude)
+    equations = OrbitEquations(here, *given, tuple(paths))
     values = [float(row[path.name]) for path in paths]
     return PeriodicOrbit(
         equations, np.append(np.stack(columns, axis=-1), values), str(row.kind.values)

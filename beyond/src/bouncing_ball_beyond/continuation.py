@@ -38,6 +38,11 @@ TURN = 0.3
 """The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
 
 
+NEAREST = 1e-9
+"""Relative distance from a period doubling below which doubled orbits are not told apart: at a distance
+ξ, rounding errors of the orbits are eps/ξ², and ξ² is proportional to the change of the parameter."""
+
+
 class Kind(NamedTuple):
     """A kind of special orbit.
 
@@ -264,6 +269,7 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
         normal[last, -1] = np.sign(rate[last])
         solution = newton(part, guess, normal, iterations=7)
         new, following = solution.z, _unit(solution.tangent / unit)
+        new[last, -1] = target[last]
         with np.errstate(all="ignore"):
             values = tests_on_the_way(part, new, solution.linear)
             change = _change_of_angle(values["period doubling"], tests["period doubling"][active])
@@ -949,6 +955,8 @@ def _doubled_start(task: _Task, way: int) -> _Start:
         side = "above" if start[i, -1] > origin[i, -1] else "below"
         place = f"{name} = {origin[i, -1]:.10g}"
         reasons[i] = f"the orbits of twice the period are {side} the period doubling at {place}"
+    near = np.abs(goal - origin[:, -1]) < NEAREST * units[:, -1]
+    reasons[near] = f"{name} is too near to the period doubling: rounding errors hide the orbits"
     short = (reasons == "") & (share < 1.5)
     if short.any():
         # The whole branch is hardly longer than its start, or shorter.

@@ -19,6 +19,9 @@ from bouncing_ball_beyond.paths import AMPLITUDE, Path
 FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
 
+ROUNDING = 4 * np.finfo(float).eps
+"""Rounding errors of the equations, relative to the largest unknown."""
+
 DENSE = 16
 """Systems of more legs are halved first: libraries of linear algebra start threads for large ones."""
 
@@ -544,11 +547,15 @@ def newton(
         right[..., 0] = -linear.legs
         step, tangent = np.moveaxis(_solve(linear, right, border, border_right), -1, 0)
         z = z + step
-        found = np.abs(step).max(axis=1) < tolerance * (1 + np.abs(z).max(axis=1))
-        if (found | np.isnan(z).any(axis=1)).all():
+        size = np.abs(z).max(axis=1)
+        defect = np.abs(linear.legs).max(axis=(1, 2))
+        # Steps become small, or they are made of nothing but rounding errors of the equations.
+        found = np.abs(step).max(axis=1) < tolerance * (1 + size)
+        found |= defect < ROUNDING * (1 + size)
+        if (found | np.isnan(size)).all():
             break
     # Far away, where times have no digits left, steps are small as well.
-    found &= np.abs(linear.legs).max(axis=(1, 2)) < 1e-7
+    found &= defect < 1e-7
     return Solution(z, found, tangent, linear)
 
 

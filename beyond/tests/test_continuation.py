@@ -1,0 +1,401 @@
+"""Branches and cascades: against closed forms, the replication, simulated motions and universal ratios."""
+
+import numpy as np
+import pytest
+from integrated import leg
+from scipy.optimize import brentq
+
+from bouncing_ball.continuation import bifurcations
+from bouncing_ball.spring_damper import Contact
+from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
+from bouncing_ball_beyond.continuation import (
+    FollowedBranch,
+    cascade,
+    follow,
+    kind_named,
+    limits,
+)
+from bouncing_ball_beyond.orbits import OrbitNotFound, orbit, orbit_near, orbits
+from bouncing_ball_beyond.paths import ParameterPath
+
+# Special orbits are located to some rounding errors of their tests, relative to the slopes of these.
+LOCATED = 1e-10
+
+
+def saddle_node(n, r):
+    """Λ of the saddle-node of the restitution model (Eq. 7)."""
+    return n * np.pi * (1 - r) / (1 + r)
+
+
+def period_doubling(n, r):
+    """Λ of its period doubling, where 1 + tr + det = 0 for the exact map (Eq. 5)."""
+    return np.hypot(saddle_node(n, r), 2 * (1 + r * r) / (1 + r) ** 2)
+
+
+@pytest.mark.parametrize(("n", "r"), [(1, 0.3), (1, 0.85), (2, 0.6), (3, 0.95)])
+def test_along_the_amplitude_special_orbits_are_the_closed_form(n, r):
+    fold, flip = saddle_node(n, r), period_doubling(n, r)
+    start = orbit(Rigid(r), amplitude=(fold + flip) / 2, n=n)
+    branch = follow(start, to=(0.9 * fold, 1.1 * flip))
+    assert [each.kind for each in branch.special] == ["saddle-node", "period doubling"]
+    found = [each.amplitude for each in branch.special]
+    assert found == pytest.approx([fold, flip], abs=LOCATED)
+    # At the saddle-node the phase is 0; the stable part is between it and the doubling.
+    above = np.array([each.phase > 0 for each in branch.orbits])
+    assert np.array_equal(branch.stable, above & (branch.values < flip))
+    assert limits(Rigid(r), n=n).saddle_node.amplitude == pytest.approx(fold, abs=LOCATED)
+    assert limits(Rigid(r), n=n).period_doubling.amplitude == pytest.approx(flip, abs=LOCATED)
+
+
+def test_along_the_restitution_special_orbits_are_the_closed_form():
+    amplitude = 1.4
+    branch = follow(orbit(Rigid(0.5), amplitude=amplitude), along="restitution", to=0.2)
+    flip = brentq(lambda r: period_doubling(1, r) - amplitude, 0.5, 0.7)
+    fold = brentq(lambda r: saddle_node(1, r) - amplitude, 0.2, 0.5)
+    assert branch.first("saddle node").ball.restitution == pytest.approx(fold, abs=LOCATED)
+    # Behind the saddle-node the branch comes back to r = 0.8, as far behind the start.
+    assert branch.end.startswith("restitution = 0.8 is reached, as far behind the start")
+    assert branch.end.endswith(f"restitution = 0.2 is beyond the saddle-node at {fold:.10g}")
+    other = follow(orbit(Rigid(0.5), amplitude=amplitude), along="restitution", to=1.0)
+    assert other.first("period-doubling").ball.restitution == pytest.approx(flip, abs=LOCATED)
+    assert other.end == "restitution = 1 is reached" and other.values[-1] == 1.0
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_along_any_parameter_special_orbits_are_those_of_the_replication(release):
+    """The doubling at some ϖ is reached along Λ, along ϖ, along ζ and along the frequency."""
+    ratio, zeta = 6.0, float(damping_of(0.7))
+    contact = Contact(ratio, zeta, release)
+    y = bifurcations(1, "period doubling", np.array([ratio]), contact)[:, 0, 0]
+    amplitude = y[0]
+    ball = SpringDamper(ratio, damping_ratio=zeta, release=release)
+    root = np.sqrt(amplitude)
+    before = ball.at(frequency_ratio=ratio / np.sqrt(0.9))
+    along = {
+        "amplitude": (ball, 0.9 * amplitude, 1.1 * amplitude, amplitude),
+        "frequency_ratio": (ball.at(frequency_ratio=4.0), amplitude, 9.0, ratio),
+        "damping_ratio": (ball.at(damping_ratio=zeta + 0.02), amplitude, zeta - 0.05, zeta),
+        "frequency": (before, 0.9 * amplitude, 1.1 * root, root),
+    }
+    for name, (start, at, to, expected) in along.items():
+        branch = follow(orbit(start, amplitude=at), along=name, to=to)
+        found = [each.z[-1] for each in branch.special if each.kind == "period doubling"]
+        assert min(abs(np.array(found) - expected)) < LOCATED, name
+
+
+@pytest.mark.parametrize(
+    ("ratio", "n", "expected"),
+    [(0.61, 1, 1.99987969629), (2.2260684470825036, 2, 1.0486083123)],
+)
+def test_limits_without_damping(ratio, n, expected):
+    """The doubling is at Λ = |1 - 1/ϖ²|/|cos(π/2ϖ)|, and there is no saddle-node above Λ = 0."""
+    found = limits(SpringDamper(ratio, damping_ratio=0.0), n=n)
+    formula = abs(1 - 1 / ratio**2) / abs(np.cos(np.pi / (2 * ratio)))
+    assert found.saddle_node is None
+    assert found.period_doubling.amplitude == pytest.approx(expected, abs=2e-10)
+    assert found.period_doubling.amplitude == pytest.approx(formula, abs=LOCATED)
+
+
+def first_doubling(ball, amplitude, to=3.0):
+    return follow(orbit(ball, amplitude=amplitude), to=to).first("period doubling")
+
+
+def test_an_elastic_cascade_has_the_doublings_that_a_fixed_first_step_loses():
+    """The doubling of 16 impacts is at 1.26595802161 in 40 digits; the ratio tends to 8.7211."""
+    doubling = first_doubling(Rigid(1.0), 0.5)
+    branches = cascade(doubling, to=3.0)
+    assert [each.impacts for each in branches] == [2, 4, 8, 16, 32, 64]
+    values = np.array([doubling.amplitude, *(each.values[-1] for each in branches)])
+    assert values[5] == pytest.approx(1.26595802161, abs=5e-12)
+    gaps = np.diff(values)
+    assert gaps[-2] / gaps[-1] == pytest.approx(8.7211, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "ball",
+    [
+        Rigid(0.5),
+        SpringDamper(30.0, restitution=0.6),
+        SpringDamper(8.0, restitution=0.5, release="force"),
+        Corrected(SpringDamper(12.0, restitution=0.55)),
+    ],
+)
+def test_cascades_are_complete_up_to_64_impacts(ball):
+    """The ratio of successive intervals tends to 4.6692, with errors that fall as its powers."""
+    doubling = limits(ball).period_doubling
+    branches = cascade(doubling, to=4.0)
+    assert [each.impacts for each in branches] == [2, 4, 8, 16, 32, 64]
+    values = np.array([doubling.amplitude, *(each.values[-1] for each in branches)])
+    gaps = np.diff(values)
+    assert gaps[-2] / gaps[-1] == pytest.approx(4.6692, rel=2e-3)
+    if ball == Rigid(0.5):
+        assert values[6] == pytest.approx(1.70491466, abs=5e-9)
+    # Between two doublings orbits are stable; one with a multiplier of 1 or -1 is at each end.
+    for each in branches:
+        assert each.stable[1:-1].all() and each.admissible[1:-1].all()
+
+
+def test_a_doubled_branch_ends_where_it_is_told_to():
+    doubling = first_doubling(Rigid(0.5), 1.4)
+    for beyond in (1e-8, 1e-5, 1e-2):
+        branch = follow(doubling, to=doubling.amplitude + beyond)
+        assert branch.values[-1] == doubling.amplitude + beyond
+        assert np.all(branch.values <= branch.values[-1]) and len(branch) > 1
+        assert branch.special == () and branch.end.endswith("is reached")
+        assert branch.orbits[-1].stable and branch.impacts == 2
+    # ξ² is proportional to the distance in Λ: the orbits of two impacts are on a parabola.
+    near = [follow(doubling, to=doubling.amplitude + d).orbits[-1] for d in (1e-6, 4e-6)]
+    apart = [abs(np.diff(each.speeds)[0]) for each in near]
+    assert apart[1] / apart[0] == pytest.approx(2, rel=1e-4)
+
+
+def test_a_goal_that_rounding_hides_is_refused():
+    doubling = first_doubling(Rigid(0.5), 1.4)
+    with pytest.raises(OrbitNotFound, match="amplitude is too near to the period doubling"):
+        follow(doubling, to=doubling.amplitude + 1e-12)
+
+
+def test_a_doubled_branch_is_refused_on_the_side_where_it_is_not():
+    doubling = first_doubling(Rigid(0.5), 1.4)
+    with pytest.raises(OrbitNotFound, match="twice the period are above the period doubling at am"):
+        follow(doubling, to=1.2)
+    fold = limits(Rigid(0.5)).saddle_node
+    with pytest.raises(OrbitNotFound, match="orbits of the saddle-node at .* are above it"):
+        follow(fold, to=0.5)
+
+
+def test_from_a_saddle_node_the_stable_branch_is_followed_and_both_if_both_ways():
+    fold = limits(Rigid(0.5)).saddle_node
+    branch = follow(fold, to=1.3)
+    assert branch.special == () and branch.stable[1:].all()
+    both = follow(fold, to=(0.5, 1.3))
+    lowest = np.argmin(both.values)
+    assert both.values[[0, -1]] == pytest.approx([1.3, 1.3]) and 0 < lowest < len(both) - 1
+    assert not both.stable[:lowest].any() and both.stable[lowest + 1 :].all()
+    assert all(each.kind != "saddle-node" for each in both.special)
+
+
+@pytest.mark.parametrize("name", ["saddle node", "saddle-node", "Saddle-Node"])
+def test_kinds_are_understood_with_spaces_and_hyphens(name):
+    assert kind_named(name) == "saddle-node"
+
+
+def test_an_unknown_kind_is_refused_with_those_that_there_are():
+    branch = follow(orbit(Rigid(0.5), amplitude=1.2), to=1.8)
+    assert branch.first("period-doubling") is branch.first("period doubling")
+    with pytest.raises(ValueError, match="kind = 'fold': must be one of saddle-node, period doub"):
+        branch.first("fold")
+    with pytest.raises(OrbitNotFound, match="no saddle-node on this branch; its special orbits"):
+        branch.first("saddle-node")
+
+
+def test_the_grazing_of_a_flight_and_the_branch_with_one_impact_more():
+    """The gap of the closed form has a minimum of zero; and the longer orbits meet it there."""
+    r = 0.5
+    branch = follow(orbit(Rigid(r), amplitude=2.0, side="unstable"), to=3.0)
+    grazing = branch.first("grazing of a flight")
+
+    def lowest(amplitude):
+        phase = -np.arccos(saddle_node(1, r) / amplitude)
+        t = np.linspace(0.1, 2 * np.pi - 0.1, 200001)
+        table = amplitude * (np.sin(phase + t) - np.sin(phase))
+        gap = np.pi * t - t * t / 2 - table
+        turns = (gap[1:-1] < gap[:-2]) & (gap[1:-1] < gap[2:])
+        return gap[1:-1][turns].min()
+
+    # The samples are 3e-5 apart, and the minimum is flat.
+    assert grazing.amplitude == pytest.approx(brentq(lowest, 2.4, 2.6), abs=1e-8)
+    before, after = branch.values < grazing.amplitude, branch.values > grazing.amplitude
+    assert branch.admissible[before].all() and not branch.admissible[after].any()
+    more = follow(grazing, to=1.0)
+    assert more.impacts == 2 and more.values[0] == pytest.approx(grazing.amplitude, abs=1e-12)
+    assert more.start.startswith("grazing of a flight at amplitude = 2.504299")
+    assert more.first("saddle-node").amplitude == pytest.approx(1.484220833, abs=1e-9)
+
+
+def test_the_grazing_of_an_impact_is_that_of_a_flight_of_the_orbit_without_it():
+    three = orbits(Rigid(0.8), impacts=3, periods=3, amplitude=1.2)
+    two = orbits(Rigid(0.8), impacts=2, periods=3, amplitude=1.3)
+    ends = [follow(each, to=20.0) for each in three]
+    impacts = [b.special[-1].amplitude for b in ends if b.special[-1].kind.endswith("an impact")]
+    flights = [follow(each, to=20.0).first("grazing of a flight").amplitude for each in two]
+    assert impacts and min(abs(np.subtract.outer(impacts, flights)).ravel()) < 1e-9
+    assert all("an impact vanishes" in each.end for each in ends)
+    with pytest.raises(OrbitNotFound, match="branches end at a special orbit of this kind"):
+        follow(ends[0].special[-1], to=1.0)
+
+
+def test_a_lost_release_is_an_orbit_that_leaves_the_table_with_no_speed():
+    ball = SpringDamper(7.316726682288825, restitution=0.23276919547357516)
+    start = orbit(ball, amplitude=4.0523387951747, n=2)
+    branch = follow(start, along="frequency", to=1.04)
+    lost = branch.special[-1]
+    assert lost.kind == "lost release" and "no longer leaves the table" in branch.end
+    assert lost.relative_bounce_velocity == pytest.approx(0, abs=1e-10)
+    assert lost.defect < 1e-11
+    assert branch.values[-1] == lost.z[-1]
+
+
+def test_the_grazing_of_a_release_touches_the_release_within_a_contact():
+    ball = SpringDamper(1.580803888063078, restitution=0.431368537136941, release="force")
+    branch = follow(orbit(ball, amplitude=2.5166920162308033, n=2), along="frequency", to=0.92)
+    touch = branch.first("grazing of a release")
+    T = touch.z[2] * np.linspace(0.02, 0.98, 100001)
+    ends = touch.ball.contact(touch.times[0], touch.speeds[0], T, touch.amplitude)
+    # The samples are next to the maximum, which is flat.
+    assert ends.release.max() == pytest.approx(0, abs=1e-7)
+    place = np.argmin(np.abs(branch.z - touch.z).max(axis=1))
+    assert len(set(branch.admissible[place - 2 : place + 3])) == 2
+    on = follow(touch, to=0.92)
+    assert on.impacts == 1 and touch.z[-1] not in [each.z[-1] for each in on.special]
+
+
+def test_a_flight_vanishes_where_permanent_contact_begins():
+    """Λ_SD = √(1 + (4ζ² - 2)/ϖ² + 1/ϖ⁴) (Eq. 28 to 34)."""
+    ball = SpringDamper(2.0, restitution=0.85)
+    longest = orbits(ball, amplitude=0.9)[-1]
+    branch = follow(longest, to=0.1)
+    limit = np.sqrt(1 + (4 * ball.zeta**2 - 2) / 4 + 1 / 16)
+    assert "the contacts before and after a flight merge" in branch.end
+    assert branch.special[-1].kind == "vanishing flight"
+    # The equations are singular there, so that half of the digits are certain.
+    assert branch.values[-1] == pytest.approx(limit, abs=1e-7)
+    assert branch.admissible[:-1].all()
+
+
+def test_a_period_halving_is_the_doubling_from_the_other_side():
+    """Twice the period is left at a doubling: followed back, the branch ends there."""
+    doubling = first_doubling(Rigid(0.5), 1.4)
+    last = follow(doubling, to=1.6).orbits[-1]
+    back = follow(last, to=1.3)
+    assert back.special[-1].kind == "period halving"
+    assert "merges with one of half its period" in back.end
+    assert back.special[-1].amplitude == pytest.approx(doubling.amplitude, abs=LOCATED)
+    half = follow(back.special[-1], to=1.3)
+    assert half.impacts == 1 and half.values[-1] == 1.3 and half.stable[1:].all()
+
+
+def test_a_closed_branch_ends_at_its_start():
+    """A loop along r with twelve special orbits, each of which is listed once."""
+    phases = [0.2819, 0.21319, -2.64328, -1.15994, -0.29137]
+    velocities = [-3.16097, -6.2661, -8.13626, -1.70041, 1.91449]
+    ball = Rigid(0.49711198038140114)
+    start = orbit_near(ball, amplitude=3.2407106247114794, phases=phases, velocities=velocities)
+    branch = follow(start, along="restitution", to=0.62)
+    assert branch.end == "the branch is closed: it is back at its start"
+    assert branch.orbits[-1].distance(branch.orbits[0]) == 0
+    assert len(branch.special) == 12
+    assert len({(each.kind, round(each.z[-1], 9)) for each in branch.special}) == 12
+
+
+def test_rows_side_by_side_are_the_single_branches():
+    """Each has its own events and end, or the reason why there is no orbit."""
+    random = np.random.default_rng(5)
+    r, ratio = random.uniform(0.4, 0.95, 12), 10 ** random.uniform(0.5, 2, 12)
+    amplitude = saddle_node(1, r) + 0.3
+    amplitude[3] = 0.01
+    starts = orbit(SpringDamper(ratio, restitution=r), amplitude=amplitude)
+    starts += orbit(Rigid([0.5, 0.7]), amplitude=[1.3, 0.9])
+    to = np.append(amplitude, [1.3, 0.9]) + random.uniform(-0.5, 1.5, 14)
+    to = np.maximum(to, 0.05)
+    branches = follow(starts, to=to)
+    assert isinstance(branches[3], OrbitNotFound) and branches[3] is starts[3]
+    kinds = set()
+    for start, goal, branch in zip(starts, to, branches, strict=True):
+        if isinstance(start, OrbitNotFound):
+            continue
+        alone = follow(start, to=float(goal))
+        assert isinstance(branch, FollowedBranch) and branch.end == alone.end
+        assert branch.values == pytest.approx(alone.values, abs=1e-9)
+        assert [each.kind for each in branch.special] == [each.kind for each in alone.special]
+        for one, other in zip(branch.special, alone.special, strict=True):
+            assert one.distance(other) < 1e-8
+        kinds |= {each.kind for each in branch.special}
+    assert {"saddle-node", "period doubling"} <= kinds
+
+
+def test_cascades_side_by_side_are_the_single_cascades():
+    doublings = [each.period_doubling for each in limits(Rigid([0.4, 0.6, 0.8]))]
+    reason = OrbitNotFound("none")
+    found = cascade([doublings[0], reason, *doublings[1:]], to=3.0, impacts=16)
+    assert found[1] is reason
+    for each, doubling in zip([found[0], *found[2:]], doublings, strict=True):
+        alone = cascade(doubling, to=3.0, impacts=16)
+        assert [b.impacts for b in each] == [2, 4, 8, 16]
+        ends = [[b.values[-1] for b in branches] for branches in (each, alone)]
+        assert ends[0] == pytest.approx(ends[1], abs=LOCATED)
+
+
+def shaker(frequency):
+    """Λ for a stroke of 0.5 mm at a frequency in hertz."""
+    return 0.5e-3 * (2 * np.pi * frequency) ** 2 / 9.80665
+
+
+def test_a_path_of_ones_own_and_the_frequency_lead_to_the_same_orbits():
+    ball = SpringDamper(500.0 / 20.0, restitution=0.85)
+    start = orbit(ball, amplitude=shaker(20.0))
+    sweep = follow(start, along="frequency", to=1.2)
+    hertz = ParameterPath(
+        "hertz", low=15.0, high=30.0, amplitude=shaker, frequency_ratio=lambda f: 500.0 / f
+    )
+    along = follow(start, along=hertz, to=25.0)
+    doubling = along.first("period doubling")
+    assert doubling.parameters["hertz"] == pytest.approx(22.701, abs=5e-4)
+    expected = doubling.parameters["hertz"] / np.sqrt(9.80665 / 0.5e-3) * 2 * np.pi
+    assert sweep.first("period doubling").z[-1] == pytest.approx(expected, abs=LOCATED)
+    # It is the doubling of this contact along Λ as well, and is followed along the same path.
+    stiff = SpringDamper(doubling.ball.frequency_ratio, restitution=0.85)
+    same = limits(stiff).period_doubling
+    assert same.amplitude == pytest.approx(doubling.amplitude, abs=LOCATED)
+    twice = follow(doubling, to=24.0)
+    assert (twice.along, twice.impacts, twice.values[-1]) == ("hertz", 2, 24.0)
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        (lambda: ParameterPath("x", low=2, high=1, amplitude=np.sin), "low must be below high"),
+        (lambda: ParameterPath("x", low=1, high=2), "needs a function for each parameter"),
+        (lambda: ParameterPath("x", low=-1, high=2, amplitude=np.abs), "must be analytic"),
+        (lambda: ParameterPath("x", low=0, high=3, amplitude=np.sin), "must rise or fall throu"),
+        (lambda: ParameterPath("x", low=1, high=3, amplitude=lambda x: [x]), "arrays, also compl"),
+    ],
+)
+def test_a_path_that_is_none_is_refused(path, text):
+    with pytest.raises(ValueError, match=text):
+        path()
+
+
+def test_wrong_goals_and_parameters_are_named_in_one_line():
+    start = orbit(Rigid(0.5), amplitude=1.3)
+    path = ParameterPath("x", low=1.0, high=2.0, amplitude=lambda x: x, restitution=lambda x: x / 4)
+    for call, text in (
+        (lambda: follow(start, along="mass", to=2.0), "along = 'mass': must be one of amplitude"),
+        (lambda: follow(start, to=-1.0), r"to = -1: amplitude must be in \[1e-12, 1e\+08\]"),
+        (lambda: follow(start, along="restitution", to=1.1), r"restitution must be in \[0, 1\]"),
+        (lambda: follow(start, to=(1.4, 2.0)), "amplitude = 1.3 of the orbit must be between"),
+        (lambda: follow(start, along=path, to=2.0), "the orbit is not on the path x"),
+        (lambda: follow(start, to=1.3), "amplitude = 1.3 is that of the orbit already"),
+    ):
+        with pytest.raises(ValueError, match=text) as raised:
+            call()
+        assert "\n" not in str(raised.value)
+
+
+def test_without_a_goal_the_parameter_rises_to_ten_times_its_value_or_to_its_end():
+    start = orbit(Rigid(0.3), amplitude=2.0)
+    assert follow(start).end == "amplitude = 20 is reached"
+    assert follow(start, along="restitution").values[-1] == 1.0
+    assert follow(start, points=3).end.startswith("all 3 points are used; the last one is at")
+
+
+def test_a_simulated_ball_ends_on_the_stable_orbits_of_a_cascade():
+    """A ball that starts elsewhere is attracted by the orbit of four impacts."""
+    doubling = first_doubling(Rigid(0.5), 1.4)
+    branches = cascade(doubling, to=1.6999, impacts=4)
+    four = branches[1].orbits[len(branches[1]) // 2]
+    assert four.impacts == 4 and four.stable and four.admissible
+    tau, u = four.times[0], four.speeds[0] + 0.02
+    for _ in range(4 * 40):
+        tau, u, _ = leg(four.ball, four.amplitude, tau, u)
+    assert np.abs(four.speeds - u).min() < 1e-6

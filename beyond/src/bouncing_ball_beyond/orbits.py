@@ -293,13 +293,21 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
     """
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, side * np.pi / 3)
+    step, before = np.zeros((2, *amplitude.shape))
     with np.errstate(all="ignore"):
         for _ in range(30):
             r, _, centroid, loss = ball.signature(u)
             known = np.isfinite(r)
             load = np.where(known, loss * (1 - amplitude * np.sin(psi)), 0.0)
-            u = (u + (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5))) / 2
+            excess = (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5)) - u
+            # The secant method, with a slope of -2 at first, and limited as the phase nears 0.
+            slope = np.where(step == 0, -2.0, np.clip((excess - before) / step, -8.0, -1.0))
+            step = -excess / slope
+            before = excess
+            u = u + step
             psi = side * np.arccos(np.clip((u - np.pi * periods) / amplitude, -1, 1))
+            if np.all(np.abs(step) < 1e-7 * u):
+                break
     # The impacts of a corrected ball are at the centroids themselves.
     touch = psi if isinstance(ball, Corrected) else psi - np.where(known, centroid, 0.0)
     columns = [touch, u, amplitude]

@@ -119,7 +119,7 @@ def with_ball(function: Callable) -> Callable:
         restitution, frequency_ratio, damping_ratio, release, law, settings, corrected, **others
     ):
         if law is not None:
-            ball = bb.named_law(law, **_settings(settings), restitution=restitution)
+            ball = _of_law(law, restitution, settings)
         elif frequency_ratio is None and damping_ratio is None:
             ball = bb.Rigid(restitution)
         else:
@@ -129,16 +129,24 @@ def with_ball(function: Callable) -> Callable:
     return BALL(command)
 
 
-def _settings(texts: tuple[str, ...]) -> dict[str, float]:
-    """The parameters of a law from texts such as "stiffness=1000"."""
-    values = {}
-    for text in texts:
-        name, _, value = text.partition("=")
+def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> Any:
+    """The ball of a named law, with its parameters from texts such as "stiffness=1000"."""
+    from bouncing_ball_beyond.named_laws import LAWS
+
+    name = law.replace("-", "_")
+    if name not in LAWS:
+        raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
+    values = {} if restitution is None else {"restitution": restitution}
+    for text in settings:
+        parameter, _, number = text.partition("=")
         try:
-            values[name] = float(value)
+            values[parameter] = float(number)
         except ValueError:
-            raise click.ClickException(f"--set {text}: must be NAME=NUMBER") from None
-    return values
+            raise ValueError(f"settings {text!r}: must be NAME=NUMBER") from None
+    try:
+        return LAWS[name](**values)
+    except TypeError as error:
+        raise ValueError(f"settings: {error}") from error
 
 
 def given(phase: float | None, velocity: float | None) -> dict[str, float]:

@@ -563,7 +563,7 @@ def error_thresholds(
 
         def excess(logarithm, row, name=name):
             # The ratios of all rows, because a path may depend on the place in an array.
-            ratio = np.full(shape, high)
+            ratio = np.full(shape, float(high))
             ratio.flat[row] = np.exp(logarithm)
             there = exact_errors(path(ratio), quantities=[name], **known)[name]
             return np.abs(there.flat[row]) - tolerance

@@ -21,7 +21,7 @@ from bouncing_ball_beyond.error_law import (
     restitution_values,
 )
 
-# from bouncing_ball_beyond.laws import tsuji
+from bouncing_ball_beyond.named_laws import tsuji
 from bouncing_ball_beyond.paths import Frequency
 
 STANDARD_GRAVITY = 9.80665

@@ -12,6 +12,7 @@ from bouncing_ball_beyond import (
     Rigid,
     SpringDamper,
     follow,
+    named_laws,
     orbit,
     plot,
     read_orbits,
@@ -25,6 +26,8 @@ BALLS = [
     SpringDamper(10.0, restitution=0.85),
     SpringDamper(20.0, damping_ratio=0.1, release="force"),
     Corrected(SpringDamper(30.0, restitution=0.6)),
+    named_laws.tsuji(stiffness=1e4, damping=0.1),
+    named_laws.linear(20.0, 0.1, release="approach"),
 ]
 
 
@@ -117,7 +120,7 @@ def test_a_path_and_a_function_of_a_user_are_given_again(tmp_path):
     ball = Rigid(slower)
     one = orbit(ball, amplitude=1.4)
     data = to_dataset(one)
-    with pytest.raises(ValueError, match="a Rigid with a function, slower: give it as ball="):
+    with pytest.raises(ValueError, match="the ball has a function, slower: give it as ball="):
         read_orbits(data)
     assert read_orbits(data, ball=ball).distance(one) == 0
 

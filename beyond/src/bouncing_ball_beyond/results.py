@@ -9,17 +9,18 @@ impact along ``impact`` and those of the orbit beside them; special orbits are r
 import json
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from importlib import import_module
 from os import PathLike
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball_beyond.balls import Ball, Corrected
+from bouncing_ball_beyond import named_laws
+from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.continuation import FollowedBranch, scales
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.orbits import PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
 
@@ -55,7 +56,7 @@ PARAMETERS = {
 }
 """Parameters; those of laws have their names as long names."""
 
-PACKAGE = "bouncing_ball_beyond"
+BALLS = {each.__name__: each for each in (Rigid, SpringDamper, Corrected, ForceLaw)}
 
 Found = PeriodicOrbit | FollowedBranch | Sequence
 """What a dataset is made of, and read as: an orbit, a branch or a curve, or a list of orbits."""
@@ -87,9 +88,9 @@ def to_dataset(found: Found) -> xr.Dataset:
     along = [path.name for path in first.equations.along]
     data = xr.Dataset(
         attrs={
-            "source": PACKAGE,
+            "source": "bouncing_ball_beyond",
             "impacts": first.impacts,
-            "ball": json.dumps(described(first.ball)),
+            "ball": json.dumps(first.ball, default=encoded),
             "along": json.dumps(along),
             "form": type(found).__name__,
         }
@@ -162,46 +163,34 @@ def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
 # Balls as texts
 
 
-def described(ball: Ball) -> dict[str, Any]:
-    """A ball as its class and its fields, or as the name and the parameters of a law.
-
-    Of a ball with a function that was written by its user only the function's name remains.
-    """
-    kind = {"class": type(ball).__name__}
-    if isinstance(ball, Corrected):
-        return kind | {"of": described(ball.of)}
-    if getattr(ball, "name", ""):
-        values = {name: float(value) for name, value in ball.parameters.items()}
-        return {"law": ball.name, **values, "release": ball.release}
-    values = {field.name: getattr(ball, field.name) for field in fields(ball)}
-    for value in values.values():
-        if callable(value):
-            return kind | {"function": getattr(value, "__name__", repr(value))}
-    return kind | {
-        name: value if isinstance(value, str) else float(value)
-        for name, value in values.items()
-        if value is not None
-    }
+def encoded(value: Any) -> Any:
+    """A ball as its class and its fields, and a function as its name, for json."""
+    if isinstance(value, Ball):
+        values = {field.name: getattr(value, field.name) for field in fields(value)}
+        given = {name: each for name, each in values.items() if each is not None}
+        return {"class": type(value).__name__, **given}
+    if callable(value):
+        name = getattr(value, "__name__", repr(value))
+        return {"function": name, "named": getattr(named_laws, name, None) is value}
+    return np.asarray(value).tolist()
 
 
-def ball_of(text: dict[str, Any]) -> Ball:
-    """The ball that was described.
+def decoded(values: dict[str, Any]) -> Any:
+    """What was encoded.
 
     Raises
     ------
     ValueError
-        If it had a function.
+        If a function is none of the named laws.
     """
-    if "function" in text:
-        raise ValueError(
-            f"the ball is a {text['class']} with a function, {text['function']}: give it as ball="
-        )
-    values = dict(text)
-    if "law" in text:
-        return getattr(import_module(f"{PACKAGE}.named_laws"), values.pop("law"))(**values)
-    if "of" in text:
-        return Corrected(ball_of(text["of"]))
-    return getattr(import_module(f"{PACKAGE}.balls"), values.pop("class"))(**values)
+    if "function" in values:
+        if not values["named"]:
+            raise ValueError(f"the ball has a function, {values['function']}: give it as ball=")
+        return getattr(named_laws, values["function"])
+    if "class" not in values:
+        return values
+    kind = BALLS[values.pop("class")]
+    return kind(**{name: tuple(x) if isinstance(x, list) else x for name, x in values.items()})
 
 
 def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) -> Found:
@@ -238,7 +227,7 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
     name = f"{source}: " if is_file else ""
     if not {"ball", "along", "form"} <= data.attrs.keys():
         raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
-    ball = ball or ball_of(json.loads(data.attrs["ball"]))
+    ball = ball or json.loads(data.attrs["ball"], object_hook=decoded)
     paths = [_path(each, ball, along) for each in json.loads(data.attrs["along"])]
     orbits = [_orbit_at(data.isel(point=i), ball, paths) for i in range(data.sizes["point"])]
     form = data.attrs["form"]

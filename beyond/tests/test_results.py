@@ -11,6 +11,7 @@ from bouncing_ball_beyond import (
     ParameterPath,
     Rigid,
     SpringDamper,
+    cascade,
     follow,
     named_laws,
     orbit,
@@ -19,7 +20,10 @@ from bouncing_ball_beyond import (
     special_curve,
     to_dataset,
 )
+from bouncing_ball_beyond.continuation import KINDS
+from bouncing_ball_beyond.curves import DEGENERATE
 from bouncing_ball_beyond.orbits import orbits
+from bouncing_ball_beyond.pictures import MARKS
 
 BALLS = [
     Rigid(0.5),
@@ -219,3 +223,21 @@ def test_pictures_refuse_what_they_cannot_draw(rigid):
     softer = follow(orbit(Rigid(0.5), amplitude=1.4), along="restitution", to=0.6)
     with pytest.raises(ValueError, match="all along the same parameters"):
         plot(rigid, softer)
+
+
+def test_all_kinds_have_marks():
+    degenerate = {kind for pair in DEGENERATE.values() for kind in pair}
+    assert set(MARKS) == set(KINDS) | degenerate
+
+
+def test_a_stable_cascade_has_no_unstable_lines():
+    doubling = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8).first("period doubling")
+    figure = plot(cascade(doubling, to=1.8, impacts=8))
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert texts == [
+        "stable",
+        "period doubling",
+        "2 impacts in 2 T",
+        "4 impacts in 4 T",
+        "8 impacts in 8 T",
+    ]

@@ -17,6 +17,7 @@ from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pie
 from bouncing_ball_beyond.continuation import FollowedBranch, scales
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import newton
+from bouncing_ball_beyond.orbits import PeriodicOrbit
 from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
 
 MARKS = {
@@ -26,6 +27,7 @@ MARKS = {
     "grazing of a flight": "^",
     "grazing of a release": "v",
     "grazing of an impact": "<",
+    "vanishing flight": ">",
     "lost release": "X",
     "cusp": "P",
     "generalized period doubling": "*",
@@ -112,11 +114,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
     x, y = _coordinates(whole, quantity)
     stable = np.ones(len(x), bool) if is_curve else whole.stable
     looks = 2 * whole.admissible + stable
-    special = [i for i, each in enumerate(orbits) if each in branch.special]
-    # A special orbit looks as the orbits behind it, and the last orbit as those before it.
-    for i in [*reversed(special), 0]:
-        looks[i] = looks[min(i + 1, len(x) - 1)]
-    looks[-1] = looks[max(len(x) - 2, 0)]
+    looks = looks[_ordinary(orbits, branch.special)]
     entries = {}
     for part in pieces(looks):
         admissible, steady = divmod(int(looks[part.start]), 2)
@@ -128,12 +126,27 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
         kind = whole.kind if is_curve else ("stable" if steady else "unstable")
         text = kind if admissible else f"{kind}, no ball follows"
         entries[text] = sample(**look | {"color": "black" if admissible else pale("black")})
-    for i in special if whole.impacts <= MARKED else ():
-        mark = {"marker": MARKS[orbits[i].kind], "fillstyle": "none", "markersize": 4}
-        look = mark | {"linestyle": "none", "markeredgewidth": 1.0, "zorder": 4}
-        axes.plot(np.full(y[i].shape, x[i]), y[i], color=colour, **look)
-        entries[orbits[i].kind] = sample(**look)
+    for each, abscissa, ordinates in zip(orbits, x, y, strict=True):
+        if each in branch.special and each.impacts <= MARKED:
+            mark = {"marker": MARKS[each.kind], "fillstyle": "none", "markersize": 4}
+            look = mark | {"linestyle": "none", "markeredgewidth": 1.0, "zorder": 4}
+            axes.plot(np.full(ordinates.shape, abscissa), ordinates, color=colour, **look)
+            entries[each.kind] = sample(**look)
     return entries
+
+
+def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
+    """For each orbit the number of the next one, or of the last one, that is not special.
+
+    The multipliers of a special orbit do not tell how those beside it look. The ends of a branch
+    may be special orbits as well.
+    """
+    places = [each.z for each in special]
+    others = [
+        i for i, each in enumerate(orbits) if not any(np.array_equal(each.z, z) for z in places)
+    ]
+    inner = np.array([i for i in others if 0 < i < len(orbits) - 1] or [0])
+    return inner[np.searchsorted(inner, np.arange(len(orbits))).clip(max=len(inner) - 1)]
 
 
 def _order(entry: tuple[str, Any]) -> tuple[bool, bool, bool]:

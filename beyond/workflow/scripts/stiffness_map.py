@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.restitution import period_doubling, saddle_node
-from bouncing_ball_beyond.balls import H, SpringDamper
+from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values, free_impact
 from bouncing_ball_beyond.orbits import guess_of_instants
 from bouncing_ball_beyond.paths import Parameter
+from studies.orbits import flight_height, solved
 from studies.variables import VARIABLES
 
 # Share by which the frequency ratio of the error law differs from the exact one where it is marked.
@@ -51,28 +52,6 @@ def law_roots(n: int, r: NDArray, amplitude: NDArray, height: NDArray, error: fl
     return 1 / smallest, np.where(b < 0, discriminant / b**2, -1.0)
 
 
-def flight_height(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The heights of the summits of flights, shape (rows,)."""
-    ends = equations.ends(z)
-    amplitude = equations.amplitude[:, np.newaxis]
-    bounce = ends.speed + amplitude * np.cos(ends.leaves)
-    return (ends.gap + amplitude * np.sin(ends.leaves) + bounce**2 / 2)[:, 0]
-
-
-def with_height(equations: OrbitEquations, z: NDArray, height: NDArray) -> NDArray:
-    """The orbits of given heights near some rows z, by Newton's method in ϖ and the impact."""
-    columns = range(z.shape[1])
-    for _ in range(10):
-        residuals, jacobian = equations.residuals(z)
-        steps = [z + 1j * H * np.eye(z.shape[1])[column] for column in columns]
-        gradient = np.stack([flight_height(equations, each).imag / H for each in steps], axis=-1)
-        excess = flight_height(equations, z) - height
-        matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
-        values = np.concatenate([residuals, excess[:, np.newaxis]], axis=1)
-        z = z - np.linalg.solve(matrix, values[..., np.newaxis])[..., 0]
-    return z
-
-
 def of_family(n: int, r: NDArray, position: NDArray, parameters: dict) -> dict[str, NDArray]:
     """The variables of the map at the nodes of one family, shape (restitution, position)."""
     tolerance = parameters["tolerance"]
@@ -97,7 +76,8 @@ def of_family(n: int, r: NDArray, position: NDArray, parameters: dict) -> dict[s
     guess[:, -1] = ratio
     along = (Parameter("frequency_ratio"),)
     sought = (1 + sign * tolerance) * height
-    z = with_height(OrbitEquations(ball, 1, n, amplitude, along), guess, sought)
+    searched = OrbitEquations(ball, 1, n, amplitude, along)
+    z = solved(searched, guess, lambda z: (flight_height(searched, z) - sought)[:, np.newaxis])
     equations = OrbitEquations(ball.at(frequency_ratio=z[:, -1]), 1, n, amplitude, along)
     trace, determinant = equations.trace_and_determinant(equations.linear(z))
     stable = (np.abs(trace / (1 + determinant)) < 1) & (np.abs(determinant) < 1)

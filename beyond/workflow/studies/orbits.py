@@ -1,4 +1,4 @@
-"""Random n-T orbits, on which errors are measured, and the zeros of errors along ϖ."""
+"""Random n-T orbits, orbits that meet further conditions, and the zeros of errors along ϖ."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,8 @@ from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.restitution import period_doubling, saddle_node
-from bouncing_ball_beyond.balls import SpringDamper, damping_of
+from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
+from bouncing_ball_beyond.equations import OrbitEquations
 
 NEAREST = -8.0
 """The smallest share of the distance from the saddle-node, as a power of ten."""
@@ -58,6 +59,35 @@ def half_next_to_saddle_node(
     return np.where(generator.random(amplitude.shape) < 0.5, amplitude, near)
 
 
+def flight_height(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """The heights of the summits of flights after one impact at a given Λ, shape (rows,)."""
+    ends = equations.ends(z)
+    amplitude = np.asarray(equations.amplitude)[:, np.newaxis]
+    bounce = ends.speed + amplitude * np.cos(ends.leaves)
+    return (ends.gap + amplitude * np.sin(ends.leaves) + bounce**2 / 2)[:, 0]
+
+
+def solved(
+    equations: OrbitEquations,
+    z: NDArray,
+    conditions: Callable[[NDArray], NDArray],
+    iterations: int = 10,
+) -> NDArray:
+    """Orbits near rows z that meet as many further conditions as parameters change.
+
+    `conditions` are zero then: an analytic function of rows with the shape (rows, p). Newton's method
+    doubles the digits of a near guess in each step.
+    """
+    steps = 1j * H * np.eye(z.shape[1])
+    for _ in range(iterations):
+        residuals, jacobian = equations.residuals(z)
+        gradient = np.stack([conditions(z + step).imag / H for step in steps], axis=-1)
+        matrix = np.concatenate([jacobian, gradient], axis=1)
+        values = np.concatenate([residuals, conditions(z)], axis=1)
+        z = z - np.linalg.solve(matrix, values[..., np.newaxis])[..., 0]
+    return z
+
+
 def last_zero(ratios: NDArray, errors: NDArray, at: Callable[[float], float]) -> float:
     """The largest ϖ at which an error passes through zero; NaN if there is none on the grid.
 
@@ -76,6 +106,6 @@ def last_zero(ratios: NDArray, errors: NDArray, at: Callable[[float], float]) ->
         return np.nan
     last = turns[-1]
     ends = np.log(ratios[last : last + 2])
-    zero = np.exp(brentq(lambda logarithm: at(np.exp(logarithm)), *ends, xtol=1e-14))
+    zero = np.exp(brentq(lambda logarithm: at(np.exp(logarithm)), *ends, xtol=1e-12))
     beside = np.abs(errors[last : last + 2]).max()
     return float(zero) if abs(at(zero)) < beside else np.nan

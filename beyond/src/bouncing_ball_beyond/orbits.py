@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import Ball, Corrected, SpringDamper
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, flight, newton
+from bouncing_ball_beyond.balls import Ball, Corrected
+from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
 
 
 class OrbitNotFound(ValueError):
@@ -71,7 +71,8 @@ class PeriodicOrbit:
 
     @cached_property
     def _changed(self) -> tuple[Ball, float]:
-        ball, amplitude = self.equations.ball, self.equations.amplitude
+        ball = self.equations.ball
+        amplitude = self.equations.amplitude
         for path, value in zip(self.equations.along, self.z[self.equations.size :], strict=True):
             ball, amplitude = path.apply(ball, amplitude, value)
         return ball, float(amplitude)
@@ -174,13 +175,8 @@ class PeriodicOrbit:
     @property
     def monodromy(self) -> NDArray:
         """Derivative of the return map in (τ, δ′) at the start of the first impact, shape (2, 2)."""
-        maps = self.equations.maps(self._linear)[0]
         signs = np.diag([1.0, -1.0])
-        return (
-            signs @ np.linalg.multi_dot([*maps[::-1], signs])
-            if len(maps) > 1
-            else signs @ maps[0] @ signs
-        )
+        return signs @ product_of(self.equations.maps(self._linear))[0] @ signs
 
     @cached_property
     def trace_and_determinant(self) -> tuple[float, float]:
@@ -400,9 +396,11 @@ def _searched(equations: OrbitEquations, amplitude: float, sign: int, other: Per
     found = shortest_contacts(equations, amplitude, sign)
     if found and found[0].admissible:
         return found[0]
-    ball, n = equations.ball, int(equations.periods)
+    ball = equations.ball
+    n = int(equations.periods)
     lowest = limits(ball, n=n).saddle_node
-    where, why = f"{amplitude:.10g}", "none is found on this side of the saddle-node"
+    where = f"{amplitude:.10g}"
+    why = "none is found on this side of the saddle-node"
     if lowest is not None and amplitude < lowest.amplitude:
         where, limit = apart(amplitude, lowest.amplitude)
         why = f"below the saddle-node at Λ = {limit}"
@@ -464,10 +462,9 @@ def orbits(
 ) -> list[PeriodicOrbit]:
     """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
 
-    With one impact, all orbits are found: for a spring and a damper Λ is a function of the duration
-    of the contact, in closed form; for others the speed at which a ball comes back is searched for at
-    192 phases. With several impacts this is a search: Newton's method closes the motions of
-    2592 first impacts. It finds some orbits of each kind, and perhaps not all.
+    With one impact, the speeds at which a ball comes back are found at 96 phases, and from there all
+    orbits. With several impacts this is a search: Newton's method closes the motions of 2592 first
+    impacts, and orbits may be missed.
 
     Parameters
     ----------
@@ -498,12 +495,8 @@ def orbits(
 
 def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Solutions of the equations at an amplitude, shape (orbits, N), also those no ball follows."""
-    if equations.impacts > 1:
-        starts = _motions(equations, amplitude)
-    else:
-        starts = _along_phases(equations, amplitude)
-        if isinstance(equations.ball, SpringDamper):
-            starts = np.concatenate([_along_durations(equations, amplitude), starts])
+    nearby = _returns if equations.impacts == 1 else _motions
+    starts = nearby(equations, amplitude)
     starts = starts[np.isfinite(starts).all(axis=1)]
     if not len(starts):
         return starts
@@ -511,112 +504,51 @@ def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     return _distinct(equations, solution.z[solution.found])
 
 
-def _along_durations(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near all orbits with one linear contact.
+@np.errstate(all="ignore")
+def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Starts near all orbits with one impact: impacts whose speed is the same after m periods.
 
-    For a fixed T the equations are linear in Λ cos τ, Λ sin τ and u. Their solution gives Λ as a
-    function of T, whose values at a grid are compared with the one that is wanted.
+    Orbits lie on the curves of such impacts, which are crossed at 96 phases.
     """
-    ball, n = equations.ball, int(equations.periods)
-    T = _grid_of_durations(ball, n)
-    columns = np.zeros((4, len(T), 4))
-    columns[..., 2] = T
-    columns[1:3, :, 3] = 1.0
-    columns[2, :, 0] = np.pi / 2
-    columns[3, :, 1] = 1.0
-    legs = equations.legs(columns.reshape(-1, 4)).reshape(4, len(T), 3)
-    matrix = np.moveaxis(legs[1:] - legs[0], 0, -1)
-    with np.errstate(all="ignore"):
-        regular = np.abs(np.linalg.det(matrix)) > 0
-        matrix[~regular] = np.eye(3)
-        x, y, u = np.moveaxis(np.linalg.solve(matrix, -legs[0, ..., np.newaxis])[..., 0], -1, 0)
-        over = np.hypot(x, y) - amplitude
-    # Next to a minimum or a maximum there may be two orbits between two points of the grid.
-    crossed = (over[:-1] * over[1:] < 0) & regular[:-1]
-    turned = np.zeros(len(crossed), bool)
-    turned[1:] = np.diff(over[:-1]) * np.diff(over[1:]) < 0
-    near = np.flatnonzero(crossed | turned)
-    near = np.unique(np.concatenate([near, near + 1]))
-    z = np.stack([np.arctan2(y, x), u, T, np.full(len(T), amplitude)], axis=-1)[near]
-    return z[(u[near] > 0) & (np.hypot(x, y)[near] < 10 * amplitude)]
+    ball = equations.ball
+    longest = 2.2 * np.pi * int(equations.periods) + amplitude
+    speeds = np.geomspace(1e-3, longest, 32)
+    tau, u = np.meshgrid(np.linspace(0, 2 * np.pi, 96, endpoint=False), speeds, indexing="ij")
 
-
-def _grid_of_durations(ball: SpringDamper, n: int) -> NDArray:
-    """Values of T = ϖD up to 2πnϖ: dense within oscillations that are not yet damped, and about T of
-    a free contact, by which all short contacts of a stiff ball are."""
-    ratio, longest = float(ball.frequency_ratio), 2 * np.pi * n * float(ball.frequency_ratio)
-    # After this T oscillations have fallen by 10⁹; those of an elastic contact are seen up to 4000.
-    undamped = min(longest, 20 / max(float(ball.zeta), 5e-3))
-    free = float(ball.free(1.0))
-    pieces = [np.arange(0.01, undamped, 0.04), np.arange(undamped, longest, 0.01 * ratio)]
-    if np.isfinite(free):
-        shifts = np.geomspace(1e-4 / ratio, 1.0, 500)
-        pieces += [free - shifts, free + shifts]
-    T = np.unique(np.concatenate(pieces))
-    return T[(T > 0) & (T < longest)]
-
-
-def _along_phases(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near all orbits with one impact: impacts whose speed comes back after n periods.
-
-    At each of 192 phases they are searched for on a grid of speeds.
-    """
-    ball, n = equations.ball, int(equations.periods)
-    phases = np.linspace(0, 2 * np.pi, 192, endpoint=False)
-    speeds = np.geomspace(1e-3, 2.2 * np.pi * n + amplitude, 64)
-    tau, u = np.meshgrid(phases, speeds, indexing="ij")
-
-    def row(tau, u):
+    def impacts(tau, u):
         columns = [tau, u, amplitude + 0 * u]
         if ball.lasts:
             columns.insert(2, ball.first_release(tau, u, amplitude))
         return np.stack(columns, axis=-1)
 
-    def change(z):
-        return equations.legs(z)[:, 0, -1]
-
-    with np.errstate(all="ignore"):
-        changes = change(row(tau.ravel(), u.ravel())).reshape(tau.shape)
-        at, number = np.nonzero(changes[:, :-1] * changes[:, 1:] < 0)
-        low, high = changes[at, number], changes[at, number + 1]
-        u = speeds[number] + (speeds[number + 1] - speeds[number]) * low / (low - high)
-        return row(phases[at], u)
+    change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
+    at, number = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
+    part = change[at, number] / (change[at, number] - change[at, number + 1])
+    between = speeds[number] + part * np.diff(speeds)[number]
+    return impacts(tau[at, 0], between)
 
 
 def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near orbits of k impacts: motions of 2592 first impacts that take about m periods."""
-    ball, k, m = equations.ball, equations.impacts, int(equations.periods)
-    phases = np.linspace(0, 2 * np.pi, 54, endpoint=False)
-    speeds = np.linspace(0.1, 1.1 * np.pi * m + amplitude, 48)
-    tau, u = (each.ravel() for each in np.meshgrid(phases, speeds))
-    columns, first = np.empty((len(tau), 0)), tau
-    with np.errstate(all="ignore"):
-        for _ in range(k):
-            T = ball.first_release(tau, u, amplitude)
-            new = [tau, u, T] if ball.lasts else [tau, u]
-            columns = np.column_stack([columns, *new])
-            impact = ball.contact(tau, u, T, amplitude)
-            tau, u = _landing(tau + impact.duration, impact.gap, impact.speed, amplitude)
-            going = np.isfinite(tau) & (tau < first + 2 * np.pi * (m + 1)) & (u > 0)
-            columns, first, tau, u = columns[going], first[going], tau[going], u[going]
-    closes = np.abs(tau - first - 2 * np.pi * m) < np.pi
-    return np.column_stack([columns, np.full(len(first), amplitude)])[closes]
+    """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
+    # The simulation is not needed by orbits with one impact.
+    from bouncing_ball_beyond.simulation import Balls, follow
 
-
-def _landing(leaves, gap, speed, amplitude, samples: int = 200):
-    """About when and with which speed flights first land, from samples of the gap; arrays."""
-    longest = 2 * (np.abs(speed + amplitude * np.cos(leaves)) + np.sqrt(2 * amplitude) + 1)
-    t = longest[:, np.newaxis] * np.linspace(0, 1, samples)
-    gaps, rates = flight(
-        t, leaves[:, np.newaxis], gap[:, np.newaxis], speed[:, np.newaxis], amplitude
-    )
-    lands = (gaps[:, 1:] <= 0) & (rates[:, 1:] < 0)
-    number = lands.argmax(axis=1)[:, np.newaxis]
-    before, after = (np.take_along_axis(gaps, number + j, axis=1)[:, 0] for j in (0, 1))
-    part = np.clip(before / (before - after), 0, 1)
-    time = t[np.arange(len(t)), number[:, 0]] + part * (t[:, 1] - t[:, 0])
-    rate = flight(time, leaves, gap, speed, amplitude)[1]
-    return np.where(lands.any(axis=1), leaves + time, np.nan), -rate
+    k = equations.impacts
+    turn = 2 * np.pi
+    fastest = 1.1 * np.pi * int(equations.periods) + amplitude
+    phases = np.linspace(0, turn, 54, endpoint=False)
+    tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
+    none = np.zeros(tau.size)
+    first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel())
+    record, going, after = follow(first, k)
+    turns, phase, speed, T, *_ = np.moveaxis(record[..., going], 1, 0)
+    times = turn * turns + phase
+    length = turn * after.turns + after.phase - times[0]
+    near = np.abs(length - turn * equations.periods) < np.pi
+    columns = [times, speed, T][: equations.unknowns]
+    x = np.stack(columns, axis=-1)[:, near].swapaxes(0, 1)
+    x = x.reshape(len(x), equations.size)
+    return np.column_stack([x, np.full(len(x), amplitude)])
 
 
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
@@ -626,8 +558,8 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     """
     if not len(z):
         return z
-    k, q = equations.impacts, equations.unknowns
-    x = z[:, : equations.size].reshape(len(z), k, q)
+    k = equations.impacts
+    x = z[:, : equations.size].reshape(len(z), k, equations.unknowns)
     lasting = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
     x = x[(x[..., 1] > 0).all(axis=1) & lasting & (equations.ends(z).flight > 0).all(axis=1)]
     later = x.copy()
@@ -638,7 +570,7 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     for j in range(1, k):
         again = np.abs(np.roll(x, j, axis=1) - x)[..., 1:].max(axis=(1, 2)) < 1e-7
         x = x[~again] if k % j == 0 else x
-    rows = x.reshape(len(x), k * q)
+    rows = x.reshape(len(x), equations.size)
     rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]
     # Two roundings of one orbit.
     apart = np.abs(rows[:, np.newaxis] - rows).max(axis=-1, initial=0.0)

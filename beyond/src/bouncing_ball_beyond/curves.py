@@ -236,9 +236,14 @@ class _System:
             elif "resonance" in name:
                 tests[name] = self.equations.trace_and_determinant(linear)[1] - 1
             else:
-                values = [coefficient(each.bent, *each.border, self.multiplier) for each in points]
-                tests[name] = np.array(values)
+                tests[name] = np.array([self.coefficient(point) for point in points])
         return tests
+
+    def coefficient(self, point: _Point) -> float:
+        """a or b, with the lengths of v and w."""
+        assert point.border is not None
+        assert point.bent is not None
+        return coefficient(point.bent, point.border.v, point.border.w, self.multiplier)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -426,36 +431,50 @@ def _solved(system, here: _Point, guess, normal, limits) -> tuple[_Point, str]:
     return point, end
 
 
+class _Passed(NamedTuple):
+    """Where a test is zero: the number of the step and the share of it, its name, and the orbit.
+
+    The orbit is None if it is not found, or if there is none.
+    """
+
+    step: int
+    share: float
+    name: str
+    z: NDArray | None
+
+
 def _half(system: _System, points: list[_Point], end: str) -> _Half:
     """One direction of a curve with its points of codimension two, up to one where it ends."""
     tests = system.tests(points, system.names)
-    ends = [(len(points), 0.0, "", None)]
-    for name in system.ends:
-        for i in _changes(tests[name]):
-            share, row = _located(system, name, points, i, 1.0)
-            ends.append((i, share, name, row))
-    *last, final, row = min(ends, key=lambda each: each[:2])
-    found = [] if row is None else [(*last, final, row)]
+    none = _Passed(len(points), 0.0, "", None)
+    ends = [
+        _located(system, name, points, i, 1.0)
+        for name in system.ends
+        for i in _changes(tests[name])
+    ]
+    last = min([*ends, none], key=lambda each: each[:2])
+    found = [last]
     for name in set(system.names) - set(system.ends):
         values = tests[name]
         if "resonance" in name:
             resonant = np.abs(values) < RESONANT
             values = np.where(resonant, 0.0, values)
             if resonant[-1] and not resonant.all():
-                found.append((len(points) - 1, 0.0, name, points[-1].z))
+                found.append(_Passed(len(points) - 1, 0.0, name, points[-1].z))
         for i in _changes(values):
-            if i <= last[0]:
-                upto = last[1] if i == last[0] else 1.0
-                share, z = _located(system, name, points, i, upto)
-                found += [] if z is None else [(i, share, name, z)]
+            if i <= last.step:
+                upto = last.share if i == last.step else 1.0
+                found.append(_located(system, name, points, i, upto))
     found.sort(key=lambda each: each[:2])
-    special = tuple(PeriodicOrbit(system.equations, z, name) for _, _, name, z in found)
-    rows = [point.z for point in points[: last[0] + 1]]
-    if row is not None:
-        rows.append(row)
-    if final:
-        end = f"{final}: {KINDS[final].end}"
-    return _Half(np.array(rows), special, end or _lost(system, points[-1]))
+    special = [
+        PeriodicOrbit(system.equations, each.z, each.name) for each in found if each.z is not None
+    ]
+    rows = [point.z for point in points[: last.step + 1]]
+    if last.z is not None:
+        rows.append(last.z)
+    if last.name:
+        end = f"{last.name}: {KINDS[last.name].end}"
+    return _Half(np.array(rows), tuple(special), end or _lost(system, points[-1]))
 
 
 def _lost(system: _System, point: _Point) -> str:
@@ -470,8 +489,9 @@ def _changes(values: NDArray) -> NDArray:
     return (values[1:] * values[:-1] < 0).nonzero()[0]
 
 
-def _located(system: _System, name: str, points: list[_Point], i: int, upto: float):
-    """The share of the step i at which a test is zero, and the orbit; or its end and None."""
+def _located(system: _System, name: str, points: list[_Point], i: int, upto: float) -> _Passed:
+    """Where a test is zero in the step i; at its end, without an orbit, if that is not found."""
+    missing = _Passed(i, 1.0, name, None)
     here = points[i]
     chord = points[i + 1].z - here.z
     normal = chord / (chord @ chord)
@@ -500,7 +520,7 @@ def _located(system: _System, name: str, points: list[_Point], i: int, upto: flo
         share = brentq(test, 0.0, upto)
     except (OrbitNotFound, ValueError):
         # The orbits cannot be continued, or the test changes its sign behind `upto`.
-        return 1.0, None
+        return missing
     # A clearance jumps to FAR where flights or contacts no longer turn back.
     jumps = abs(test(share)) > ZERO * max(abs(test(0.0)), abs(test(upto)))
-    return (1.0, None) if jumps else (share, interpolated(share))
+    return missing if jumps else _Passed(i, share, name, interpolated(share))

@@ -75,13 +75,13 @@ def curvature(twice: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, st
 
     They are those of the first half of the orbit taken twice, along which v is periodic.
     """
-    k, size = twice.impacts // 2, twice.size // 2
+    size = twice.size // 2
     later = z[:size].copy()
     later[:: twice.unknowns] += np.pi * twice.periods
     row = np.concatenate([z[:size], later, z[size:]])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - size)])
     rows = row + np.multiply.outer(step * NODES, direction)
-    derivatives = twice.linear(rows).derivatives[:, :k]
+    derivatives = twice.linear(rows).derivatives[:, : twice.impacts // 2]
     first = np.tensordot(FIRST, derivatives, axes=1) / step
     second = np.tensordot(SECOND, derivatives, axes=1) / step**2
     return Curvature(derivatives[len(NODES) // 2], first, second)
@@ -174,7 +174,8 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
             f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
             ' such as branch.first("period doubling")'
         )
-    equations, z = orbit.equations, orbit.z
+    equations = orbit.equations
+    z = orbit.z
     multiplier = MULTIPLIERS[orbit.kind]
     q = equations.unknowns
     derivatives = equations.linear(z[np.newaxis]).derivatives[0]

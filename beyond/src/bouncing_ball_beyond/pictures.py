@@ -36,6 +36,15 @@ MARKS = {
 }
 """Marks of special orbits."""
 
+MARK: dict[str, Any] = {
+    "fillstyle": "none",
+    "markersize": 4,
+    "linestyle": "none",
+    "markeredgewidth": 1.0,
+    "zorder": 4,
+}
+"""The look of all marks."""
+
 HEIGHT = 2.8
 """Height of a figure in inches."""
 
@@ -80,7 +89,8 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
         allowed = ", ".join(["max_height", *OF_IMPACTS])
         raise ValueError(f"quantity = {quantity!r}: must be one of {allowed}")
     with style():
-        axes = Figure(figsize=(WIDTH, HEIGHT)).subplots() if ax is None else ax
+        figure = Figure(figsize=(WIDTH, HEIGHT))
+        axes = figure.subplots() if ax is None else ax
         entries: dict[str, Any] = {}
         lines: dict[str, Any] = {}
         for branch, colour in zip(branches, colours(len(branches)), strict=True):
@@ -92,10 +102,10 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
         axes.set_title(_title(branches))
         _scale(axes)
         if ax is None:
-            legend_below(axes.figure, entries, columns=3)
-        else:
-            axes.legend(entries.values(), entries.keys())
-    return axes.figure
+            legend_below(figure, entries, columns=3)
+            return figure
+        axes.legend(entries.values(), entries.keys())
+        return axes.get_figure(root=True)
 
 
 def _branches(group: Any) -> list[FollowedBranch]:
@@ -118,18 +128,17 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
     entries = {}
     for part in pieces(looks):
         admissible, steady = divmod(int(looks[part.start]), 2)
-        look = {
+        look: dict[str, Any] = {
             "color": colour if admissible else pale(colour),
             "linestyle": KINDS["stable" if steady else "unstable"],
         }
         axes.plot(x[part], y[part], **look)
-        kind = whole.kind if is_curve else ("stable" if steady else "unstable")
+        kind = getattr(whole, "kind", "stable" if steady else "unstable")
         text = kind if admissible else f"{kind}, no ball follows"
         entries[text] = sample(**look | {"color": "black" if admissible else pale("black")})
     for each, abscissa, ordinates in zip(orbits, x, y, strict=True):
         if each in branch.special and each.impacts <= MARKED:
-            mark = {"marker": MARKS[each.kind], "fillstyle": "none", "markersize": 4}
-            look = mark | {"linestyle": "none", "markeredgewidth": 1.0, "zorder": 4}
+            look = MARK | {"marker": MARKS[each.kind]}
             axes.plot(np.full(ordinates.shape, abscissa), ordinates, color=colour, **look)
             entries[each.kind] = sample(**look)
     return entries

@@ -8,7 +8,7 @@ impact along ``impact`` and those of the orbit beside them; special orbits are r
 
 import json
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from os import PathLike
 from typing import Any
 
@@ -56,7 +56,7 @@ PARAMETERS = {
 }
 """Parameters; those of laws have their names as long names."""
 
-BALLS = {each.__name__: each for each in (Rigid, SpringDamper, Corrected, ForceLaw)}
+BALLS: dict[str, Any] = {each.__name__: each for each in (Rigid, SpringDamper, Corrected, ForceLaw)}
 
 Found = PeriodicOrbit | FollowedBranch | Sequence
 """What a dataset is made of, and read as: an orbit, a branch or a curve, or a list of orbits."""
@@ -80,7 +80,7 @@ def to_dataset(found: Found) -> xr.Dataset:
     --------
     >>> from bouncing_ball_beyond import Rigid, orbit
     >>> data = to_dataset(orbit(Rigid(0.5), amplitude=1.4))
-    >>> round(float(data.impact_velocity), 6), dict(data.sizes)
+    >>> round(data.impact_velocity.item(), 6), dict(data.sizes)
     (-3.141593, {'point': 1, 'impact': 1, 'multiplier': 2})
     """
     orbits = _listed(found)
@@ -166,8 +166,7 @@ def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
 def encoded(value: Any) -> Any:
     """A ball as its class and its fields, and a function as its name, for json."""
     if isinstance(value, Ball):
-        values = {field.name: getattr(value, field.name) for field in fields(value)}
-        given = {name: each for name, each in values.items() if each is not None}
+        given = {name: each for name, each in vars(value).items() if each is not None}
         return {"class": type(value).__name__, **given}
     if callable(value):
         name = getattr(value, "__name__", repr(value))

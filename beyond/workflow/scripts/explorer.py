@@ -11,15 +11,14 @@ from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
-from bouncing_ball_beyond.motions import motion_of
 from bouncing_ball_beyond.one_ball import settling
 from bouncing_ball_beyond.orbits import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
 from studies.orbits import random_orbits
 from studies.variables import VARIABLES
 
-# The part of the stable range of the restitution model in which Λ is drawn, from near its saddle-node
-# (0) to beyond its period doubling (1).
+# The part of the stable range of the restitution model in which Λ is drawn, from near its
+# saddle-node (0) to beyond its period doubling (1).
 PLACES = (0.02, 1.2)
 # Balls that end at rest, on an orbit, on a doubled orbit, and on an orbit with rests. None is near
 # chaos, where the results of two computers differ.
@@ -27,6 +26,9 @@ BALL = {"restitution": 0.5, "frequency_ratio": 80.0}
 AMPLITUDES = [0.6, 1.2, 1.6, 2.5]
 START = {"phase": 1.0, "velocity": -3.0}
 IMPACTS = 100
+# After these a motion repeats itself up to rounding; none is longer than LONGEST impacts.
+SETTLED = 400
+LONGEST = 40
 
 
 def orbits_of(ball: Ball, n: NDArray, amplitude: NDArray, saddle_node: NDArray):
@@ -117,3 +119,97 @@ def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
         "ball": amplitude * np.sin(touch + duration / 2) + middle.gap,
         "contact_force": -2 * ball.zeta * ratio * middle.speed - ratio**2 * middle.gap,
     }
+
+
+def followed(ball: Ball, amplitude: float) -> dict[str, float]:
+    """The motion on which a ball ends, and its impact number 99 or the last one before it rests.
+
+    The motion is given by the numbers of its impacts and of periods of the table until it repeats; a
+    ball at rest has no impacts. The time is that of the impact, or of the rest that follows it.
+    """
+    found = simulate(ball, amplitude=amplitude, impacts=SETTLED, **START)
+    times = found.time.values
+    phases = found.impact_phase.values
+    speeds = -found.relative_impact_velocity.values
+    rests = found.status == "permanent contact"
+    last = int(np.isfinite(times).sum()) - 1 if rests else IMPACTS - 1
+    end = times[last]
+    periods, impacts = 1, 0
+    if rests:
+        phase = phases[last]
+        x, y = amplitude * np.cos(phase), amplitude * np.sin(phase)
+        # Contacts that last have no time in which they end.
+        if isinstance(ball, Rigid):
+            end += settling(
+                BALL["restitution"] * speeds[last], BALL["restitution"], x, y, amplitude
+            )
+    else:
+        shifts = range(1, LONGEST + 1)
+        impacts = next(k for k in shifts if repeats(phases, k) and repeats(speeds, k))
+        periods = round((times[-1] - times[-1 - impacts]) / (2 * np.pi))
+    return {
+        "periods": float(periods),
+        "impacts": float(impacts),
+        "end_impact": float(last),
+        "end_phase": phases[last],
+        "end_speed": speeds[last],
+        "end_time": end,
+    }
+
+
+def repeats(values: NDArray, impacts: int) -> bool:
+    """Whether the last values are those some impacts before."""
+    return bool(np.allclose(values[-impacts:], values[-2 * impacts : -impacts], rtol=0, atol=1e-9))
+
+
+def balls() -> xr.Dataset:
+    """How balls start and end, over (model, motion)."""
+    models = {
+        "restitution": Rigid(BALL["restitution"]),
+        "spring-damper": SpringDamper(**BALL),
+    }
+    ends = [[followed(ball, each) for each in AMPLITUDES] for ball in models.values()]
+    size = len(AMPLITUDES)
+    given = {
+        "ball_restitution": np.full(size, BALL["restitution"]),
+        "ball_frequency_ratio": np.full(size, BALL["frequency_ratio"]),
+        "ball_amplitude": np.array(AMPLITUDES),
+        "start_phase": np.full(size, START["phase"]),
+        "velocity": np.full(size, START["velocity"]),
+    }
+    return xr.Dataset(
+        {name: ("motion", values) for name, values in given.items()}
+        | {
+            name: (("model", "motion"), [[each[name] for each in row] for row in ends])
+            for name in ends[0][0]
+        },
+        {"model": list(models)},
+    )
+
+
+def explorer(parameters: dict) -> xr.Dataset:
+    """One random orbit for each ϖ of a grid, under each release, and some balls.
+
+    Of each orbit the dataset has the contact (ζ follows from r by Eq. 16), the quantities of the
+    orbit, its bifurcations, height and force in the middle of the contact, and values of both
+    simple models; NaN where there is no orbit or no bifurcation.
+    """
+    ratios = grid(parameters["frequency_ratio"])
+    releases = ["displacement", "force"]
+    orbits = [under(each, ratios, parameters["seed"] + k) for k, each in enumerate(releases)]
+    found = xr.concat(orbits, "release").assign_coords(release=releases)
+    return found.merge(balls())
+
+
+STAGE = {
+    "explorer": (
+        explorer,
+        "A page to explore the models, and the orbits that it checks itself against",
+    ),
+}
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+    save_stage(
+        STAGE, snakemake.params.config, {}, snakemake.output, snakemake.input.code, VARIABLES
+    )

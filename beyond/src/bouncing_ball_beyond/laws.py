@@ -126,7 +126,8 @@ class ForceLaw(Ball):
 
         Lengths are measured in g/Ω² and times in 1/Ω.
         """
-        return {name: 2 * length + time for name, (_, length, time) in self.units.items()}
+        powers = {name: 2 * length + time for name, (_, length, time) in self.units.items()}
+        return {name: power for name, power in powers.items() if power}
 
     def in_si(self, mass, length, time):
         """The parameters in SI units, for a mass in kg and the units of length in m and of time in s."""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.error_law import contact_values
 from bouncing_ball_beyond.orbits import orbit
 from bouncing_ball_beyond.shaker import in_si, in_words, on_shaker
@@ -77,19 +78,19 @@ def test_orbit_confirms_the_answer():
 
 
 @pytest.mark.parametrize("contact", [CONTACT, STEEL])
-def test_limits_are_where_the_answer_changes(contact):
-    """At the limits of the frequency, at the same stroke, and of the duration of the contact."""
-    given = {**TABLE, **contact}
-    answer = on_shaker(**given)
-    stroke = answer.amplitude * 9.80665 / (2 * np.pi * answer.frequency) ** 2
-    del given["acceleration"]
-    for frequency, name in (
-        (answer.lowest_frequency, "saddle_node"),
-        (answer.highest_frequency, "period_doubling"),
+def test_limits_are_special_orbits_along_the_frequency(contact):
+    """At the same stroke, by continuation, which is another way to the same places."""
+    answer = on_shaker(**TABLE, **contact)
+    here = np.sqrt(answer.amplitude)
+    one = orbit(answer.ball, amplitude=answer.amplitude)
+    branch = follow(one, along="frequency", to=(0.5 * here, 1.2 * here))
+    for kind, frequency in (
+        ("saddle-node", answer.lowest_frequency),
+        ("period doubling", answer.highest_frequency),
     ):
-        there = on_shaker(**{**given, "frequency": frequency}, stroke=stroke)
-        # The frequency is found to 1e-6, and Λ is its square.
-        assert getattr(there, name).exact == pytest.approx(there.amplitude, rel=3e-6)
+        place = branch.first(kind).parameters["frequency"] / here
+        # The answer is found to 1e-6.
+        assert frequency / answer.frequency == pytest.approx(place, rel=1e-6)
 
 
 def test_longest_contact_has_the_tolerance_as_its_error():
@@ -106,13 +107,14 @@ def test_stiffness_and_duration_are_one_contact():
     assert by_duration.longest_contact == pytest.approx(by_stiffness.longest_contact, rel=1e-9)
 
 
-def test_duration_of_an_elastic_contact_of_hertz():
-    """2.9433 (5/4)^(2/5) (m²/(K² v))^(1/5) with K = 4/3 E* √R, a closed form of the textbooks."""
-    answer = on_shaker(**{**TABLE, "restitution": 1.0}, **STEEL)
+def test_duration_of_a_contact_of_hertz():
+    """2.9433 (5/4)^(2/5) (m²/(K² v))^(1/5) with K = 4/3 E* √R, if it is nearly elastic."""
+    answer = on_shaker(**{**TABLE, "restitution": 0.9999}, **STEEL)
     stiffness = 4 / 3 * 210e9 / (1 - 0.3**2) * np.sqrt(5e-3)
     speed = np.pi * 9.80665 / (100 * np.pi)  # v₀ = 2π/(1 + r)
     lasts = 2.94327507 * (1.25 * 0.004 / stiffness * speed**2) ** 0.4 / speed
-    assert answer.contact_duration == pytest.approx(lasts, rel=1e-7)
+    # A loss changes the speed and the duration in proportion to 1 - r.
+    assert answer.contact_duration == pytest.approx(lasts, rel=1e-4)
 
 
 def test_radius_and_density_are_a_mass():

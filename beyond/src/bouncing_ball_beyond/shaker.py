@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pint
-from scipy.optimize import brentq
 
 from bouncing_ball_beyond.balls import Ball, SpringDamper
 from bouncing_ball_beyond.error_law import (
@@ -216,7 +215,7 @@ def on_shaker(
     frequency
         Frequency of the table, such as "50 Hz", "314 rad/s" or "3000 rpm"; a number is in Hz.
     restitution
-        Restitution coefficient r of a free impact, in (0, 1].
+        Restitution coefficient r of a free impact, between 0 and 1.
     stroke, acceleration
         One of both: the amplitude of the table's motion, which is half of the distance between its
         lowest and its highest position, or its greatest acceleration, such as "0.8 g".
@@ -248,6 +247,8 @@ def on_shaker(
     >>> answer.is_good_enough, round(answer.error, 4)
     (False, -0.0121)
     """
+    if not 0 < restitution < 1:
+        raise ValueError(f"restitution = {restitution!r}: must be between 0 and 1")
     rate = in_si("frequency", frequency, "Hz")
     fall = in_si("gravity", gravity, "m/s^2")
     within = in_si("tolerance", tolerance, "dimensionless")
@@ -359,12 +360,17 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
 
 
 def _times(ball, amplitude, n, name, exact) -> float:
-    """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke."""
+    """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke.
+
+    Λ is proportional to the square of the frequency. That of a bifurcation hardly changes with it,
+    so that the factor is a fixed point which is found in some steps.
+    """
     path = Frequency()
-
-    def excess(times):
+    times = np.sqrt(exact[name] / amplitude)
+    for _ in range(30):
         shaken, there = path.apply(ball, amplitude, times * np.sqrt(amplitude))
-        return contact_values(shaken, amplitude=there, n=n, quantities=[name])[name] - there
-
-    guess = np.sqrt(exact[name] / amplitude)
-    return brentq(excess, guess / 1.5, guess * 1.5, rtol=1e-6)
+        found = contact_values(shaken, amplitude=there, n=n, quantities=[name])[name]
+        before, times = times, np.sqrt(found / amplitude)
+        if abs(times - before) < 1e-6 * times:
+            return float(times)
+    return np.nan

@@ -36,10 +36,13 @@ def modules(package, *names):
 # The modules that each script imports, directly or by another module. A change of one of them runs
 # the script again. A test compares these lists with the imports.
 ORBITS = modules(
-    "bouncing_ball_beyond", "balls", "equations", "paths", "orbits", "continuation", "forms"
+    "bouncing_ball_beyond",
+    *("balls", "equations", "paths", "one_ball", "simulation"),
+    *("orbits", "special_orbits", "forms", "continuation"),
 )
 ERRORS = [*ORBITS, *modules("bouncing_ball_beyond", "laws", "root_time", "error_law")]
 SAVING = ["studies/variables", "bouncing_ball/datasets"]
+STUDIES = ["studies/orbits", "bouncing_ball/restitution"]
 MODELS = modules("bouncing_ball", "restitution", "spring_damper")
 REPLICATED_ERRORS = [*MODELS, *modules("bouncing_ball", "orbits", "continuation", "errors")]
 DRAWING = ["studies/figures", "bouncing_ball/drawing", *SAVING]
@@ -57,10 +60,10 @@ COMPARISON = [
 ]
 MODULES = {
     "impacts": [*ORBITS, *SAVING],
-    "error_law": [*ERRORS, *REPLICATED_ERRORS, "studies/orbits", *SAVING],
-    "stiffness_map": [*ERRORS, *SAVING, "bouncing_ball/restitution"],
-    "contact_laws": [],
-    "explorer": [],
+    "error_law": [*ERRORS, *STUDIES, *REPLICATED_ERRORS, *SAVING],
+    "stiffness_map": [*ERRORS, *STUDIES, *SAVING],
+    "contact_laws": [*ERRORS, "bouncing_ball_beyond/named_laws", *STUDIES, *SAVING],
+    "explorer": [*ERRORS, *STUDIES, *SAVING],
     "draw": DRAWING,
     "tables": TABULATING,
     "explorer_page": PAGE,

@@ -41,16 +41,16 @@ CALIBRATIONS = ("orbit on the contact", "orbit of the restitution model")
 QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
 BIFURCATIONS = QUANTITIES[3:]
 
-# Over the speed the signature is a polynomial on this range of the calibrated speed, up to rounding.
-# All speeds that occur are well inside.
+# Over the speed the signature is a polynomial on this range of the calibrated speed, up to rounding
+# errors. All speeds that occur are well inside.
 SPEEDS = (0.4, 1.8)
 DEGREE = 32
 
 # The π/(D + κ) from which the first guesses of thresholds are extrapolated as K/ϖ.
 STIFF = 100.0
 
-# Contacts of one law. That with D + κ = 1 at the speed 1 is the unit contact. All others differ from
-# it in the units of length and time, in which their parameters have the same values.
+# Contacts of one law. That with D + κ = 1 at the speed 1 is the unit contact. All others differ
+# from it in the units of length and time, in which their parameters have the same values.
 
 
 @dataclass(frozen=True)

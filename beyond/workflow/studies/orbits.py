@@ -75,8 +75,8 @@ def solved(
 ) -> NDArray:
     """Orbits near rows z that meet as many further conditions as parameters change.
 
-    `conditions` are zero then: an analytic function of rows with the shape (rows, p). Newton's method
-    doubles the digits of a near guess in each step.
+    `conditions` are zero then: an analytic function of rows with the shape (rows, p). Each step of
+    Newton's method doubles the digits of a near guess.
     """
     steps = 1j * H * np.eye(z.shape[1])
     for _ in range(iterations):

@@ -18,6 +18,7 @@ from bouncing_ball_beyond.error_law import (
     law_thresholds,
     restitution_values,
 )
+from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.orbits import orbit
 
 ARTICLE = {
@@ -261,3 +262,53 @@ def test_a_free_impact_may_be_given():
     impact = free_impact(BALL)
     assert isinstance(impact, FreeImpact)
     assert law_errors(impact, amplitude=1.0) == law_errors(BALL, amplitude=1.0)
+
+
+LAWS = {
+    law.__name__: law(restitution=0.65, duration=0.02, speed=2 * np.pi / 1.65)
+    for law in (hunt_crossley, tsuji, kuwabara_kono)
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_law_of_other_contacts_is_of_second_order(name):
+    """Along the duration of a contact of any law, whose units tell how it is stretched."""
+    law = LAWS[name]
+    remainders = []
+    for ratio in (1.0, 2.0):
+        powers = {each: -length - time for each, (_, length, time) in law.units.items()}
+        ball = law.at(**{each: law.values[each] * ratio**power for each, power in powers.items()})
+        impact = free_impact(ball)
+        assert impact.restitution == pytest.approx(0.65, rel=1e-9)
+        assert impact.duration == pytest.approx(0.02 / ratio, rel=1e-9)
+        by_law = law_errors(impact, amplitude=0.9)
+        exact = exact_errors(ball, amplitude=0.9)
+        remainders.append({each: exact[each] - by_law[each] for each in QUANTITIES})
+    for each in ("bounce_velocity", "phase", "apparent_restitution", "saddle_node"):
+        assert remainders[0][each] / remainders[1][each] == pytest.approx(4, rel=0.1), each
+    for each in ("max_height", "period_doubling"):
+        # Their terms of second order nearly cancel.
+        assert abs(remainders[0][each]) < 0.02**2
+
+
+def test_constant_restitution_misses_the_doubling():
+    """By 2.9 % on a stiff contact of Hunt and Crossley, which the corrected model does not."""
+    ball = hunt_crossley(restitution=0.65, duration=np.pi / 300, speed=2 * np.pi / 1.65)
+    known = {"amplitude": 1.0, "quantities": ["period_doubling"]}
+    constant = exact_errors(ball, simple=lambda contact: Rigid(0.65), **known)
+    corrected = exact_errors(ball, simple=Corrected, **known)
+    assert constant["period_doubling"] == pytest.approx(0.029, abs=5e-4)
+    assert corrected["period_doubling"] == pytest.approx(3.6e-6, abs=5e-8)
+    assert exact_errors(ball, **known)["period_doubling"] == pytest.approx(-5e-4, abs=1e-4)
+
+
+def test_thresholds_of_a_law_are_by_its_duration():
+    """For 1 % of the height the article has 81.23 for π/(D + κ) on this contact."""
+    law = LAWS["hunt_crossley"]
+    known = {"amplitude": 1.0, "quantities": ["max_height"], "low": 0.1, "high": 10.0, "samples": 9}
+    found = error_thresholds(law, **known)["max_height"]
+    impact = free_impact(law)
+    # t_c = r (D + κ)/(1 + r)
+    share = np.pi * 0.65 / (1.65 * impact.centroid)
+    assert found.ratio * share == pytest.approx(81.23, abs=5e-3)
+    assert law_thresholds(law, amplitude=1.0)["max_height"] == pytest.approx(found.ratio, rel=1e-3)

@@ -49,8 +49,9 @@ They are the ones with the least work in contacts of four laws."""
 NEAR = 1e-8
 """The last step of Newton's method to an event over the length of the panel: the error is its square."""
 
-MOST_PANELS = 4000
-"""The largest number of panels of a contact: an oscillation takes about six."""
+MOST_PANELS, PATIENT = 4000, 40
+"""The largest number of panels of a contact, and the one from which on Newton's method solves them.
+An impact takes about six panels."""
 
 STEADY = 1e-9
 """A motion that has changed by less in a period of the table, relatively, is a permanent contact."""
@@ -206,25 +207,69 @@ class Panel(NamedTuple):
             whole[..., at] = part
 
 
-def solve_panel(motion, start, h, event=None):
+class Linearised(NamedTuple):
+    """The linearised collocation of panels: δF = F_q δq + F_v δv + F_t δt + what is known.
+
+    ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (rows, nodes, 1), and h has
+    the shape (rows, 1, 1).
+    """
+
+    by_q: np.ndarray
+    by_v: np.ndarray
+    by_t: np.ndarray
+    bend: np.ndarray
+    h: np.ndarray
+
+    def time(self, q):
+        """δt from δq at the nodes."""
+        return self.h * (_INTEGRALS @ (self.bend * q))
+
+    def solved(self, known):
+        """δF at the nodes, shape (rows, nodes, directions)."""
+        twice = self.h * self.h * _TWICE
+        matrix = np.eye(ORDER) - self.by_v * (self.h * _INTEGRALS) - self.by_q * twice
+        return np.linalg.solve(matrix - self.by_t * self.time(twice), known)
+
+
+def linearised(motion, nodes, h):
+    """:class:`Linearised` about a motion, by complex steps of the force."""
+    q, v, t = (x.T for x in nodes)
+    given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in motion.given.items()}
+    m, lever, a = motion.root, motion.lever(q), load(t, given)
+    p, bend = q * lever / m, m * (m - 1) * q ** max(m - 2, 0)
+    along = motion.force(p + 1j * H, v, a, given)
+    felt = 1 - motion.force(p, v, a + 1j * H, given).imag / H
+    by_q = bend * (a - along.real) - lever * lever * along.imag / H
+    by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
+    by_t = -lever * felt * given["amplitude"] * np.cos(given["tau"] + t)
+    slopes = (each[..., np.newaxis] for each in (by_q, by_v, by_t, bend))
+    return Linearised(*slopes, h[:, np.newaxis, np.newaxis])
+
+
+def solve_panel(motion, start, h, event=None, *, newton=False):
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
-    In each sweep Newton's method moves the end of a panel towards the event.
+    The sweeps are Picard's, or steps of Newton's method, with which the panel of a ball that lies on the table may be
+    as long as many oscillations of its contact, which have died out. In each of them a step of
+    Newton's method also moves the end of a panel towards its event.
     """
     q0, v0, t0 = start
-    v, moved, near = np.broadcast_to(v0, (ORDER, v0.size)), 0.0, True
+    v, push = np.broadcast_to(v0, (ORDER, v0.size)), 0.0
+    moved, near, early = 0.0, True, np.zeros(v0.size)
     for sweep in range(SWEEPS):
-        h = h + moved
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
         t = t0 + h * (_INTEGRALS @ lever)
-        a = load(t, motion.given)
-        push = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
-        before, v = v, v0 + h * (_INTEGRALS @ push)
+        force = rates(motion, (q, v, t))[1]
+        if newton:
+            missing = (force - push).T[..., np.newaxis]
+            force = push + linearised(motion, (q, v, t), h).solved(missing)[..., 0].T
+        push, before, v = force, v, v0 + h * (_INTEGRALS @ force)
         if sweep < EARLY:
             continue
         change = np.abs(v - before).max(0)
-        early = change if sweep == EARLY else early
+        if sweep == EARLY and not newton:
+            early = change
         end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
         if event:
             value, slope = event_rate(motion, event, end)
@@ -232,52 +277,34 @@ def solve_panel(motion, start, h, event=None):
             near = np.abs(moved) <= NEAR * h
         if np.all(near & (change <= CONVERGED * np.abs(v).max(0))):
             break
+        if event:
+            h = h + moved
+            v = v0 + h * (_INTEGRALS @ push)
     if event:
         end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
     return Panel((q, v, t), end, h + moved, early, np.where(near, change, np.inf))
 
 
 def carried(motion, nodes, by, h):
-    """Derivatives of (q, v, t) at the ends of panels, from those at their starts, (3, rows, directions).
+    """Derivatives of (q, v, t) at the ends of panels, from those at the starts.
 
-    They solve the linearised collocation δF = F_q δq + F_v δv + F_t δt + δF₀, where δF₀ has the
-    steps of what is given.
+    Both have the shape (3, rows, directions).
     """
-    q, v, t = (x.T for x in nodes)
-    row = {name: x[:, None] if np.ndim(x) else x for name, x in motion.given.items()}
-    m, lever, a = motion.root, motion.lever(q), load(t, row)
-    p = q * lever / m
-    bend = m * (m - 1) * q ** (m - 2) if m > 1 else 0 * q
-    along = motion.force(p + 1j * H, v, a, row)
-    felt = lever * (1 - motion.force(p, v, a + 1j * H, row).imag / H)
-    f_q = bend * (a - along.real) - lever * lever * along.imag / H
-    f_v = -lever * motion.force(p, v + 1j * H, a, row).imag / H
-    f_t = -felt * row["amplitude"] * np.cos(row["tau"] + t)
-    q0, v0, t0 = by[:, :, None]
-    h = h[:, None, None]
-    q_alone = q0 + h * _NODES[:, None] * v0
-    once, twice = h * _INTEGRALS, h * h * _TWICE
-    bent = once * bend[:, None]
-    f_q, f_v, f_t = f_q[..., None], f_v[..., None], f_t[..., None]
-    known = f_q * q_alone + f_v * v0 + f_t * (t0 + bent @ q_alone)
+    linear = linearised(motion, nodes, h)
+    q0, v0, t0 = by[:, :, np.newaxis]
+    alone = q0 + linear.h * _NODES[:, np.newaxis] * v0
+    known = linear.by_q * alone + linear.by_v * v0 + linear.by_t * (t0 + linear.time(alone))
     if motion.steps:
-        stepped = {
-            name: np.expand_dims(x, 1) if np.ndim(x) else x for name, x in motion.stepped().items()
-        }
-        step = load(t[..., None], stepped)
-        known = (
-            known
-            + lever[..., None]
-            * (step - motion.force(p[..., None], v[..., None], step, stepped)).imag
-        )
-    matrix = np.eye(ORDER) - f_q * twice - f_v * once - f_t * (bent @ twice)
-    force = np.linalg.solve(matrix, known)
-    rate = v0 + once @ force
-    root = q0 + once @ rate
-    sums = (h * (_WEIGHTS @ each)[:, None] for each in (rate, force, bend[..., None] * root))
-    return np.array([before + more for before, more in zip((q0, v0, t0), sums, strict=True)])[
-        :, :, 0
-    ]
+        q, v, t = (x.T[..., np.newaxis] for x in nodes)
+        stepped = motion.stepped().items()
+        given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in stepped}
+        lever, a = motion.lever(q), load(t, given)
+        known = known + (lever * (a - motion.force(q * lever / motion.root, v, a, given))).imag
+    push = linear.solved(known)
+    rate = v0 + linear.h * (_INTEGRALS @ push)
+    pace = linear.bend * (q0 + linear.h * (_INTEGRALS @ rate))
+    changes = [linear.h[:, 0] * (_WEIGHTS @ each) for each in (rate, push, pace)]
+    return by + np.array(changes)
 
 
 def _resolved(panel, size):
@@ -309,6 +336,8 @@ def _first_event(motion, events, side, start, panel):
         after = 1 + over[:, crossed].argmax(0)
         low, high = np.abs(values[after - 1, crossed]), np.abs(values[after, crossed])
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
+        # A contact that starts at the zero of a function does not end there.
+        here = np.maximum(here, x[1] / 2)
         first = here < place[crossed]
         place[crossed[first]], which[crossed[first]] = here[first], k
     return which, place, side
@@ -321,15 +350,16 @@ def _shift(motion, event, state, by):
     return -event(*beside, motion.stepped()).imag / slope[:, None]
 
 
-def _next_panel(motion, events, side, start, length):
+def _next_panel(motion, events, side, start, length, newton):
     """The next panels, which end at their first events, the events (-1 is none), and their sides."""
-    panel = solve_panel(motion, start, length)
+    panel = solve_panel(motion, start, length, newton=newton)
     which, place, side = _first_event(motion, events, side, start, panel)
     for k in np.unique(which[which >= 0]):
         at = np.flatnonzero(which == k)
         begin = [y[at] for y in start]
         short = length[at] * place[at]
-        panel.replace_some(at, solve_panel(motion.of(at), begin, short, events[k]))
+        new = solve_panel(motion.of(at), begin, short, events[k], newton=newton)
+        panel.replace_some(at, new)
     return panel, which, side
 
 
@@ -369,7 +399,9 @@ def follow(motion, q, v, by, length, until=None, by_until=0.0):
     side = np.zeros((len(events), rows))
     side[release:] = -1.0
     ended, lost = np.zeros(rows, bool), ~np.isfinite(now).all(0)
-    for _ in range(MOST_PANELS):
+    for attempt in range(MOST_PANELS):
+        # Most balls have left the table after few panels, and the others lie on it.
+        lies = attempt >= PATIENT
         active = np.flatnonzero(~(ended | lost))
         if not active.size:
             break
@@ -379,9 +411,13 @@ def follow(motion, q, v, by, length, until=None, by_until=0.0):
                 left = until[here] - s
                 pieces = np.fmax(np.ceil(left / h - 1e-9), 1)
                 h = left / pieces
-            panel, which, side[:, here] = _next_panel(part, events, side[:, here], start, h)
-            size[here] = np.fmax(size[here], np.abs(panel.nodes[1]).max(0))
-            good, factor = _resolved(panel, size[here])
+            panel, which, side[:, here] = _next_panel(
+                part, events, side[:, here], start, h, lies
+            )
+            greatest = np.abs(panel.nodes[1]).max(0)
+            size[here] = np.fmax(size[here], greatest)
+            scale = np.fmax(1e-6 * size[here], greatest) if lies else size[here]
+            good, factor = _resolved(panel, scale)
             length[here] = h * np.where(good & (which >= 0), 1.0, factor)
             if until is not None:
                 ended[here] = good & (pieces == 1) & (which < 0)

@@ -4,7 +4,6 @@ A branch is followed by pseudo-arclength continuation: the predictor goes along 
 corrector is Newton's method on the plane across it. Many branches, rows, are followed side by side.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -24,6 +23,18 @@ from bouncing_ball_beyond.orbits import (
     single,
 )
 from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.special_orbits import (
+    KINDS,
+    ON_THE_WAY,
+    crossings_of,
+    doubled_of,
+    halved_at,
+    halves_of,
+    kind_named,
+    located,
+    scales,
+    special_near,  # noqa: F401
+)
 
 FIRST_STEP = 0.1
 LONGEST_STEP = 0.4
@@ -37,73 +48,9 @@ STRAIGHT = 0.95
 TURN = 0.3
 """The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
 
-
 NEAREST = 1e-9
 """Relative distance from a period doubling below which doubled orbits are not told apart: at a distance
 ξ, rounding errors of the orbits are eps/ξ², and ξ² is proportional to the change of the parameter."""
-
-
-class Kind(NamedTuple):
-    """A kind of special orbit.
-
-    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says why
-    branches end there, and is empty if they go on.
-    """
-
-    test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
-    end: str
-
-
-KINDS = {
-    "saddle-node": Kind(lambda equations, z, linear: 1 - equations.turn(linear), ""),
-    "period doubling": Kind(lambda equations, z, linear: 1 + equations.turn(linear), ""),
-    "grazing of a flight": Kind(lambda equations, z, linear: equations.clearance(z), ""),
-    "grazing of a release": Kind(lambda equations, z, linear: equations.contact_clearance(z), ""),
-    "period halving": Kind(
-        lambda equations, z, linear: equations.halving(z),
-        "the orbit merges with one of half its period",
-    ),
-    "vanishing flight": Kind(
-        lambda equations, z, linear: linear.flights.min(axis=1),
-        "the contacts before and after a flight merge",
-    ),
-    "grazing of an impact": Kind(
-        lambda equations, z, linear: equations.least_speed(z),
-        "an impact vanishes, because the ball lands with the speed of the table",
-    ),
-    "lost release": Kind(
-        lambda equations, z, linear: equations.least_release(linear, z),
-        "the ball no longer leaves the table as a contact ends",
-    ),
-}
-"""The kinds of special orbits of a branch, by name."""
-
-
-def tests_on_the_way(equations: OrbitEquations, z: NDArray, linear: Linear) -> dict[str, NDArray]:
-    """The tests that cost little, or that end a branch, by kind."""
-    turn = equations.turn(linear)
-    return {
-        "saddle-node": 1 - turn,
-        "period doubling": 1 + turn,
-        "grazing of an impact": equations.least_speed(z),
-        "lost release": equations.least_release(linear, z),
-        "vanishing flight": linear.flights.min(axis=1),
-    }
-
-
-def kind_named(name: str) -> str:
-    """The name of a kind that is written with spaces or hyphens.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    plain = {kind.replace("-", " "): kind for kind in KINDS}
-    found = plain.get(str(name).replace("-", " ").lower())
-    if found is None:
-        raise ValueError(f"kind = {name!r}: must be one of {', '.join(KINDS)}")
-    return found
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -172,8 +119,7 @@ class FollowedBranch:
     @cached_property
     def stable(self) -> NDArray:
         """Whether the orbits are stable, shape (points,)."""
-        trace, determinant = self.equations.trace_and_determinant(self.equations.linear(self.z))
-        return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
+        return self.equations.stable(self.equations.linear(self.z))
 
     @cached_property
     def admissible(self) -> NDArray:
@@ -213,114 +159,19 @@ class _Start(NamedTuple):
     origin: NDArray | None
     reasons: NDArray
 
-
-def scales(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Units of the unknowns in which steps are measured, shape (rows, N)."""
-    units = np.full(z.shape, np.sqrt(equations.impacts))
-    units[:, equations.size :] = np.maximum(np.abs(z[:, equations.size :]), 1e-2)
-    return units
+    def take(self, which) -> "_Start":
+        """Some of the rows."""
+        arrays = {name: each for name, each in self._asdict().items() if np.ndim(each)}
+        taken = {name: each[which] for name, each in arrays.items()}
+        return self._replace(equations=self.equations.rows(which), **taken)
 
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions of the curves of orbits through z, also where the parameter turns back; (rows, N)."""
     normal = np.ones(z.shape)
     for _ in range(2):
-        normal = newton(equations, z, normal, iterations=1).tangent
-        normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+        normal = _unit(newton(equations, z, normal, iterations=1).tangent)
     return normal
-
-
-class _Steps(NamedTuple):
-    """The accepted points of one row: orbits, tangents, tests on the way, and why it stopped."""
-
-    z: NDArray
-    tangents: NDArray
-    tests: dict[str, NDArray]
-    end: str
-
-
-def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
-    """Accepted steps of branches until their parameter leaves its window, or until they end.
-
-    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change too
-    much. A step that leads to an end of the window ends exactly there.
-    """
-    rows, equations = len(start.z), start.equations
-    units = scales(equations, start.z)
-    z, t, step = start.z.copy(), _unit(start.direction / units), start.step.copy()
-    linear = equations.linear(z)
-    tests = tests_on_the_way(equations, z, linear)
-    halves = equations.halves(z)
-    tests["period halving"] = np.linalg.norm(halves, axis=1)
-    history = [_Visited(np.ones(rows, bool), z, t, tests)]
-    count, end, farthest = np.ones(rows, int), np.full(rows, "", object), np.zeros(rows)
-    active, part = np.arange(rows), equations
-    while active.size:
-        unit, here, ahead, before = units[active], z[active], t[active], step[active]
-        low, high = start.window[active].T
-        rate = ahead[:, -1] * unit[:, -1]
-        target = np.where(rate > 0, high, low)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            whole = (target - here[:, -1]) / rate
-        last = whole <= before
-        length = np.where(last, whole, before)
-        guess, normal = here + length[:, np.newaxis] * ahead * unit, ahead / unit
-        guess[last, -1], normal[last] = target[last], 0.0
-        normal[last, -1] = np.sign(rate[last])
-        solution = newton(part, guess, normal, iterations=7)
-        new, following = solution.z, _unit(solution.tangent / unit)
-        new[last, -1] = target[last]
-        with np.errstate(all="ignore"):
-            values = tests_on_the_way(part, new, solution.linear)
-            change = _change_of_angle(values["period doubling"], tests["period doubling"][active])
-            cosine = np.sum(following * ahead, axis=1)
-            moved = np.linalg.norm((new - guess) / unit, axis=1)
-            outside = (new[:, -1] < low) | (new[:, -1] > high)
-            good = solution.found & (cosine > STRAIGHT) & (moved < 0.4 * length) & ~outside
-            good &= (change < TURN) | (length < 1e-6)
-            apart = part.halves(new)
-            merged = np.sum(apart * halves[active], axis=1) < 0
-        sign = np.where(merged, -1, 1) * np.sign(tests["period halving"][active])
-        values["period halving"] = sign * np.linalg.norm(apart, axis=1)
-        ends = _ends_on_the_way(tests, values, active, until)
-        ends[(ends == "") & last] = _AT_GOAL
-        taken = np.flatnonzero(good)
-        accepted = active[taken]
-        end[accepted] = ends[taken]
-        step[active[~good]] = length[~good] / 2
-        easy = (cosine > 0.99) & (change < TURN / 2)
-        step[accepted] = np.minimum(np.where(easy, 2.0, 1.0)[taken] * before[taken], LONGEST_STEP)
-        z, t, halves = z.copy(), t.copy(), halves.copy()
-        z[accepted], t[accepted], halves[accepted] = new[taken], following[taken], apart[taken]
-        tests = {name: value.copy() for name, value in tests.items()}
-        for name, value in tests.items():
-            value[accepted] = values[name][taken]
-        count[accepted] += 1
-        away, same_way = _from_start(start, z, t, units)
-        closed = same_way & (np.linalg.norm(away, axis=1) < step / 2) & (farthest > 2 * step)
-        farthest = np.maximum(farthest, np.linalg.norm(away, axis=1))
-        end[closed & (end == "")] = _CLOSED
-        end[(count >= points) & (end == "")] = f"all {points} points are used"
-        end[(step < SHORTEST_STEP) & (end == "")] = "no further orbit is found"
-        history.append(_Visited(np.isin(np.arange(rows), accepted), z, t, tests))
-        still = end[active] == ""
-        if not still.all():
-            active = active[still]
-            part = equations.rows(active)
-    return [_row_of(history, units, end, i) for i in range(rows)]
-
-
-_AT_GOAL = "the end of the window"
-_CLOSED = "the branch is closed: it is back at its start"
-
-
-class _Visited(NamedTuple):
-    """All rows after a step, and which of them have moved."""
-
-    moved: NDArray
-    z: NDArray
-    t: NDArray
-    tests: dict[str, NDArray]
 
 
 def _unit(vectors: NDArray) -> NDArray:
@@ -328,183 +179,160 @@ def _unit(vectors: NDArray) -> NDArray:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _change_of_angle(new: NDArray, old: NDArray) -> NDArray:
-    """Changes of arctan(tr/(1 + det)), for tests of period doublings; a pole of it is no obstacle."""
-    change = np.abs(np.arctan(new - 1) - np.arctan(old - 1))
-    return np.minimum(change, np.pi - change)
+class _Points(NamedTuple):
+    """One orbit of each row: orbits, unit tangents, tests on the way, and differences of halves.
 
-
-def _ends_on_the_way(tests, values, active, until) -> NDArray:
-    """Why the rows end in a step, "" where they go on."""
-    ends = np.full(len(active), "", object)
-    for name, value in values.items():
-        if KINDS[name].end or name == until:
-            ends[tests[name][active] * value < 0] = name
-    return ends
-
-
-def _from_start(start: _Start, z, t, units) -> tuple[NDArray, NDArray]:
-    """How far branches are from their starts, up to whole turns, and whether they go the same way."""
-    away = z - start.z
-    turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
-    away[:, : start.equations.size : start.equations.unknowns] -= turns
-    same_way = np.sum(t * _unit(start.direction / units), axis=1) > STRAIGHT
-    return away / units, same_way
-
-
-def _row_of(history: list[_Visited], units, end, i) -> _Steps:
-    """The accepted steps of one row; a closed branch ends exactly at its start."""
-    taken = [each for each in history if each.moved[i]]
-    if end[i] == _CLOSED:
-        ahead = taken[0].t[i] @ ((taken[-1].z[i] - taken[0].z[i]) / units[i]) > 0
-        taken = [*(taken[:-1] if ahead else taken), taken[0]]
-    tests = {name: np.array([each.tests[name][i] for each in taken]) for name in taken[0].tests}
-    z = np.array([each.z[i] for each in taken])
-    t = np.array([each.t[i] * units[i] for each in taken])
-    return _Steps(z, t, tests, end[i])
-
-
-class _Crossings(NamedTuple):
-    """Steps in which a test changes its sign: row, number of the step, kind, ends and their tests."""
-
-    row: NDArray
-    number: NDArray
-    kind: NDArray
-    ends: NDArray
-    slopes: NDArray
-    values: NDArray
-
-
-def _crossings(equations, steps: list[_Steps]) -> _Crossings:
-    """All steps of all rows in which a test changes its sign."""
-    row = np.repeat(np.arange(len(steps)), [len(each.z) for each in steps])
-    z, t = (
-        np.concatenate([each.z for each in steps]),
-        np.concatenate([each.tangents for each in steps]),
-    )
-    tests = {name: np.concatenate([each.tests[name] for each in steps]) for name in steps[0].tests}
-    tests["saddle-node"] = 2 - tests["period doubling"]
-    all_rows = equations.rows(row)
-    tests["grazing of a flight"] = all_rows.clearance(z)
-    tests["grazing of a release"] = all_rows.contact_clearance(z)
-    names = np.array(list(tests))
-    values = np.array(list(tests.values()))
-    number = np.arange(len(z))
-    within = row[1:] == row[:-1]
-    # Where tr/(1 + det) has a pole, it changes its sign without passing 1 or -1.
-    turn = np.arctan(tests["period doubling"] - 1)
-    pole = np.abs(np.diff(turn)) > np.pi / 2
-    by_turn = np.isin(names, ["saddle-node", "period doubling"])[:, np.newaxis]
-    crossed = (values[:, :-1] * values[:, 1:] < 0) & within & ~(by_turn & pole)
-    which, at = np.nonzero(crossed)
-    return _Crossings(
-        row[at],
-        number[at],
-        names[which],
-        np.stack([z[at], z[at + 1]]),
-        np.stack([t[at], t[at + 1]]),
-        np.stack([values[which, at], values[which, at + 1]]),
-    )
-
-
-def _cubic(part, ends, slopes):
-    """Hermite's cubic between the ends of steps, whose slopes are per unit of the part of the step."""
-    x = part[:, np.newaxis]
-    chord = ends[1] - ends[0]
-    bend = slopes[0] + slopes[1] - 2 * chord
-    return ends[0] + x * (slopes[0] + x * (chord - slopes[0] - bend + x * bend))
-
-
-def _values_of_kinds(equations, kinds, solution) -> NDArray:
-    """The tests of orbits, each that of its kind."""
-    values = np.zeros(len(kinds))
-    for name in np.unique(kinds):
-        these = kinds == name
-        linear = Linear(*(each[these] for each in solution.linear))
-        values[these] = KINDS[name].test(equations.rows(these), solution.z[these], linear)
-    return values
-
-
-@np.errstate(all="ignore")
-def _located(equations, crossings: _Crossings) -> tuple[NDArray, NDArray]:
-    """The orbits at which the tests are zero, and which of them were found.
-
-    The zero is bracketed along the chord of each step, by the rule of Anderson and Björck (BIT 13,
-    253, 1973); the orbits are on the planes across the chord.
+    Tangents are in the units of `scales`; tests have the shape (rows, tests).
     """
-    equations = equations.rows(crossings.row)
-    ends, values = crossings.ends.copy(), crossings.values.copy()
-    units = scales(equations, ends[0])
-    chord = (ends[1] - ends[0]) / units
-    normal = chord / units / np.sum(chord**2, axis=1, keepdims=True)
-    place = np.array([np.zeros(len(chord)), np.ones(len(chord))])
-    slopes = crossings.slopes / np.sum(normal * crossings.slopes, axis=2, keepdims=True)
-    weights = values.copy()
-    # The equations are singular at a period halving, which is found by those of half the period.
-    found = crossings.kind != "period halving"
-    each, latest = np.arange(len(chord)), np.full(len(chord), -1)
-    z = _cubic(weights[0] / (weights[0] - weights[1]), ends, slopes)
-    for _ in range(60):
-        step = place[1] - place[0]
-        part = weights[0] / (weights[0] - weights[1])
-        solution = newton(equations, _cubic(part, ends, slopes * step[:, np.newaxis]), normal)
-        found &= solution.found
-        z = np.where(found[:, np.newaxis], solution.z, z)
-        value = _values_of_kinds(equations, crossings.kind, solution)
-        side = (value * values[1] > 0).astype(int)
-        again = side == latest
-        ratio = 1 - value / values[side, each]
-        weights[1 - side, each] *= np.where(again, np.where(ratio > 0, ratio, 0.5), 1.0)
-        moved = np.abs(place[0] + part * step - place[side, each])
-        place[side, each] = place[0] + part * step
-        values[side, each], weights[side, each] = value, value
-        ends[side, each], slopes[side, each] = solution.z, solution.tangent
-        latest = side
-        if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
-            break
-    smallest = np.abs(crossings.values).max(axis=0)
-    return z, found & (np.abs(value) < 1e-6 * np.maximum(smallest, 1e-3))
+
+    z: NDArray
+    tangents: NDArray
+    tests: NDArray
+    halves: NDArray
+
+    def take(self, which) -> "_Points":
+        """Some of the rows."""
+        return _Points(*(each[which] for each in self))
+
+    def replaced(self, which, others) -> "_Points":
+        """With the rows of others where `which` is true."""
+        return _Points(
+            *(
+                np.where(which[:, np.newaxis], new, old)
+                for new, old in zip(others, self, strict=True)
+            )
+        )
 
 
-def _followed(start: _Start, points, until, own) -> list[FollowedBranch]:
-    """Branches from their starts to a value of their parameter, with their special orbits.
+def _points_at(equations, z, tangents, linear: Linear) -> _Points:
+    """Orbits with their tests; that of a period halving is the distance from one."""
+    halves = equations.halves(z)
+    turn = equations.turn(linear)
+    tests = [
+        1 - turn,
+        1 + turn,
+        linear.flights.min(axis=1),
+        equations.least_speed(z),
+        equations.least_release(linear, z),
+        np.linalg.norm(halves, axis=1),
+    ]
+    return _Points(z, _unit(tangents), np.stack(tests, axis=1), halves)
 
-    ``own`` is the kind of the special orbits at the starts, which are not listed.
+
+def _same_sign(before: _Points, after: _Points) -> _Points:
+    """The points after a step, whose distances from a period halving change their sign at one."""
+    merged = np.sum(before.halves * after.halves, axis=1) < 0
+    tests = after.tests.copy()
+    tests[:, -1] *= np.where(merged, -1, 1) * np.sign(before.tests[:, -1])
+    return after._replace(tests=tests)
+
+
+class _Steps(NamedTuple):
+    """The accepted points of one row, one after the other, and why it stopped."""
+
+    points: _Points
+    end: str
+
+
+class _Predicted(NamedTuple):
+    """Where steps lead: lengths, predicted orbits, normals, and which end at an end of the window."""
+
+    length: NDArray
+    z: NDArray
+    normal: NDArray
+    last: NDArray
+
+
+def _predicted(here: _Points, step, units, window) -> _Predicted:
+    """Steps along the tangents; one that would leave its window ends there, at a fixed parameter."""
+    rate = here.tangents[:, -1] * units[:, -1]
+    target = np.where(rate > 0, window[:, 1], window[:, 0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        whole = (target - here.z[:, -1]) / rate
+    last = whole <= step
+    length = np.where(last, whole, step)
+    z = here.z + length[:, np.newaxis] * here.tangents * units
+    z[last, -1] = target[last]
+    normal = here.tangents / units
+    normal[last] = 0.0
+    normal[last, -1] = np.sign(rate[last])
+    return _Predicted(length, z, normal, last)
+
+
+def _angle(points: _Points) -> NDArray:
+    """arctan(tr/(1 + det)), by the test of a period doubling."""
+    return np.arctan(points.tests[:, 1] - 1)
+
+
+def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
+    """Accepted steps of branches until their parameter is at an end of its window, or until they end.
+
+    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change too
+    much.
     """
     equations = start.equations
-    steps = _march(start, points, until)
-    crossings = _crossings(equations, steps)
-    z, found = _located(equations, crossings) if len(crossings.row) else (None, None)
-    first = np.cumsum([0, *(len(each.z) for each in steps)])
-    branches = []
-    for i, each in enumerate(steps):
-        alone, passed = single(equations, i), []
-        for j in np.flatnonzero(crossings.row == i):
-            kind, number = str(crossings.kind[j]), int(crossings.number[j] - first[i])
-            here = z[j] if found[j] else None
-            if kind == "period halving":
-                here = _halved_at(alone, crossings.ends[:, j])
-            if here is not None and not (number == 0 and kind == own):
-                place = np.sum(crossings.slopes[0, j] * (here - crossings.ends[0, j]))
-                passed.append((number, place, PeriodicOrbit(alone, here, kind)))
-        passed.sort(key=lambda entry: entry[:2])
-        ending = [n for n, entry in enumerate(passed) if _ends_at(entry[2].kind, until)]
-        path, near = each.z, np.nan
-        if each.end in KINDS and not ending:
-            # The equations are singular where a flight vanishes.
-            path, near = each.z[:-1], z[np.flatnonzero(crossings.row == i)[-1], -1]
-            passed = [entry for entry in passed if entry[0] + 1 < len(path)]
-        special = [entry[2] for entry in passed]
-        if ending:
-            number, _, last = passed[ending[0]]
-            special = special[: ending[0] + 1]
-            path = np.concatenate([path[: number + 1], last.z[np.newaxis]])
-        if each.end in KINDS and not ending:
-            end = f"{each.end} near {alone.along[-1].name} = {near:.4g}: {KINDS[each.end].end}"
-        else:
-            end = _end_in_words(each.end, alone, special, path, float(start.goal[i]), bool(ending))
-        branches.append(FollowedBranch(alone, path, tuple(special), "", end))
-    return branches
+    units = scales(equations, start.z)
+    here = _points_at(equations, start.z, start.direction / units, equations.linear(start.z))
+    first = here
+    rows = np.arange(len(start.z))
+    paths = [[here.take([row])] for row in rows]
+    ends = [""] * len(rows)
+    step = start.step
+    farthest = np.zeros(len(rows))
+    while rows.size:
+        window = start.window[rows]
+        ahead = _predicted(here, step, units, window)
+        solution = newton(equations, ahead.z, ahead.normal, iterations=7)
+        solution.z[ahead.last, -1] = ahead.z[ahead.last, -1]
+        with np.errstate(all="ignore"):
+            there = _points_at(equations, solution.z, solution.tangent / units, solution.linear)
+            there = _same_sign(here, there)
+            turned = np.abs(_angle(there) - _angle(here))
+            # A pole of tr/(1 + det) is no obstacle.
+            turned = np.minimum(turned, np.pi - turned)
+            cosine = np.sum(there.tangents * here.tangents, axis=1)
+            missed = np.linalg.norm((there.z - ahead.z) / units, axis=1)
+            inside = (there.z[:, -1] >= window[:, 0]) & (there.z[:, -1] <= window[:, 1])
+        good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * ahead.length)
+        good &= (turned < TURN) | (ahead.length < 1e-6)
+        easy = (cosine > 0.99) & (turned < TURN / 2)
+        crossed = here.tests * there.tests < 0
+        here = here.replaced(good, there)
+        longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
+        step = np.where(good, longer, ahead.length / 2)
+        away = _from_start(equations, first, here, units)
+        back = (away < step / 2) & (farthest > 2 * step)
+        back &= np.sum(here.tangents * first.tangents, axis=1) > STRAIGHT
+        farthest = np.maximum(farthest, away)
+        for j in np.flatnonzero(good):
+            paths[rows[j]].append(here.take([j]))
+            ends[rows[j]] = _end_of_step(crossed[j], ahead.last[j], back[j], until)
+            if not ends[rows[j]] and len(paths[rows[j]]) >= points:
+                ends[rows[j]] = f"all {points} points are used"
+        for j in np.flatnonzero(step < SHORTEST_STEP):
+            ends[rows[j]] = ends[rows[j]] or "no further orbit is found"
+        going = np.array([not ends[row] for row in rows])
+        if not going.all():
+            rows = rows[going]
+            equations = start.equations.rows(rows)
+            here, first = here.take(going), first.take(going)
+            units, step, farthest = units[going], step[going], farthest[going]
+    whole = zip(paths, ends, scales(start.equations, start.z), strict=True)
+    return [_Steps(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
+
+
+_AT_GOAL = "the end of the window"
+_CLOSED = "the branch is closed: it is back at its start"
+
+
+def _end_of_step(crossed, last, back, until) -> str:
+    """Why a branch ends with a step in which some tests have changed their signs, or ""."""
+    for name in np.array(ON_THE_WAY)[crossed]:
+        if _ends_at(name, until):
+            return str(name)
+    if last:
+        return _AT_GOAL
+    return _CLOSED if back else ""
 
 
 def _ends_at(kind: str, until: str | None) -> bool:
@@ -512,104 +340,101 @@ def _ends_at(kind: str, until: str | None) -> bool:
     return kind == until or KINDS[kind].end != ""
 
 
-def _end_in_words(end, equations, special, path, goal, at_special) -> str:
-    """Why a branch ends."""
-    name, value = equations.along[-1].name, path[-1, -1]
+def _from_start(equations, first: _Points, here: _Points, units) -> NDArray:
+    """How far branches are from their starts, up to whole turns of the table."""
+    away = here.z - first.z
+    turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
+    away[:, : equations.size : equations.unknowns] -= turns
+    return np.linalg.norm(away / units, axis=1)
+
+
+def _path_of(path: list[_Points], end: str, equations, units) -> _Points:
+    """The points of one row as one, with tangents of z; a closed branch ends exactly at its start."""
+    if end == _CLOSED:
+        ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units) > 0
+        turns = 2 * np.pi * np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
+        z = path[0].z.copy()
+        z[:, : equations.size : equations.unknowns] += turns
+        path = [*(path[:-1] if ahead else path), path[0]._replace(z=z)]
+    points = _Points(*(np.concatenate(each) for each in zip(*path, strict=True)))
+    return points._replace(tangents=points.tangents * units)
+
+
+def _followed(start: _Start, points, until, own) -> list[FollowedBranch]:
+    """Branches from their starts to a value of their parameter, with their special orbits.
+
+    ``own`` is the kind of the special orbits at the starts, which are not listed.
+    """
+    steps = _march(start, points, until)
+    row = np.repeat(np.arange(len(steps)), [len(each.points.z) for each in steps])
+    z, slopes, tests, _ = (np.concatenate(e) for e in zip(*(s.points for s in steps), strict=True))
+    crossings = crossings_of(start.equations, row, z, slopes, tests)
+    z, found = np.empty((2, 0))
+    if len(crossings.row):
+        z, found = located(start.equations, crossings)
+    branches = []
+    for i, (path, end) in enumerate(steps):
+        equations = single(start.equations, i)
+        name = equations.along[-1].name
+        passed = []
+        for j in np.flatnonzero(crossings.row == i):
+            kind = str(crossings.kind[j])
+            number = crossings.number[j]
+            here = z[j] if found[j] else None
+            if kind == "period halving":
+                here = halved_at(equations, crossings.ends[:, j])
+            if here is not None and not (number == 0 and kind == own):
+                place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
+                passed.append(_Passed(number, place, PeriodicOrbit(equations, here, kind)))
+        passed.sort(key=lambda each: each[:2])
+        orbits = path.z
+        last = _first_end([each for each in passed if _ends_at(each.orbit.kind, until)])
+        if last is not None:
+            passed = [*(each for each in passed if each[:2] < last[:2]), last]
+            orbits = np.vstack([orbits[: last.number + 1], last.orbit.z])
+            end = f"{last.orbit.kind} at {name} = {orbits[-1, -1]:.10g}"
+            end = ": ".join(filter(None, [end, KINDS[last.orbit.kind].end]))
+        elif end in KINDS:
+            # Newton's method does not find it, but it is between the last two points.
+            near = z[np.flatnonzero(crossings.row == i)[-1], -1]
+            end = f"{end} near {name} = {near:.4g}: {KINDS[end].end}"
+            orbits = orbits[:-1]
+            passed = [each for each in passed if each.number + 1 < len(orbits)]
+        else:
+            end = _in_words(end, name, orbits[-1, -1], start.goal[i], passed)
+        special = tuple(each.orbit for each in passed)
+        branches.append(FollowedBranch(equations, orbits, special, "", end))
+    return branches
+
+
+class _Passed(NamedTuple):
+    """A special orbit, the number of the step in which it is, and how far on this step."""
+
+    number: int
+    place: float
+    orbit: PeriodicOrbit
+
+
+def _first_end(ends: list[_Passed]) -> _Passed | None:
+    """The first of the special orbits at which a branch ends, if there are any."""
+    # Where a flight vanishes, an impact and a release do so at the same place.
+    same = [each for each in ends if each.number == ends[0].number]
+    same = [each for each in same if each.place < ends[0].place + 1e-6]
+    return min(same, key=lambda each: ON_THE_WAY.index(each.orbit.kind), default=None)
+
+
+def _in_words(end: str, name: str, value: float, goal: float, passed: list[_Passed]) -> str:
+    """Why a branch ends at an orbit that is not special."""
     here = f"{name} = {value:.10g}"
-    if at_special:
-        reason = KINDS[special[-1].kind].end
-        return f"{special[-1].kind} at {here}" + (f": {reason}" if reason else "")
     if end == _CLOSED:
         return end
     if end != _AT_GOAL:
         return f"{end}; the last one is at {here}"
     if abs(value - goal) <= 1e-12 * abs(goal):
         return f"{here} is reached"
-    folds = [each.z[-1] for each in special if each.kind == "saddle-node"]
+    folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
     return f"{here} is reached, as far behind the start as the goal is ahead of it{turned}"
-
-
-def test_with_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:
-    """The test of a kind of special orbit, shape (rows,), and its gradient, shape (rows, N).
-
-    The gradient is a central difference. Its errors, some 1e-10, slow Newton's method down a little
-    and do not move what it finds.
-    """
-    rows, length = z.shape
-    shift = 1e-6 * np.maximum(1.0, np.abs(z))
-    nudges = shift[:, np.newaxis] * np.eye(length)
-    nearby = np.concatenate([z[:, np.newaxis] + nudges, z[:, np.newaxis] - nudges], axis=1)
-    nearby = nearby.reshape(-1, length)
-    each = equations.rows(np.repeat(np.arange(rows), 2 * length))
-    values = KINDS[kind].test(each, nearby, each.linear(nearby)).reshape(rows, 2, length)
-    gradient = (values[:, 0] - values[:, 1]) / (2 * shift)
-    return KINDS[kind].test(equations, z, equations.linear(z)), gradient
-
-
-@np.errstate(all="ignore")
-def special_near(
-    equations: OrbitEquations, kind: str, z: NDArray, iterations: int = 20
-) -> tuple[NDArray, NDArray]:
-    """Special orbits of a kind near guesses, shape (rows, N), and which of them are found.
-
-    Newton's method for the equations of orbits together with the test of the kind.
-    """
-    found = np.zeros(len(z), bool)
-    for _ in range(iterations):
-        legs, jacobian = equations.residuals(z)
-        value, gradient = test_with_gradient(equations, kind, z)
-        matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
-        right = np.concatenate([legs, value[:, np.newaxis]], axis=1)
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-        matrix[~finite] = np.eye(z.shape[1])
-        step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-        z = np.where(finite[:, np.newaxis], z - step, np.nan)
-        found = finite & (np.abs(step).max(axis=1) < 1e-11 * (1 + np.abs(z).max(axis=1)))
-        if (found | ~finite).all():
-            break
-    return z, found
-
-
-def halves_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """The equations of half the period, and the mean of the halves of orbits."""
-    k = equations.impacts // 2
-    half = replace(equations, impacts=k, periods=np.asarray(equations.periods) // 2)
-    x = z[:, : equations.size].reshape(len(z), 2 * k, -1).copy()
-    x[:, k:, 0] -= 2 * np.pi * np.reshape(half.periods, (-1, 1))
-    mean = ((x[:, :k] + x[:, k:]) / 2).reshape(len(z), -1)
-    return half, np.concatenate([mean, z[:, equations.size :]], axis=1)
-
-
-def doubled_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """The equations of twice the period, and orbits taken twice."""
-    twice = replace(
-        equations, impacts=2 * equations.impacts, periods=2 * np.asarray(equations.periods)
-    )
-    x = z[:, : equations.size].reshape(len(z), equations.impacts, -1)
-    again = x.copy()
-    again[..., 0] += 2 * np.pi * np.reshape(equations.periods, (-1, 1))
-    both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
-    return twice, np.concatenate([both, z[:, equations.size :]], axis=1)
-
-
-def _halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Where orbits merge with those of half their period: the period doubling of these, taken twice.
-
-    The equations of the longer orbit are singular there, those of the shorter one are not.
-    """
-    half, near = halves_of(equations, ends)
-    z = near.mean(axis=0, keepdims=True)
-    solution, found = special_near(half, "period doubling", z)
-    if not found[0]:
-        return None
-    _, twice = doubled_of(half, solution)
-    x = twice[0].copy()
-    turns = 2 * np.pi * np.round((ends[0, 0] - x[0]) / (2 * np.pi))
-    x[: equations.size : equations.unknowns] += turns
-    units = scales(equations, ends[:1])[0]
-    reach = np.abs((ends[1] - ends[0]) / units).max()
-    return x if np.abs((x - ends[0]) / units).max() < 3 * reach else None
 
 
 def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
@@ -618,17 +443,16 @@ def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
     It is the null vector of the equations of an orbit whose first impact comes back with the other
     sign, and after it this vector with the other sign.
     """
-    linear = equations.linear(z)
-    rows, k, q, _ = linear.derivatives.shape
-    derivatives = linear.derivatives.copy()
+    derivatives = equations.linear(z).derivatives.copy()
+    rows, k, q, _ = derivatives.shape
     derivatives[:, -1, :, q : q + 2] *= -1
     # Any column and any row beside the singular matrix, if they are not special.
     derivatives[..., q + 2 :] = np.cos(np.arange(k * q)).reshape(k, q, 1)
     border = np.cos(np.sqrt(2) * np.arange(k * q + 1))
     border[-1] = 0.0
     border = np.broadcast_to(border, (rows, 1, k * q + 1))
-    zeros, one = np.zeros((rows, k, q, 1)), np.ones((rows, 1, 1))
-    null = solve_bordered(derivatives, zeros, border, one)[:, :-1, 0]
+    none = np.zeros((rows, k, q, 1))
+    null = solve_bordered(derivatives, none, border, np.ones((rows, 1, 1)))[:, :-1, 0]
     return np.concatenate([null, -null, np.zeros((rows, 1))], axis=1)
 
 
@@ -824,16 +648,12 @@ def _from_special(task: _Task, way: int, kind, points, until) -> list:
     name = task.equations.along[-1].name
     found = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
-    if going.size:
-        arrays = {"z", "direction", "step", "goal", "window"}
-        part = start._replace(
-            equations=start.equations.rows(going),
-            **{field: getattr(start, field)[going] for field in arrays},
-        )
-        for i, branch in zip(going, _followed(part, points, until, kind), strict=True):
-            path = branch.z if start.origin is None else np.vstack([start.origin[[i]], branch.z])
-            text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
-            found[i] = replace(branch, z=path, start=text)
+    if not going.size:
+        return found
+    for i, branch in zip(going, _followed(start.take(going), points, until, kind), strict=True):
+        path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
+        text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
+        found[i] = replace(branch, z=path, start=text)
     return found
 
 

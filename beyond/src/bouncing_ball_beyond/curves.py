@@ -35,13 +35,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BarycentricInterpolator
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.continuation import (
-    KINDS,
-    FollowedBranch,
-    halves_of,
-    scales,
-    test_with_gradient,
-)
+from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.equations import OrbitEquations, dense
 from bouncing_ball_beyond.forms import (
     MULTIPLIERS,
@@ -55,6 +49,7 @@ from bouncing_ball_beyond.forms import (
 )
 from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, test_with_gradient
 
 FIRST_STEP = 0.05
 LONGEST_STEP = 0.2
@@ -103,6 +98,20 @@ class SpecialCurve(FollowedBranch):
     def along(self) -> str:
         """The names of the two parameters."""
         return " and ".join(path.name for path in self.equations.along)
+
+    def first(self, kind: str) -> PeriodicOrbit:
+        """The first orbit of codimension two of a kind.
+
+        Raises
+        ------
+        OrbitNotFound
+            If the curve has none.
+        """
+        for each in self.special:
+            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
+                return each
+        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
+        raise OrbitNotFound(f"no {kind} on this curve; its orbits of codimension two are: {others}")
 
     @cached_property
     def orbits(self) -> tuple[PeriodicOrbit, ...]:
@@ -231,7 +240,9 @@ class _System:
         linear = self.equations.linear(z)
         tests = {}
         for name in names:
-            if name in KINDS:
+            if name == "period halving":
+                tests[name] = _difference_of_halves(self.equations, z)
+            elif name in KINDS:
                 tests[name] = KINDS[name].test(self.equations, z, linear)
             elif "resonance" in name:
                 tests[name] = self.equations.trace_and_determinant(linear)[1] - 1
@@ -376,7 +387,6 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
     bend = np.zeros(len(units))
     length = FIRST_STEP
     points = [first]
-    tests = system.tests([first], system.ends)
     while len(points) < most:
         try:
             guess = here.z + length * (ahead + length * bend) * units
@@ -390,8 +400,8 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
                 return points, _lost(system, here)
             continue
         points.append(point)
-        new = system.tests([point], system.ends)
-        if end or any(tests[name] * new[name] < 0 for name in system.ends):
+        tests = system.tests([here, point], system.ends)
+        if end or any(before * after < 0 for before, after in tests.values()):
             return points, end
         if len(points) > 4 and np.linalg.norm((point.z - first.z) / units) < length:
             return [*points, first], CLOSED
@@ -400,7 +410,6 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
         if following @ ahead > 0.99:
             length = min(1.5 * length, LONGEST_STEP)
         here = point
-        tests = new
         units = wider
         ahead = point.tangent / units / np.linalg.norm(point.tangent / units)
     return points, "all points are used"
@@ -484,6 +493,20 @@ def _lost(system: _System, point: _Point) -> str:
     return f"no further {system.kind} is found beyond {place}"
 
 
+def _difference_of_halves(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """The size of the difference of the halves of orbits, with a sign that changes where they swap.
+
+    It is 1 for an odd number of impacts. Where it is zero the orbits are those of half the period.
+    """
+    if equations.impacts % 2:
+        return np.ones(len(z))
+    halves = z[:, : equations.size].reshape(len(z), 2, -1)
+    difference = halves[:, 1] - halves[:, 0]
+    difference[:, :: equations.unknowns] -= np.pi * equations.periods
+    turned = np.sign(np.sum(difference[1:] * difference[:-1], axis=1))
+    return np.linalg.norm(difference, axis=1) * np.cumprod([1.0, *turned])
+
+
 def _changes(values: NDArray) -> NDArray:
     """The numbers of the steps in which a test changes its sign."""
     return (values[1:] * values[:-1] < 0).nonzero()[0]
@@ -511,7 +534,7 @@ def _located(system: _System, name: str, points: list[_Point], i: int, upto: flo
     def test(share):
         # At an end the equations are singular, but the curve is smooth.
         point = here._replace(z=interpolated(share)) if name in system.ends else at(share)
-        return system.tests([point], [name])[name][0]
+        return system.tests([here, point], [name])[name][1]
 
     try:
         if name in system.ends:

@@ -198,6 +198,15 @@ class OrbitEquations:
         trace, determinant = self.trace_and_determinant(linear)
         return trace / (1 + determinant)
 
+    def stable(self, linear: Linear) -> NDArray:
+        """Whether no neighbouring motion leaves the orbits, shape (rows,).
+
+        Neighbours come nearer, or stay near if the ball is elastic.
+        """
+        trace, determinant = self.trace_and_determinant(linear)
+        # The determinant of an elastic ball is 1 up to rounding.
+        return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
+
     def ends(self, z) -> Ends:
         """The ends of the contacts and the flights after them."""
         x, ball, amplitude = self.split(z)

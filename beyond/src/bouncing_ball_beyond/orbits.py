@@ -201,8 +201,7 @@ class PeriodicOrbit:
     @property
     def stable(self) -> bool:
         """Whether no neighbouring motion leaves: an elastic ball's stays near, others' come nearer."""
-        # The determinant of an elastic ball is 1 up to rounding.
-        return abs(self.turn) < 1 and self.trace_and_determinant[1] < 1 + 1e-9
+        return bool(self.equations.stable(self._linear)[0])
 
     @cached_property
     def admissible(self) -> bool:
@@ -501,7 +500,9 @@ def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     if not len(starts):
         return starts
     solution = newton(equations, starts, iterations=30)
-    return _distinct(equations, solution.z[solution.found])
+    z = _distinct(equations, solution.z[solution.found])
+    # Some starts lead to orbits many periods later, at times with fewer digits.
+    return newton(equations, z).z if len(z) else z
 
 
 @np.errstate(all="ignore")

@@ -115,17 +115,17 @@ def rise(gap, w, x, y, amplitude, kappa):
 
 
 @compiled
-def emergence(gap, w, x, y, amplitude):
-    """The time at which a ball that starts below the level of the table rises through it; infinity
-    if it falls back before.
+def emergence(start, gap, w, x, y, amplitude):
+    """The time, not before ``start``, at which a ball rises through the level of the table or is
+    above it; infinity if it falls back before.
     """
-    t = 0.0
+    t = start
     while True:
         position, rate, second = flight(t, gap, w, x, y)
-        if position >= 0:
-            return t
         if rate <= 0:
             return math.inf
+        if position >= 0:
+            return t
         step, last = safe_step(t, -position, -rate, -second, 1 + amplitude, amplitude)
         t += step
         if last:
@@ -176,9 +176,12 @@ def landing(start, gap, w, x, y, amplitude):
 def contact(s, gap, u, x, y, ratio, zeta):
     """δ, δ′ and δ″ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1.
 
-    The responses at rest are g to an impulse, G to a constant force, and h = Q + iP to e^{is}::
+    The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with k = g′ + 2ζϖg,
+    and h = Q + iP to e^{is}::
 
-        G = (1 - g′ - 2ζϖg)/ϖ²,    h = (e^{is} - g′ - (i + 2ζϖ) g)/(ϖ² - 1 + 2iζϖ)
+        h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
+
+    Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
@@ -189,16 +192,17 @@ def contact(s, gap, u, x, y, ratio, zeta):
     cosine = 1 - half * sine
     swing = math.tan(omega * s / 2)
     swung = 2 * swing / (1 + swing * swing)
-    decay = math.exp(-zeta * ratio * s)
+    lost = -math.expm1(-zeta * ratio * s)
+    decay = 1 - lost
     g = decay * swung / omega
     slope = decay * (1 - swing * swung) - zeta * ratio * g
-    held = slope + loss * g
-    real = cosine - held
+    lost += decay * swing * swung - zeta * ratio * g
+    real = lost - half * sine
     imaginary = sine - g
     scale = detuning * detuning + loss * loss
     in_phase = (real * detuning + imaginary * loss) / scale
     quadrature = (imaginary * detuning - real * loss) / scale
-    position = gap * held - u * g - (1 - held) / stiffness + y * in_phase + x * quadrature
+    position = gap * (1 - lost) - u * g - lost / stiffness + y * in_phase + x * quadrature
     rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
     push = y * cosine + x * sine - 1
     return position, rate, push - loss * rate - stiffness * position
@@ -291,24 +295,34 @@ def until_lift_off(phase, amplitude):
 
 
 @compiled
-def rest(gap, w, restitution, phase, amplitude):
-    """How long a ball rests on the table after an instantaneous impact, with the bounces before; -1
-    if it leaves.
-
-    It rests if its bounces end, or if it does not rise from a gap δ < 0 through the level of the
-    table.
+def rest(w, restitution, phase, amplitude):
+    """How long a ball rests on the table after an instantaneous impact and the bounces that end
+    there; -1 if it leaves.
     """
     x = amplitude * math.cos(phase)
     y = amplitude * math.sin(phase)
-    if gap == 0:
-        settled = settling(w, restitution, x, y, amplitude)
-    elif emergence(gap, w, x, y, amplitude) == math.inf:
-        settled = 0.0
-    else:
-        settled = -1.0
+    settled = settling(w, restitution, x, y, amplitude)
     if settled < 0:
         return -1.0
     return settled + until_lift_off(phase + settled, amplitude)
+
+
+@compiled
+def rest_after_contact(gap, w, phase, amplitude, left):
+    """The same for a ball that would be in contact for the time ``left`` after the instant that
+    stands for this contact, and the phase at which the ball leaves.
+
+    It rests if it does not rise at the end of the contact, or not through the level of the table.
+    """
+    x = amplitude * math.cos(phase)
+    y = amplitude * math.sin(phase)
+    if emergence(left, gap, w, x, y, amplitude) < math.inf:
+        return -1.0, phase
+    end = phase + left
+    if amplitude * math.sin(end) > 1:
+        return left, end
+    lift_off = math.asin(1 / max(amplitude, 1.0))
+    return left + until_lift_off(end, amplitude), lift_off
 
 
 @compiled
@@ -330,7 +344,7 @@ def bounce(turns, phase, u, amplitude, restitution, out):
         w = restitution * u
         stay = -1.0
         if w <= slow:
-            stay = rest(0.0, w, restitution, phase, amplitude)
+            stay = rest(w, restitution, phase, amplitude)
         if stay >= 0:
             w = 0.0
         out[i] = turns, phase, u, 0.0, max(stay, 0.0), w, math.nan

@@ -181,16 +181,17 @@ def contacts(s, gap, u, x, y, ratio, zeta):
     cosine = 1 - half * sine
     swing = np.tan(omega * s / 2)
     swung = 2 * swing / (1 + swing * swing)
-    decay = np.exp(-zeta * ratio * s)
+    lost = -np.expm1(-zeta * ratio * s)
+    decay = 1 - lost
     g = decay * swung / omega
     slope = decay * (1 - swing * swung) - zeta * ratio * g
-    held = slope + loss * g
-    real = cosine - held
+    lost += decay * swing * swung - zeta * ratio * g
+    real = lost - half * sine
     imaginary = sine - g
     scale = detuning * detuning + loss * loss
     in_phase = (real * detuning + imaginary * loss) / scale
     quadrature = (imaginary * detuning - real * loss) / scale
-    position = gap * held - u * g - (1 - held) / stiffness + y * in_phase + x * quadrature
+    position = gap * (1 - lost) - u * g - lost / stiffness + y * in_phase + x * quadrature
     rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
     return position, rate, y * cosine + x * sine, x * cosine - y * sine
 
@@ -271,8 +272,10 @@ def leave(balls):
         own_time = ball.first_release(balls.phase, u, amplitude)
         duration, gap, w, _ = ball.contact(balls.phase, u, own_time, amplitude)
         duration = np.where(np.isnan(own_time), np.inf, duration)
+    if isinstance(ball, Corrected):
+        return rest_after_contacts(balls, gap, w)
     if not ball.lasts:
-        return rest(balls, gap, w)
+        return rest(balls, w)
     if isinstance(ball, SpringDamper):
         # The release is a zero of δ + κδ′, but for rounding.
         gap = -ball.kappa * w
@@ -281,31 +284,52 @@ def leave(balls):
     return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
 
 
-def rest(balls, gap, w):
-    """How balls leave after instantaneous impacts with δ and δ′, some of them after a rest on the
-    table.
+def rest(balls, w):
+    """How balls leave after instantaneous impacts, some of them after a rest on the table."""
+    amplitude, phase = balls.amplitude, balls.phase
+    stay = np.full(w.shape, -1.0)
+    for i in (w <= one_ball.slowest(amplitude)).nonzero()[0]:
+        restitution = w[i] / max(balls.speed[i], TINY)
+        stay[i] = one_ball.rest(w[i], restitution, phase[i], amplitude[i])
+    lift_off = np.arcsin(1 / np.maximum(amplitude, 1.0))
+    return after_rest(balls, stay, np.where(stay < 0, phase, lift_off), 0 * w, w)
+
+
+def rest_after_contacts(balls, gap, w):
+    """The same for instants that stand for contacts (:func:`.one_ball.rest_after_contact`)."""
+    amplitude, phase = balls.amplitude, balls.phase
+    left = left_of_contacts(balls)
+    stay, leaves = np.full(w.shape, -1.0), phase.copy()
+    for i in may_sink(gap, w, amplitude, left).nonzero()[0]:
+        given = gap[i], w[i], phase[i], amplitude[i], left[i]
+        stay[i], leaves[i] = one_ball.rest_after_contact(*given)
+    return after_rest(balls, stay, leaves, gap, w)
+
+
+def left_of_contacts(balls):
+    """How long the contacts would last for which instants stand, after these."""
+    signature = balls.ball.signature(balls.speed)
+    return signature.duration - signature.centroid
+
+
+def may_sink(gap, w, amplitude, left):
+    """Which balls may not rise when their contacts end, or not through the level of the table.
+
+    The others do against the strongest relative gravity, 1 + Λ.
     """
-    amplitude = balls.amplitude
     strongest = 1 + amplitude
-    slow = (gap == 0) & (w <= one_ball.slowest(amplitude))
-    sinks = (gap < 0) & ((w <= 0) | (w * w + 2 * strongest * gap <= 0))
-    duration = np.zeros(w.shape)
-    turns, phase = balls.turns, balls.phase
-    (candidates,) = (slow | sinks).nonzero()
-    if not candidates.size:
-        return Leaving(duration, duration, turns, phase, gap, w)
-    duration[candidates] = [
-        one_ball.rest(gap[i], w[i], w[i] / max(balls.speed[i], TINY), phase[i], amplitude[i])
-        for i in candidates
-    ]
-    rests = candidates[duration[candidates] >= 0]
-    duration = np.maximum(duration, 0.0)
-    gap, w, phase, turns = gap.copy(), w.copy(), phase.copy(), turns.copy()
-    gap[rests] = 0.0
-    w[rests] = 0.0
-    turns[rests] += reduced(phase[rests] + duration[rests])[0]
-    phase[rests] = np.arcsin(1 / np.maximum(amplitude[rests], 1.0))
-    return Leaving(0 * duration, duration, turns, phase, gap, w)
+    return (gap < 0) & ((w <= strongest * left) | (w * w + 2 * strongest * gap <= 0))
+
+
+def after_rest(balls, stay, phase, gap, w):
+    """How balls leave after a rest of the length ``stay`` at a phase; without one if it is
+    negative.
+    """
+    duration = np.maximum(stay, 0.0)
+    ends = balls.phase + np.where(duration < np.inf, duration, 0.0)
+    turns = balls.turns + np.round((ends - phase) / TURN)
+    gap, w = (np.where(stay < 0, each, 0.0) for each in (gap, w))
+    return Leaving(np.zeros(w.shape), duration, turns, phase, gap, w)
 
 
 def reduced(phase):
@@ -328,15 +352,17 @@ def fly(balls, leaving):
     fall = np.maximum(y - 1, 0.0)
     left_behind = (2 * x + np.sqrt(4 * x * x + 12 * amplitude * fall)) / amplitude
     start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
-    kappa = np.broadcast_to(ball.kappa, w.shape)
     resumes = np.zeros(w.shape, bool)
-    slow = (gap < 0) & ((w < 0) | (at_level <= kappa * strongest))
-    for i in slow.nonzero()[0]:
-        given = gap[i], w[i], x[i], y[i], amplitude[i]
-        if ball.lasts:
-            resumes[i], start[i] = one_ball.rise(*given, kappa[i])
-        else:
-            start[i] = one_ball.emergence(*given)
+    if isinstance(ball, Corrected):
+        left = left_of_contacts(balls)
+        for i in may_sink(gap, w, amplitude, left).nonzero()[0]:
+            start[i] = one_ball.emergence(left[i], gap[i], w[i], x[i], y[i], amplitude[i])
+    else:
+        kappa = np.broadcast_to(ball.kappa, w.shape)
+        slow = (gap < 0) & ((w < 0) | (at_level <= kappa * strongest))
+        for i in slow.nonzero()[0]:
+            given = gap[i], w[i], x[i], y[i], amplitude[i], kappa[i]
+            resumes[i], start[i] = one_ball.rise(*given)
     landed, speed = landings(start, gap, w, x, y, amplitude)
     if resumes.any():
         landed[resumes] = start[resumes]

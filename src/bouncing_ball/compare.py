@@ -394,7 +394,11 @@ def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> I
                 product.make(side.data, made)
             except Exception as error:  # Whatever a drawing does not find in an older dataset.
                 words = f"today's code cannot make it of the dataset in the {side.name}: {error!r}"
-                why = "" if side is new else cause(product.code, commit, side.folder)
+                why = (
+                    ""
+                    if side is new
+                    else cause(product.code, commit, side.folder / product.files[0])
+                )
                 failed = Finding("file", words, artifact=product.artifact, cause=why)
                 yield replace(failed, of_results=side is new)
                 return

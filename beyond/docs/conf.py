@@ -82,7 +82,6 @@ PARTS = {
         "beyond/docs/error-law",
         "beyond/docs/periodic-orbits",
         "beyond/docs/thesis",
-        "beyond/docs/cascade-of-flights",
         "beyond/docs/speed",
     ],
     "The models of the paper": [

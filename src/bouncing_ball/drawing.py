@@ -1,11 +1,11 @@
 """What the figures share: style, labels, branches of orbits with their stability, picture files.
 
 A figure is one or two columns of a journal wide, with texts of 8 points. Colours differ in
-lightness too, and curves also differ in dashes, width or marks, so that nothing depends on colour vision or on
-a printer of colours. Line styles tell the kind of an orbit: solid for stable, dashed for unstable,
-dotted for inadmissible. In pictures with both phases of a contact, a wide pale line is the phase φ at
-its start and a narrow line the phase φ + τ_b at its end: where the two coincide one sees the narrow
-line within the wide one.
+lightness too, and curves also differ in dashes, width or marks, so that nothing depends on colour
+vision or on a printer of colours. Line styles tell the kind of an orbit: solid for stable, dashed
+for unstable, dotted for inadmissible. In pictures with both phases of a contact, a wide pale line
+is the phase φ at its start and a narrow line the phase φ + τ_b at its end: where the two coincide
+one sees the narrow line within the wide one.
 
 Nothing here is drawn by pyplot, and nothing depends on the settings of the user: `style` starts
 from matplotlib's defaults.

@@ -394,6 +394,8 @@ def _march(system: _System, first: _Point, direction, limits, most: int) -> tupl
             following = point.tangent / units / np.linalg.norm(point.tangent / units)
             if not following @ ahead > STRAIGHT:
                 raise OrbitNotFound("the curve turns")
+            if abs(_difference_of_halves(system.equations, point.z[np.newaxis])[0]) < ZERO:
+                raise OrbitNotFound("the orbit is one of half the period, taken twice")
         except OrbitNotFound:
             length /= 2
             if length < SHORTEST_STEP:
@@ -494,17 +496,28 @@ def _lost(system: _System, point: _Point) -> str:
 
 
 def _difference_of_halves(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The size of the difference of the halves of orbits, with a sign that changes where they swap.
+    """Difference of the halves of orbits along that of the orbit before, and of the first its size.
 
-    It is 1 for an odd number of impacts. Where it is zero the orbits are those of half the period.
+    Its sign changes where the halves swap: there the orbits are those of half the period. It is 1
+    for an odd number of impacts.
     """
     if equations.impacts % 2:
         return np.ones(len(z))
     halves = z[:, : equations.size].reshape(len(z), 2, -1)
     difference = halves[:, 1] - halves[:, 0]
     difference[:, :: equations.unknowns] -= np.pi * equations.periods
-    turned = np.sign(np.sum(difference[1:] * difference[:-1], axis=1))
-    return np.linalg.norm(difference, axis=1) * np.cumprod([1.0, *turned])
+    size = np.linalg.norm(difference, axis=1)
+    along = np.sum(difference[1:] * difference[:-1], axis=1) / size[:-1]
+    signs = np.cumprod([1.0, *np.sign(along)])
+    return signs * [size[0], *np.abs(along)]
+
+
+def _swapped(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """The same orbit from half a period later on."""
+    halves = z[: equations.size].reshape(2, -1)
+    shift = np.zeros_like(halves[0])
+    shift[:: equations.unknowns] = np.pi * equations.periods
+    return np.concatenate([halves[1] - shift, halves[0] + shift, z[equations.size :]])
 
 
 def _changes(values: NDArray) -> NDArray:
@@ -521,6 +534,10 @@ def _located(system: _System, name: str, points: list[_Point], i: int, upto: flo
     # The share is a linear function of z. The points before the step serve the predictor.
     known = {normal @ (point.z - here.z): point for point in points[max(i - 3, 0) : i]}
     known |= {0.0: here, 1.0: points[i + 1]}
+    if name == "period halving":
+        # Behind it the curve goes back through the same orbits, with the halves swapped.
+        rows = [_swapped(system.equations, point.z) for point in points[max(i - 3, 0) : i + 1]]
+        known |= {normal @ (row - here.z): here._replace(z=row) for row in rows}
 
     def interpolated(share):
         return BarycentricInterpolator(list(known), [each.z for each in known.values()])(share)
@@ -537,7 +554,8 @@ def _located(system: _System, name: str, points: list[_Point], i: int, upto: flo
         return system.tests([here, point], [name])[name][1]
 
     try:
-        if name in system.ends:
+        # Next to a halving Newton's method finds period doublings of half the period.
+        if name in system.ends and name != "period halving":
             for share in (0.25, 0.5, 0.75):
                 at(share)
         share = brentq(test, 0.0, upto)

@@ -122,8 +122,8 @@ class OrbitEquations:
 
     def following(self, x) -> NDArray:
         """For each impact the next one; after the last the first, m periods later."""
-        following = np.roll(x, -1, axis=-2)
-        following[..., -1, 0] += 2 * np.pi * np.asarray(self.periods)
+        following = np.concatenate([x[:, 1:], x[:, :1]], axis=1)
+        following[:, -1, 0] += 2 * np.pi * np.asarray(self.periods)
         return following
 
     @cached_property
@@ -145,7 +145,7 @@ class OrbitEquations:
         of_legs, of_parameters = self._steps
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
         legs, flights = self._legs(y, *self.at(z[:, self.size :] + of_parameters))
-        return Linear(legs[0].real, np.moveaxis(legs.imag, 0, -1) / H, flights[0].real)
+        return Linear(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
     def legs(self, z) -> NDArray:
         """The legs alone, shape (rows, k, q)."""
@@ -554,7 +554,8 @@ def newton(
         linear = equations.linear(z)
         right = np.zeros((*linear.legs.shape, 2))
         right[..., 0] = -linear.legs
-        step, tangent = np.moveaxis(_solve(linear, right, border, border_right), -1, 0)
+        solution = _solve(linear, right, border, border_right)
+        step = solution[..., 0]
         z = z + step
         size = np.abs(z).max(axis=1)
         defect = np.abs(linear.legs).max(axis=(1, 2))
@@ -565,7 +566,7 @@ def newton(
             break
     # Far away, where times have no digits left, steps are small as well.
     found &= defect < 1e-7
-    return Solution(z, found, tangent, linear)
+    return Solution(z, found, solution[..., 1], linear)
 
 
 def _solve(linear: Linear, right, border, border_right) -> NDArray:

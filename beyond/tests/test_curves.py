@@ -1,5 +1,7 @@
 """Curves of special orbits: closed forms, flights sampled anew, and orbits on both sides."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,7 +67,7 @@ def test_curves_of_the_restitution_model_are_closed_forms(rigid, kind):
 def test_two_saddle_nodes_meet_at_a_cusp(compliant):
     ranges = {"amplitude": (0.01, 2.0), "frequency_ratio": (0.9, 3.0)}
     curve = special_curve(compliant.first("saddle-node"), along=STIFFNESS, ranges=ranges)
-    cusp = next(each for each in curve.special if each.kind == "cusp")
+    cusp = curve.first("cusp")
     assert cusp.parameters["frequency_ratio"] == pytest.approx(1.0261355, abs=5e-8)
     assert cusp.parameters["amplitude"] == pytest.approx(0.1151558, abs=5e-8)
     # At a cusp both parameters turn back: no saddle-node is beyond it.
@@ -91,6 +93,26 @@ def test_the_coefficient_changes_its_sign_at_generalized_period_doublings(compli
         place = np.argmin(distance[:-1] + distance[1:])
         before, behind = (normal_form(each).coefficient for each in curve.orbits[place:][:2])
         assert before * behind < 0
+
+
+def test_saddle_nodes_of_doubled_orbits_begin_at_a_generalized_period_doubling(compliant):
+    doubling = compliant.first("period doubling")
+    ranges = {"amplitude": (0.1, 3.0), "frequency_ratio": (0.8, 6.0)}
+    curve = special_curve(doubling, along=STIFFNESS, ranges=ranges)
+    generalized = curve.first("generalized period doubling")
+    near = {"amplitude": (1.1, 1.1215), "frequency_ratio": (1.5, 3.0)}
+    beside = special_curve(replace(generalized, kind=doubling.kind), along=STIFFNESS, ranges=near)
+    subcritical = max(beside.orbits, key=lambda each: each.amplitude)
+    form = normal_form(subcritical)
+    assert not form.supercritical
+    assert not form.opens_upwards
+    fold = follow(subcritical, along="amplitude", to=1.1).first("saddle-node")
+    assert fold.impacts == 2
+    folds = special_curve(fold, along=STIFFNESS, ranges=ranges)
+    end = next(each for each in folds.special if each.kind == "period halving")
+    # The end is interpolated between four points on both sides.
+    assert end.z[-2:] == pytest.approx(generalized.z[-2:], abs=1e-6)
+    assert end.speeds == pytest.approx(np.repeat(generalized.speeds, 2), abs=1e-5)
 
 
 def test_a_curve_of_doubled_orbits_goes_through_their_doublings(rigid):
@@ -147,6 +169,8 @@ def test_wrong_arguments_are_named(rigid):
         special_curve(rigid.orbits[0])
     with pytest.raises(ValueError, match="along = 'stiffness'"):
         special_curve(doubling, along=("amplitude", "stiffness"))
+    with pytest.raises(OrbitNotFound, match="no cusp on this curve; its orbits of codimension two"):
+        special_curve(doubling, ranges={"restitution": (0.4, 0.6)}).first("cusp")
     with pytest.raises(ValueError, match="two different parameters"):
         special_curve(doubling, along=("amplitude", "amplitude"))
     with pytest.raises(ValueError, match=r"restitution = 0\.5 is not in its range"):

@@ -14,11 +14,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pieces, sample, style
-from bouncing_ball_beyond.continuation import FollowedBranch, scales
+from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import newton
 from bouncing_ball_beyond.orbits import PeriodicOrbit
 from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
+from bouncing_ball_beyond.special_orbits import scales
 
 MARKS = {
     "saddle-node": "o",

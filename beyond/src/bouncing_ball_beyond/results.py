@@ -17,12 +17,13 @@ import xarray as xr
 
 from bouncing_ball_beyond import named_laws
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.continuation import FollowedBranch, scales
+from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.orbits import PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.special_orbits import scales
 
 OF_IMPACTS = {
     "phase": ("phase of the table as an impact starts", "φ", "rad"),

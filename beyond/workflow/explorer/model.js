@@ -1,6 +1,6 @@
-// The closed forms of bouncing_ball_beyond.periodic and models.corrected, in plain
-// JavaScript: the same formulas in the same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md of the root for
-// the derivation. "NaN" stands for what does not exist, as there.
+// Orbits with one impact on a linear contact, in the restitution model and in the corrected one, in
+// closed form. Everything is dimensionless; docs/closed-form.md of the replication has the
+// derivation. "NaN" stands for what does not exist.
 "use strict";
 
 // ---- Complex numbers [re, im], for short and resonant contacts only.

@@ -16,7 +16,7 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
 function definitionOf({physical, tolerance}, exact, simple) {
   const contact = "relative to the contact", own = "relative to the simple model, as in Eqs. 37 and 38";
   const other = (physical ? paperError : deviation)(exact.max_height, simple.max_height);
-  return `Errors here are ${physical ? `${contact}, as in the command design` : own}`
+  return `Errors here are ${physical ? contact : own}`
     + (Number.isFinite(other) ? `; ${physical ? own : contact}, that of the restitution model is ${signed(other, tolerance)}.` : ".");
 }
 
@@ -151,7 +151,7 @@ function fillTables(found, question) {
       .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
   );
   $("error-definition").textContent = question.physical
-    ? "(q − q_SD)/q_SD of a model's value q, relative to the contact's q_SD, as in the command design"
+    ? "(q − q_SD)/q_SD of a model's value q, relative to the contact's q_SD"
     : "(q_SD − q)/q of the contact's value q_SD, relative to the model's q, as in Eqs. 37 and 38";
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
     [found.errors[key], found.corrected[key]].map((value, k) =>
@@ -159,7 +159,7 @@ function fillTables(found, question) {
         value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
 }
 
-// Lengths, times and forces of the physical tab: words, value, unit, and the name in the JSON of `design`.
+// Lengths, times and forces of the physical tab: words, value, unit and name.
 function physical(found, state, {mass, time, length, stiffness, damping}) {
   const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
   const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
@@ -196,7 +196,7 @@ function loadsOf(orbit) {
   return {depth, force};
 }
 
-// What the reader should know of the contact besides, in the words of the command `design`.
+// What the reader should know of the contact besides.
 function notesOf(found, {n}) {
   const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
   const admissible = sampledAdmissible(orbit);

@@ -7,10 +7,6 @@ const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
 const SELECTS = ["model", "pace", "view"];
-// What the answer in the shell has beyond that of the page, by its tab.
-const MORE_IN_SHELL = {
-  orbit: ", with every digit and certified", design: ", certified, and with --json with every digit", stage: "",
-};
 let current = DEFAULTS;
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
@@ -44,7 +40,7 @@ function show(hash, kept = DEFAULTS) {
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   $("slice-views").hidden = !onStage;
-  $("command-name").textContent = `The same in the shell${MORE_IN_SHELL[state.tab]}:`;
+  $("command-name").textContent = "The same in the shell:";
   if (why) return refuse(why);
   $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
   document.body.toggleAttribute("data-refused", false);

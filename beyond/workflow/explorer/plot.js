@@ -17,7 +17,7 @@ const percent = x => !Number.isFinite(x) ? "none"
   : x > 0 && x < 1e-5 ? "less than 0.001 %"
     : `${nearest(100 * x, x < 0.995 ? 2 : String(Math.trunc(100 * x)).length)} %`;
 
-// An error with its sign, as in `bouncing-ball design`; next to the tolerance it has as many digits
+// An error with its sign; next to the tolerance it has as many digits
 // as tell the two apart.
 function signed(x, tolerance) {
   const size = percent(Math.abs(x));

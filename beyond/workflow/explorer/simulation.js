@@ -1,6 +1,6 @@
-// One ball from impact to impact, with a restitution coefficient or a spring-damper contact:
-// bouncing_ball_beyond.models in plain JavaScript. δ is the height above the table. A contact that ends by
-// its force leaves the ball below the table's level, where it may resume.
+// One ball from impact to impact, with a restitution coefficient or a spring-damper contact. δ is
+// the height above the table. A contact that ends by its force leaves the ball below the table's
+// level, where it may resume.
 "use strict";
 
 const TURN = 2 * Math.PI;

@@ -115,8 +115,7 @@ function asked(state) {
   if (state.tab === "orbit")
     return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100};
   const one = caseOf(state);
-  // `bouncing-ball design` asks for the orbit that is stable next to the saddle-node, and its errors
-  // are deviations.
+  // The orbit is that which is stable next to the saddle-node, and its errors are deviations.
   return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,
     errorOf: deviation, tolerance: state.t / 100};
 }
@@ -130,8 +129,7 @@ function commandOf(state) {
   if (state.tab === "orbit")
     return `bouncing-ball orbit --restitution ${r} --frequency-ratio ${state.w} `
       + `--amplitude ${state.a} --n ${state.n} --release ${release} --side ${state.side}`;
-  return [`bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz"`,
-    `--acceleration "${state.acc} g" --stiffness "${state.k} N/m" --restitution ${r}`,
-    `--n ${state.n} --release ${release}`,
+  return [`bouncing-ball shaker --mass "${state.m} g" --frequency "${state.f} Hz"`,
+    `--acceleration "${state.acc} g" --stiffness "${state.k} N/m" --restitution ${r} --n ${state.n}`,
     ...(state.t === DEFAULTS.t ? [] : [`--tolerance "${state.t} %"`])].join(" ");
 }

@@ -398,7 +398,7 @@ function permanentContact(contact) {
   return Math.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / Math.hypot(1, lag);
 }
 
-// Whether nothing comes between, by samples only: the package certifies it, this does not.
+// Whether nothing comes between, by samples only.
 function sampledAdmissible(orbit, samples = 600) {
   if (!orbit.exists || !(orbit.relative_impact_velocity < 0)) return false;
   const {amplitude, phase, contact_duration: end} = orbit, period = 2 * Math.PI * orbit.n;

@@ -144,6 +144,11 @@ def results_folder(wildcards):
     return os.path.dirname(rules.article.output.article)
 
 
+def reference_folder(wildcards):
+    """The folder of the reference."""
+    return os.path.relpath(PACKAGE)
+
+
 def descriptions():
     """The parameters and the code from which each dataset is made."""
     found = {}

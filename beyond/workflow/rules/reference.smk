@@ -12,7 +12,7 @@ rule diff:
         names=requested,
         artifacts=descriptions(),
         results=results_folder,
-        reference=package("."),
+        reference=reference_folder,
         template=package("../workflow/templates/diff.html.j2"),
     log:
         "results/logs/diff.log",
@@ -32,7 +32,7 @@ rule accept:
         names=requested,
         artifacts=descriptions(),
         results=results_folder,
-        reference=package("."),
+        reference=reference_folder,
         # The reference is that of the configuration in git.
         config=config,
         accepted=yaml_of(PACKAGE / "config/config.yaml"),

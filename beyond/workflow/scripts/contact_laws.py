@@ -121,7 +121,8 @@ class Known(Ball):
 def by_polynomials(ball: Ball) -> Callable:
     """The signature of a contact as a function of the speed, from few speeds."""
     nodes = chebyshev.chebpts1(DEGREE + 1)
-    middle, half = np.mean(SPEEDS), np.ptp(SPEEDS) / 2
+    middle = np.mean(SPEEDS)
+    half = np.ptp(SPEEDS) / 2
     values = np.broadcast_arrays(*ball.signature(middle + half * nodes))
     coefficients = chebyshev.chebfit(nodes, np.transpose(values), DEGREE)
     return lambda u: chebyshev.chebval((u - middle) / half, coefficients)

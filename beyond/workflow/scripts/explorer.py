@@ -141,7 +141,7 @@ def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
 def followed(ball: Ball, amplitude: float) -> dict[str, float]:
     """The motion on which a ball ends, and its impact 99 or the last before it rests.
 
-    The motion is given by the numbers of its impacts and of periods of the table until it repeats; a
+    The motion is given by the numbers of impacts and of periods of the table until it repeats; a
     ball at rest has no impacts. The time is that of the impact, or of the rest that follows it.
     """
     found = simulate(ball, amplitude=amplitude, impacts=SETTLED, **START)
@@ -154,7 +154,8 @@ def followed(ball: Ball, amplitude: float) -> dict[str, float]:
     periods, impacts = 1, 0
     if rests:
         phase = phases[last]
-        x, y = amplitude * np.cos(phase), amplitude * np.sin(phase)
+        x = amplitude * np.cos(phase)
+        y = amplitude * np.sin(phase)
         # Contacts that last have no time in which they end.
         if isinstance(ball, Rigid):
             end += settling(

@@ -163,10 +163,30 @@ def test_a_period_halving_is_a_period_doubling(rigid):
     assert (curve.impacts, curve.kind) == (1, "period doubling")
 
 
+@pytest.mark.parametrize(
+    ("ball", "to"), [(Rigid(0.5), 2.3), (SpringDamper(30.0, restitution=0.5), 2.5)]
+)
+def test_the_grazing_of_an_impact_is_that_of_a_flight(ball, to):
+    start = orbit(ball, amplitude=2.0, side="unstable")
+    grazing = follow(start, to=3.0).first("grazing of a flight")
+    # The branch of the rigid ball leaves downwards; that of the stiff one turns back at once.
+    more = follow(grazing, to=to)
+    assert more.values[-1] < grazing.amplitude
+    vanishing = follow(more.orbits[-1], to=4.0).first("grazing of an impact")
+    assert vanishing.impacts == 2
+    ranges = {"amplitude": (0.5, 4.0), "restitution": (0.4, 0.6)}
+    curves = [special_curve(each, ranges=ranges) for each in (grazing, vanishing)]
+    assert [each.impacts for each in curves] == [1, 1]
+    first, second = (np.sort(each.z[[0, -1], -2]) for each in curves)
+    assert first == pytest.approx(second, rel=1e-9)
+
+
 def test_wrong_arguments_are_named(rigid):
     doubling = rigid.first("period doubling")
     with pytest.raises(OrbitNotFound, match="kind = ''"):
         special_curve(rigid.orbits[0])
+    with pytest.raises(OrbitNotFound, match="the only impact of the orbit vanishes"):
+        special_curve(replace(doubling, kind="grazing of an impact"))
     with pytest.raises(ValueError, match="along = 'stiffness'"):
         special_curve(doubling, along=("amplitude", "stiffness"))
     with pytest.raises(OrbitNotFound, match="no cusp on this curve; its orbits of codimension two"):

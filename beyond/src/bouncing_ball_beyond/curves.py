@@ -45,6 +45,7 @@ from bouncing_ball_beyond.forms import (
     curvature,
     longest_step,
     null_vectors,
+    one_impact_less,
     taken_twice,
 )
 from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
@@ -282,8 +283,9 @@ def special_curve(
     Parameters
     ----------
     special : PeriodicOrbit
-        A special orbit of a branch, such as ``branch.first("saddle-node")``. From a period halving
-        the curve of the period doublings is followed with which it coincides.
+        A special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is a
+        period doubling of half the period, and the grazing of an impact is that of a flight of the
+        orbit without this impact; these are the curves that are followed.
     along : tuple of two names or paths
         As for `follow`.
     ranges : mapping of names to (low, high), optional
@@ -341,10 +343,11 @@ class _Half(NamedTuple):
 
 def _start(special: PeriodicOrbit, along) -> tuple[_System, NDArray]:
     """The equations of special orbits along two parameters, and one of them."""
-    if special.kind not in KINDS:
+    allowed = KINDS.keys() - {"lost release", "vanishing flight"}
+    if special.kind not in allowed:
         raise OrbitNotFound(
             f"kind = {special.kind!r}: a curve goes through a special orbit of a branch:"
-            f" {', '.join(KINDS)}"
+            f" {', '.join(sorted(allowed))}"
         )
     paths = tuple(path_of(each, special.ball) for each in along)
     if len({path.name for path in paths}) != 2:
@@ -353,6 +356,9 @@ def _start(special: PeriodicOrbit, along) -> tuple[_System, NDArray]:
     equations = OrbitEquations(*given, paths)
     values = [float(path.place(special.ball, special.amplitude)) for path in paths]
     z = np.append(special.z[: equations.size], values)
+    if special.kind == "grazing of an impact":
+        others, row = one_impact_less(equations, z)
+        return _System(others, "grazing of a flight"), row
     if special.kind == "period halving":
         halves, rows = halves_of(equations, z[np.newaxis])
         return _System(replace(halves, periods=int(halves.periods)), "period doubling"), rows[0]

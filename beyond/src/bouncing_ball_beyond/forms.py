@@ -331,6 +331,22 @@ def one_impact_more(
     return more, solution.z[0], solution.tangent[0]
 
 
+def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
+    """The orbit without its slowest impact, whose flight touches the table where that vanishes.
+
+    Raises
+    ------
+    OrbitNotFound
+        If the orbit has no other impact.
+    """
+    if equations.impacts == 1:
+        raise OrbitNotFound("the only impact of the orbit vanishes: there is no orbit without it")
+    q = equations.unknowns
+    slow = np.abs(z[1 : equations.size : q]).argmin()
+    without = np.delete(z, np.arange(slow * q, slow * q + q))
+    return replace(equations, impacts=equations.impacts - 1), without
+
+
 @dataclass(frozen=True)
 class GrazingForm:
     """What happens at a grazing flight, see `grazing_form`.

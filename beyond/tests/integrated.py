@@ -1,36 +1,51 @@
 """One impact and the flight after it, by an integrator and a bracketing root finder.
 
-It shares no formula with the package: the contact is a differential equation with an event.
+It shares no formula with the package but the forces of laws: the contact is a differential equation
+with an event.
 """
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from bouncing_ball_beyond.balls import SpringDamper
 
-def contact(amplitude, tau, u, ratio, zeta, kappa):
-    """The release after an impact at the phase tau with the closing speed u: time, δ, δ′, height.
 
-    The height is the greatest one in the contact, by samples.
+def acceleration(ball, gap, rate):
+    """δ″ by the contact alone, from the definitions of the balls."""
+    if isinstance(ball, SpringDamper):
+        ratio = float(ball.frequency_ratio)
+        return -2 * float(ball.zeta) * ratio * rate - ratio**2 * gap
+    return ball.force(max(-gap, 0.0), -rate, **ball.values)
+
+
+def contact(ball, amplitude, tau, u):
+    """The release after an impact at the time tau with the closing speed u: time, δ, δ′, height.
+
+    An impact with u < 0 is a contact that resumes where its force is zero. The height is the
+    greatest one in the contact, by samples.
     """
 
     def motion(t, y):
-        load = 1 - amplitude * np.sin(t)
-        return [y[1], -load - 2 * zeta * ratio * y[1] - ratio**2 * y[0]]
+        return [y[1], -1 + amplitude * np.sin(t) + acceleration(ball, *y)]
 
     def release(t, y):
-        return y[0] + kappa * y[1] if t > tau + 1e-9 else -1.0
+        if t < tau + 1e-6:
+            return -1.0
+        return y[0] if ball.release == "displacement" else -acceleration(ball, *y)
 
     release.terminal, release.direction = True, 1
+    start = 2 * float(ball.zeta) / ball.frequency_ratio * u if u < 0 else 0.0
     found = solve_ivp(
         motion,
         (tau, tau + 60),
-        [0.0, -u],
+        [start, -u],
         "DOP853",
         events=release,
         rtol=1e-13,
         atol=1e-15,
-        max_step=0.5 / ratio,
+        first_step=1e-5,
+        max_step=0.02,
         dense_output=True,
     )
     end = found.t_events[0][0]
@@ -58,15 +73,15 @@ def flight(amplitude, leaves, gap, speed):
 
 
 def leg(ball, amplitude, tau, u):
-    """The next impact after one of a rigid ball or one on a spring and a damper: time and speed.
+    """The next impact after one of a ball: time and speed.
 
     Also the greatest height up to it.
     """
-    if not ball.lasts:
-        leaves, gap, speed, lifted = tau, 0.0, ball.restitution * u, -np.inf
+    leaves, gap, speed, lifted = tau, 0.0, 0.0, -np.inf
+    if ball.lasts:
+        leaves, gap, speed, lifted = contact(ball, amplitude, tau, u)
     else:
-        given = float(ball.frequency_ratio), float(ball.zeta), float(ball.kappa)
-        leaves, gap, speed, lifted = contact(amplitude, tau, u, *given)
+        speed = ball.restitution * u
     lands, closing, summit = flight(amplitude, leaves, gap, speed)
     return lands, closing, max(summit, lifted)
 

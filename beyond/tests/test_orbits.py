@@ -5,14 +5,23 @@ from functools import cache
 
 import numpy as np
 import pytest
-from integrated import around
+from integrated import around, contact
 
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations, dense, newton, solve_bordered
-from bouncing_ball_beyond.orbits import OrbitNotFound, apart, orbit, orbit_near, orbits
+from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
+from bouncing_ball_beyond.orbits import (
+    OrbitNotFound,
+    PeriodicOrbit,
+    apart,
+    orbit,
+    orbit_near,
+    orbits,
+)
+from bouncing_ball_beyond.simulation import Balls, follow
 
 # Rounding errors of an orbit: some hundred times eps for numbers up to 20.
 ROUNDED = 1e-12
@@ -82,6 +91,9 @@ def several_orbits():
         orbit(SpringDamper(4.0, restitution=0.7, release="force"), amplitude=1.0),
         *orbits(SpringDamper(2.0, restitution=0.85), amplitude=0.9),
         *orbits(SpringDamper(20.0, restitution=0.5), impacts=2, periods=2, amplitude=1.7)[:1],
+        orbit(tsuji(restitution=0.85, duration=0.3, speed=3.4), amplitude=1.0),
+        orbit(kuwabara_kono(restitution=0.7, duration=0.4, speed=3.7), amplitude=1.0),
+        orbit(hunt_crossley(restitution=0.8, duration=0.2, speed=3.5), amplitude=1.2),
     ]
 
 
@@ -103,6 +115,26 @@ def test_an_integrated_ball_follows_the_orbits_and_their_derivatives():
         # The differences err by h² times third derivatives, which are larger for unstable orbits.
         assert np.abs(numeric - each.monodromy).max() < 1e-5 * stretch**3
         assert each.admissible
+
+
+def test_a_contact_may_resume_after_a_release_by_the_force():
+    """The second impact starts below the level of the table, where the force is zero again."""
+    ball = SpringDamper(11.27338, restitution=0.364216, release="force")
+    equations = OrbitEquations(ball, 2, 1)
+    first = Balls(ball, np.array([1.20411]), np.zeros(1), np.array([0.5]), np.array([3.0]))
+    record, _, _ = follow(first, 400)
+    turns, phase, u, T, *_ = record[-2:, :, 0].T
+    z = np.append(np.stack([2 * np.pi * (turns - turns[0]) + phase, u, T], axis=-1), 1.20411)
+    solution = newton(equations, z[np.newaxis])
+    assert solution.found[0] and np.abs(solution.z[0] - z).max() < 1e-6
+    found = PeriodicOrbit(equations, solution.z[0])
+    assert found.speeds.min() < -0.01 and found.stable and found.admissible
+    slow = int(np.argmin(found.speeds))
+    end, gap, speed, _ = contact(ball, found.amplitude, found.times[slow], found.speeds[slow])
+    duration = end - found.times[slow]
+    assert duration == pytest.approx(found.contact_duration[slow], abs=INTEGRATED)
+    assert speed == pytest.approx(found.relative_bounce_velocity[slow], abs=INTEGRATED)
+    assert gap == pytest.approx(-ball.kappa * speed, abs=INTEGRATED)
 
 
 def test_a_table_may_lift_a_ball_higher_in_contact_than_it_flies():

@@ -241,7 +241,7 @@ def touch(equations: OrbitEquations, z: NDArray) -> Touch:
         If no flight turns back from the table.
     """
     amplitude = float(np.ravel(equations.split(z[np.newaxis])[2])[0])
-    leaves, gap, speed, last = (each[0] for each in equations.ends(z[np.newaxis]))
+    leaves, gap, speed, last, _ = (each[0] for each in equations.ends(z[np.newaxis]))
     times = np.linspace(0, last, SAMPLES)
     heights = flight(times, leaves, gap, speed, amplitude)[0]
     least = (heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])

@@ -6,6 +6,7 @@ searched for. An orbit is a row z: the unknowns of its k impacts one after the o
 the values of the parameters that may change. Functions take many rows at once, shape (rows, N).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, H
+from bouncing_ball_beyond.balls import Ball, H, Impact
 from bouncing_ball_beyond.paths import AMPLITUDE, Path
 
 FAR = 10.0
@@ -39,17 +40,27 @@ class Linear(NamedTuple):
     flights: NDArray
 
 
-class Ends(NamedTuple):
-    """The ends of contacts and the flights after them, each of the shape (rows, k).
+class Flights(NamedTuple):
+    """The flights after contacts, each field of the shape (rows, k).
 
-    ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, and ``flight`` is
-    the time to the next impact.
+    ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, ``flight`` is the
+    time to the next impact, and ``amplitude`` is Λ.
     """
 
     leaves: NDArray
     gap: NDArray
     speed: NDArray
     flight: NDArray
+    amplitude: NDArray
+
+    def at(self, t) -> tuple[NDArray, NDArray]:
+        """δ and δ′ at times t since the release, shape (rows, k, times)."""
+        leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self)
+        return flight(t, leaves, gap, speed, amplitude)
+
+    def acceleration(self, t) -> NDArray:
+        """δ″ at times t since the release, shape (rows, k, times)."""
+        return self.amplitude[..., np.newaxis] * np.sin(self.leaves[..., np.newaxis] + t) - 1
 
 
 @dataclass(frozen=True)
@@ -129,8 +140,8 @@ class OrbitEquations:
     @cached_property
     def _steps(self) -> tuple[NDArray, NDArray]:
         """Complex steps of the unknowns of a leg and of the parameters, one each."""
-        inner, count = self.unknowns + 2, self.unknowns + 2 + len(self.along)
-        steps = 1j * H * np.eye(count)
+        inner = self.unknowns + 2
+        steps = 1j * H * np.eye(inner + len(self.along))
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
     def linear(self, z) -> Linear:
@@ -207,12 +218,14 @@ class OrbitEquations:
         # The determinant of an elastic ball is 1 up to rounding.
         return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
 
-    def ends(self, z) -> Ends:
+    def ends(self, z) -> Flights:
         """The ends of the contacts and the flights after them."""
         x, ball, amplitude = self.split(z)
         impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude)
         leaves = x[..., 0] + impact.duration
-        return Ends(leaves, impact.gap, impact.speed, self.following(x)[..., 0] - leaves)
+        time = self.following(x)[..., 0] - leaves
+        amplitude = np.broadcast_to(amplitude, leaves.shape)
+        return Flights(leaves, impact.gap, impact.speed, time, amplitude)
 
     def clearance(self, z) -> NDArray:
         """How far the ball stays above the table where a flight turns back from it: the least of all.
@@ -220,81 +233,64 @@ class OrbitEquations:
         After a release by the force the ball is clear of the contact if it is above the line
         δ + κδ′ = 0, on which a contact would resume.
         """
-        _, ball, amplitude = self.split(z)
-        amplitude = np.broadcast_to(amplitude, (len(z), 1))[..., np.newaxis]
-        ends = self.ends(z)
-        start = [each[..., np.newaxis] for each in (ends.leaves, ends.gap, ends.speed)]
-        samples = _samples(ends.flight)
-
-        def gap(t):
-            return flight(t, *start, amplitude)[0]
-
-        def rate(t):
-            return flight(t, *start, amplitude)[1]
-
-        least = turns_back(rate, gap, ends.flight, samples)
-        if np.any(ball.kappa):
-            kappa = np.broadcast_to(ball.kappa, (len(z), 1))[..., np.newaxis]
+        flights = self.ends(z)
+        least = turns_back(lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight)
+        kappa = np.broadcast_to(self.split(z)[1].kappa, least.shape)[..., np.newaxis]
+        if np.any(kappa):
 
             def free(t):
-                return gap(t) + kappa * rate(t)
+                gap, rate = flights.at(t)
+                return np.where(gap < 0, gap + kappa * rate, FAR)
 
             def free_rate(t):
-                return rate(t) + kappa * (amplitude * np.sin(start[0] + t) - 1)
+                return flights.at(t)[1] + kappa * flights.acceleration(t)
 
-            def free_below(t):
-                return np.where(gap(t) < 0, free(t), FAR)
-
-            least = np.minimum(least, turns_back(free_rate, free_below, ends.flight, samples))
+            least = np.minimum(least, turns_back(free_rate, free, flights.flight))
         return least.min(axis=-1)
 
     def contact_clearance(self, z) -> NDArray:
         """How far release functions stay below zero where they turn back: the least of all contacts."""
         if not self.ball.lasts:
             return np.full(len(z), FAR)
-        x, ball, amplitude = self.split(z)
-        end = self._during(x, ball, amplitude)
+        during = self._during(z)
 
         def falls(t):
-            return -_derivative(lambda time: end(time).release, t)
+            return -_derivative(lambda time: during(time).release, t)
 
-        def pressed(t):
-            return -end(t).release
-
-        return turns_back(falls, pressed, x[..., 2], _samples(x[..., 2])).min(axis=-1)
+        return turns_back(falls, lambda t: -during(t).release, self.split(z)[0][..., 2]).min(
+            axis=-1
+        )
 
     def max_height(self, z) -> NDArray:
         """The greatest height of the ball, shape (rows,): at the summit of a flight or in a contact,
         in which a table below a compliant contact may lift the ball higher than it flies.
         """
-        x, ball, amplitude = self.split(z)
-        ends = self.ends(z)
-        bounce = ends.speed + amplitude * np.cos(ends.leaves)
-        rise = np.clip(bounce, 0, ends.flight)
-        height = ends.gap + amplitude * np.sin(ends.leaves) + (bounce - rise / 2) * rise
+        leaves, gap, speed, time, amplitude = self.ends(z)
+        bounce = speed + amplitude * np.cos(leaves)
+        rise = np.clip(bounce, 0, time)
+        height = gap + amplitude * np.sin(leaves) + (bounce - rise / 2) * rise
         if not self.ball.lasts:
             return height.max(axis=-1)
-        end = self._during(x, ball, amplitude)
-        amplitude = np.broadcast_to(amplitude, (len(z), 1))[..., np.newaxis]
-        tau = x[..., 0, np.newaxis]
+        x, _, _ = self.split(z)
+        during = self._during(z)
 
-        def falls(t):
-            impact = end(t)
-            return -impact.speed - amplitude * np.cos(tau + impact.duration)
+        def table(t):
+            return x[..., 0, np.newaxis] + during(t).duration
 
-        def depth(t):
-            impact = end(t)
-            return -impact.gap - amplitude * np.sin(tau + impact.duration)
+        lifted = turns_back(
+            lambda t: -during(t).speed - amplitude[..., np.newaxis] * np.cos(table(t)),
+            lambda t: -during(t).gap - amplitude[..., np.newaxis] * np.sin(table(t)),
+            x[..., 2],
+        )
+        return np.maximum(height, -lifted).max(axis=-1)
 
-        in_contact = -turns_back(falls, depth, x[..., 2], _samples(x[..., 2]))
-        return np.maximum(height, in_contact).max(axis=-1)
-
-    def _during(self, x, ball, amplitude):
-        """The contacts as functions of T, shape (rows, k, times)."""
+    def _during(self, z) -> Callable[[NDArray], Impact]:
+        """The contacts of orbits as a function of T, shape (rows, k, times)."""
+        x, ball, amplitude = self.split(z)
         arrays = {name: each for name, each in ball.parameters.items() if np.ndim(each)}
         beside = ball.at(**{name: each[..., np.newaxis] for name, each in arrays.items()})
-        amplitude = np.asarray(amplitude)[..., np.newaxis]
-        return lambda t: beside.contact(x[..., 0, np.newaxis], x[..., 1, np.newaxis], t, amplitude)
+        given = x[..., 0, np.newaxis], x[..., 1, np.newaxis]
+        return lambda t: beside.contact(*given, t, np.asarray(amplitude)[..., np.newaxis])
 
     def least_speed(self, z) -> NDArray:
         """The closing speed next to zero, negative if an odd number of impacts have u < 0."""
@@ -309,22 +305,13 @@ class OrbitEquations:
         """
         if self.ball.lasts:
             return linear.derivatives[..., 0, 2].min(axis=-1)
-        ends = self.ends(z)
-        if np.all(ends.gap >= 0):
-            return ends.speed.min(axis=-1)
-        _, _, amplitude = self.split(z)
-        amplitude = np.broadcast_to(amplitude, (len(z), 1))[..., np.newaxis]
-        start = [each[..., np.newaxis] for each in (ends.leaves, ends.gap, ends.speed)]
-
-        def falls(t):
-            return -flight(t, *start, amplitude)[1]
-
-        def depth(t):
-            return -flight(t, *start, amplitude)[0]
-
-        return -turns_back(falls, depth, ends.flight, _samples(ends.flight), first=True).max(
-            axis=-1
+        flights = self.ends(z)
+        if np.all(flights.gap >= 0):
+            return flights.speed.min(axis=-1)
+        depth = turns_back(
+            lambda t: -flights.at(t)[1], lambda t: -flights.at(t)[0], flights.flight, first=True
         )
+        return -depth.max(axis=-1)
 
     def halves(self, z) -> NDArray:
         """Differences of the impacts half an orbit apart, shape (rows, kq/2): zero if the orbit is one
@@ -332,7 +319,8 @@ class OrbitEquations:
         if self.impacts % 2:
             return np.ones((len(z), 1))
         x, _, _ = self.split(z)
-        half, periods = self.impacts // 2, np.reshape(self.periods, (-1, 1))
+        half = self.impacts // 2
+        periods = np.reshape(self.periods, (-1, 1))
         apart = x[:, :half] - x[:, half:]
         apart[..., 0] += np.pi * periods
         return np.where(periods % 2 == 0, apart.reshape(len(z), -1), 1.0)
@@ -353,11 +341,6 @@ class OrbitEquations:
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
         clear = (self.clearance(z) > 0) & (self.contact_clearance(z) > 0)
         return clear & leaving & (landing & lasting).all(axis=-1)
-
-
-def _samples(ends) -> int:
-    """The number of samples of functions up to the largest of some times: 32 in a time of 2π."""
-    return int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
 
 
 def _derivative(function, t):
@@ -381,8 +364,10 @@ def flight(s, leaves, gap, speed, amplitude):
     return gap + (rate - s / 2) * s + table, rate - s - amplitude * np.cos(ends)
 
 
-def turns_back(slope, value, ends, samples: int, *, first: bool = False) -> NDArray:
+def turns_back(slope, value, ends, *, first: bool = False) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
+
+    Minima are found if the slope changes its sign between two of 32 samples in a time of 2π.
 
     Parameters
     ----------
@@ -390,8 +375,6 @@ def turns_back(slope, value, ends, samples: int, *, first: bool = False) -> NDAr
         The function's derivative, or a positive multiple of it, and the function, of times of the
         shape (..., n); the slope is analytic.
     ends : ndarray
-    samples : int
-        Minima are found if the slope changes its sign between two of so many samples.
     first : bool
         Whether the value is that of the first minimum and not of the lowest.
 
@@ -400,6 +383,7 @@ def turns_back(slope, value, ends, samples: int, *, first: bool = False) -> NDAr
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
+    samples = int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
     times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
     slopes = slope(times)
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
@@ -466,8 +450,10 @@ def solve_bordered(derivatives, right, border, border_right) -> NDArray:
         matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)
         values = np.concatenate([right.reshape(rows, k * q, m), border_right], axis=1)
         return np.linalg.solve(matrix, values)
-    p, pairs = columns - q - 2, k // 2
-    first, second = derivatives[:, 0 : 2 * pairs : 2], derivatives[:, 1 : 2 * pairs : 2]
+    p = columns - q - 2
+    pairs = k // 2
+    first = derivatives[:, 0 : 2 * pairs : 2]
+    second = derivatives[:, 1 : 2 * pairs : 2]
     between = np.zeros((rows, pairs, 2 * q, q))
     between[:, :, :q, :2] = first[..., q : q + 2]
     between[:, :, q:] = second[..., :q]
@@ -548,8 +534,8 @@ def newton(
     if normal is None:
         normal = np.zeros_like(z)
         normal[:, -1] = 1.0
-    border, border_right = normal[:, np.newaxis], np.array([[[0.0, 1.0]]])
-    border_right = np.broadcast_to(border_right, (len(z), 1, 2))
+    border = normal[:, np.newaxis]
+    border_right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
     for _ in range(iterations):
         linear = equations.linear(z)
         right = np.zeros((*linear.legs.shape, 2))

@@ -206,18 +206,23 @@ def special_near(
 
     Newton's method for the equations of orbits together with the test of the kind.
     """
+    z = z.copy()
     found = np.zeros(len(z), bool)
+    left = np.arange(len(z))
     for _ in range(iterations):
-        legs, jacobian = equations.residuals(z)
-        value, gradient = test_with_gradient(equations, kind, z)
+        part = equations.rows(left)
+        legs, jacobian = part.residuals(z[left])
+        value, gradient = test_with_gradient(part, kind, z[left])
         matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
         right = np.concatenate([legs, value[:, np.newaxis]], axis=1)
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
         matrix[~finite] = np.eye(z.shape[1])
         step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-        z = np.where(finite[:, np.newaxis], z - step, np.nan)
-        found = finite & (np.abs(step).max(axis=1) < 1e-11 * (1 + np.abs(z).max(axis=1)))
-        if (found | ~finite).all():
+        z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)
+        small = np.abs(step).max(axis=1) < 1e-11 * (1 + np.abs(z[left]).max(axis=1))
+        found[left] = finite & small
+        left = left[finite & ~small]
+        if left.size == 0:
             break
     return z, found
 

@@ -3,20 +3,21 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-import bouncing_ball_beyond
+import bouncing_ball_beyond as bb
 
 ratios = np.geomspace(3, 300, 100)
-balls = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=ratios)
-exact = bouncing_ball_beyond.orbit(balls, amplitude=1.0).max_height
-corrected = bouncing_ball_beyond.orbit(
-    bouncing_ball_beyond.corrected(balls), amplitude=1.0
-).max_height
-simple = bouncing_ball_beyond.orbit(
-    bouncing_ball_beyond.rigid(restitution=0.85), amplitude=1.0
-).max_height
+balls = bb.SpringDamper(frequency_ratio=ratios, restitution=0.85)
+
+
+def heights(ball):
+    return np.array([orbit.max_height for orbit in bb.orbit(ball, amplitude=1.0)])
+
+
+exact = heights(balls)
+simple = bb.orbit(bb.Rigid(0.85), amplitude=1.0).max_height
 figure, axes = plt.subplots(layout="constrained")
 axes.loglog(ratios, abs(exact / simple - 1), label="restitution model")
-axes.loglog(ratios, abs(exact / corrected - 1), "--", label="corrected model")
+axes.loglog(ratios, abs(exact / heights(bb.Corrected(balls)) - 1), "--", label="corrected model")
 axes.axhline(0.01, color="grey", linestyle=":", label="1 %")
 axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="relative error of the greatest height")
 axes.set_title("1-T orbit at Λ = 1, r = 0.85")

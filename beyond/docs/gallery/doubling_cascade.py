@@ -3,13 +3,13 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-import bouncing_ball_beyond
+import bouncing_ball_beyond as bb
 
 amplitudes = np.linspace(1.48, 1.76, 400)
-ball = bouncing_ball_beyond.rigid(restitution=0.5)
-beside = bouncing_ball_beyond.limits(ball).period_doubling.phase + 0.01
-impacts = bouncing_ball_beyond.motion_of(ball, amplitude=amplitudes, phase=beside).impacts
-found = bouncing_ball_beyond.simulate(ball, amplitude=amplitudes, phase=beside, impacts=600)
+ball = bb.Rigid(0.5)
+beside = bb.limits(ball).period_doubling.phase + 0.01
+impacts = bb.motion_of(ball, amplitude=amplitudes, phase=beside).impacts
+found = bb.simulate(ball, amplitude=amplitudes, phase=beside, impacts=600)
 figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
 axes.plot(amplitudes, found.impact_phase[:, -64:] / np.pi, ",", color="black")
 for number in (2, 4, 8):

@@ -2,17 +2,17 @@
 
 import matplotlib.pyplot as plt
 
-import bouncing_ball_beyond
+import bouncing_ball_beyond as bb
 
-linear = bouncing_ball_beyond.spring_damper(restitution=0.85, frequency_ratio=10.0)
-hertz = bouncing_ball_beyond.contact_law("tsuji", restitution=0.85, duration=0.3157)
+linear = bb.SpringDamper(restitution=0.85, frequency_ratio=10.0)
+hertz = bb.tsuji(restitution=0.85, duration=0.3157, speed=3.4)
 balls = {"linear": linear, "Hertz, with the damping of Tsuji": hertz}
 figure, axes = plt.subplots(layout="constrained")
 for (name, ball), style in zip(balls.items(), ("-", "--"), strict=True):
-    found = bouncing_ball_beyond.history(
+    found = bb.history(
         ball, amplitude=0.0, velocity=-3.4, periods=0.1, samples=5000
     )
-    height = bouncing_ball_beyond.orbit(ball, n=1, amplitude=1.0).max_height
+    height = bb.orbit(ball, n=1, amplitude=1.0).max_height
     touching = found.where(found.contact, drop=True)
     axes.plot(touching.time, -touching.ball, style, label=f"{name}: greatest height {height:.4f}")
 axes.set(xlabel="time since the impact over 1/Ω", ylabel="penetration over g/Ω²", ylim=(0, 0.42))

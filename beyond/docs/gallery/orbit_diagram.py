@@ -2,8 +2,8 @@
 
 import numpy as np
 
-import bouncing_ball_beyond
+import bouncing_ball_beyond as bb
 
-ball = bouncing_ball_beyond.rigid(restitution=0.7)
-found = bouncing_ball_beyond.orbit_diagram(ball, amplitude=np.linspace(0.4, 2.0, 200))
+ball = bb.Rigid(0.7)
+found = bb.orbit_diagram(ball, amplitude=np.linspace(0.4, 2.0, 200))
 found.plot("orbit_diagram.png")

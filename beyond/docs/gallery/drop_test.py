@@ -5,10 +5,10 @@ from itertools import pairwise
 import matplotlib.pyplot as plt
 import numpy as np
 
-import bouncing_ball_beyond.inherited as bouncing_ball
+import bouncing_ball_beyond as bb
 
-ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=20.0)
-found = bouncing_ball.drop(ball, height=8.0, periods=3.5, samples=5000)
+ball = bb.SpringDamper(restitution=0.85, frequency_ratio=20.0)
+found = bb.drop(ball, height=8.0, periods=3.5, samples=5000)
 height = found.ball.values
 time = found.time.values
 tops = np.flatnonzero((height[1:-1] > height[:-2]) & (height[1:-1] > height[2:])) + 1

@@ -4,11 +4,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 
-import bouncing_ball_beyond.inherited as bouncing_ball
+import bouncing_ball_beyond as bb
 
 speeds = np.pi + 1e-3 * np.arange(5)
-ball = bouncing_ball.rigid(restitution=0.7)
-found = bouncing_ball.history(ball, amplitude=1.85, velocity=-speeds, periods=12.0, samples=6)
+ball = bb.Rigid(0.7)
+found = bb.history(ball, amplitude=1.85, velocity=-speeds, periods=12.0, samples=6)
 figure, axes = plt.subplots(figsize=(4, 4), dpi=60, gridspec_kw={"left": 0.17})
 balls = axes.scatter(range(5), np.zeros(5), s=120, color="tab:blue")
 (table,) = axes.plot([-0.5, 4.5], [0, 0], color="black", linewidth=3)

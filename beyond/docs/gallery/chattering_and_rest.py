@@ -3,10 +3,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-import bouncing_ball_beyond.inherited as bouncing_ball
+import bouncing_ball_beyond as bb
 
-ball = bouncing_ball.rigid(restitution=0.7)
-found = bouncing_ball.drop(ball, height=8.0, amplitude=0.6, periods=5.0, samples=4000)
+ball = bb.Rigid(0.7)
+found = bb.drop(ball, height=8.0, amplitude=0.6, periods=5.0, samples=4000)
 periods = found.time / (2 * np.pi)
 gap = found.ball - found.table
 figure, (above, below) = plt.subplots(2, sharex=True, layout="constrained")

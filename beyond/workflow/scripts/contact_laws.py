@@ -39,7 +39,7 @@ OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuw
 LAWS = (*LINEAR, *OF_HERTZ)
 CALIBRATIONS = ("orbit on the contact", "orbit of the restitution model")
 QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
-BIFURCATIONS = QUANTITIES[3:]
+BIFURCATIONS = {"saddle_node", "period_doubling"}
 
 # Over the speed the signature is a polynomial on this range of the calibrated speed, up to rounding
 # errors. All speeds that occur are well inside.
@@ -136,7 +136,7 @@ def impact_speed(case: dict) -> float:
     return 2 * case["n"] * np.pi / (1 + case["restitution"])
 
 
-def errors(law: str, case: dict, ratios: NDArray) -> NDArray:
+def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDArray:
     """Signed errors of both models on contacts that are calibrated at the orbit on them, shape
     (model, quantity, ratio).
     """
@@ -157,13 +157,13 @@ def errors(law: str, case: dict, ratios: NDArray) -> NDArray:
         "max_height": equations.max_height(z),
         "bounce_velocity": (ends.speed + case["amplitude"] * np.cos(ends.leaves))[:, 0],
         "phase": z[:, 0],
-        **contact_values(ball, quantities=BIFURCATIONS, **given),
+        **contact_values(ball, quantities=BIFURCATIONS & {*quantities}, **given),
     }
     known = Known(by_polynomials(unit), z[:, -1], np.pi / ratios)
-    corrected = contact_values(Corrected(known), quantities=QUANTITIES, **given)
+    corrected = contact_values(Corrected(known), quantities=quantities, **given)
     constant = free_impact(Rigid(case["restitution"]), case["n"])
     models = restitution_values(constant, case["amplitude"]), corrected
-    return np.array([[exact[q] / model[q] - 1 for q in QUANTITIES] for model in models])
+    return np.array([[exact[q] / model[q] - 1 for q in quantities] for model in models])
 
 
 def errors_and_zeros(law: str, case: dict, ratios: NDArray) -> tuple[NDArray, NDArray]:
@@ -175,12 +175,13 @@ def errors_and_zeros(law: str, case: dict, ratios: NDArray) -> tuple[NDArray, ND
     missing = np.flatnonzero(np.isnan(found).any(axis=(0, 1)))
     found[..., : missing.max(initial=-1) + 1] = np.nan
     zeros = np.full(found.shape[:2], np.nan)
-    for place in np.ndindex(zeros.shape):
-        zeros[place] = last_zero(
-            ratios,
-            found[place],
-            lambda ratio, place=place: errors(law, case, np.array([ratio]))[place][0],
-        )
+    for model, quantity in np.ndindex(zeros.shape):
+
+        def error(ratio: float, model=model, quantity=quantity) -> float:
+            one = errors(law, case, np.array([ratio]), [QUANTITIES[quantity]])
+            return float(one[model, 0, 0])
+
+        zeros[model, quantity] = last_zero(ratios, found[model, quantity], error)
     return found, zeros
 
 

@@ -21,6 +21,8 @@ Here v₀ is the speed at the start of a contact, and s = x²(3 - 2x) with x = p
 the surface to 1 at the depth d.
 """
 
+from inspect import signature
+
 import numpy as np
 from scipy.optimize import brentq
 
@@ -47,7 +49,7 @@ STEPPED = 0.1
 """The depth d of a law that is given by an impact, over the scale of the penetration."""
 
 
-def of_impact(law_of, restitution, duration, speed):
+def law_of_impact(law_of, restitution, duration, speed):
     """The law whose free impact at a speed has a restitution coefficient and a duration.
 
     Parameters
@@ -65,7 +67,7 @@ def of_impact(law_of, restitution, duration, speed):
 
     Examples
     --------
-    >>> ball = of_impact(lambda g, length, v: hunt_crossley(v**2 / length**2.5, g / v), 0.8, 0.1, 3.5)
+    >>> ball = law_of_impact(lambda g, length, v: hunt_crossley(v**2 / length**2.5, g / v), 0.8, 0.1, 3.5)
     >>> signature = ball.signature(3.5)
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
@@ -111,7 +113,7 @@ def _given(law, values, of_scales, restitution, duration, speed):
     missing = [name for name, value in values.items() if value is None]
     lacking = [name for name, value in impact.items() if value is None]
     if not lacking and len(missing) == len(values):
-        return of_impact(of_scales, restitution, duration, speed)
+        return law_of_impact(of_scales, restitution, duration, speed)
     if missing or len(lacking) < len(impact):
         raise ValueError(
             f"a law is given by {' and '.join(values)}, or by restitution, duration and speed;"
@@ -567,3 +569,25 @@ LAWS = {
     )
 }
 """The named laws by their names."""
+
+
+def named_law(name, **values):
+    """The law of a name in :data:`LAWS`, with values of its arguments.
+
+    Raises
+    ------
+    ValueError
+        In one line, if the law or an argument is not known.
+
+    Examples
+    --------
+    >>> named_law("hunt-crossley", stiffness=1000.0, damping=0.08).root
+    2
+    """
+    law = LAWS.get(name.replace("-", "_"))
+    if law is None:
+        raise ValueError(f"law = {name!r}: must be one of {', '.join(LAWS)}")
+    known = signature(law).parameters
+    for each in values.keys() - known.keys():
+        raise ValueError(f"{each}: no argument of {law.__name__}, which has {', '.join(known)}")
+    return law(**values)

@@ -46,8 +46,8 @@ EARLY, WANTED, LONGER = 3, 0.03, 2.0
 """The change in the sweep EARLY that the next panel should have, and the largest ratio of two lengths.
 They are the ones with the least work in contacts of four laws."""
 
-NEAR = 1e-8
-"""The last step of Newton's method to an event over the length of the panel: the error is its square."""
+NEAR = 1e-12
+"""The last step of Newton's method to an event over the length of its panel."""
 
 MOST_PANELS, PATIENT = 4000, 40
 """The largest number of panels of a contact, and the one from which on Newton's method solves them.

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BarycentricInterpolator
+from scipy.interpolate import KroghInterpolator
 from scipy.optimize import brentq
 
 from bouncing_ball_beyond.continuation import FollowedBranch
@@ -66,6 +66,11 @@ SHIFT = 1e-5
 RESONANT = 1e-6
 """A curve ends in a resonance if the product of the multipliers differs from 1 by less. Located at
 a range's end, the determinant has at least ten digits."""
+
+BESIDE = 1e-3
+"""The share of a step next to an end of a curve in which nothing else is looked for.
+
+Where a release is lost other tests are zero as well."""
 
 ZERO = 1e-6
 """A test is zero if it is smaller, before a last step of 1e-8.
@@ -480,7 +485,7 @@ def _half(system: _System, points: list[_Point], end: str) -> _Half:
                 found.append(_Passed(len(points) - 1, 0.0, name, points[-1].z))
         for i in _changes(values):
             if i <= last.step:
-                upto = last.share if i == last.step else 1.0
+                upto = max(last.share - BESIDE, 0.0) if i == last.step else 1.0
                 found.append(_located(system, name, points, i, upto))
     found.sort(key=lambda each: each[:2])
     special = [
@@ -546,28 +551,28 @@ def _located(system: _System, name: str, points: list[_Point], i: int, upto: flo
         known |= {normal @ (row - here.z): here._replace(z=row) for row in rows}
 
     def interpolated(share):
-        return BarycentricInterpolator(list(known), [each.z for each in known.values()])(share)
+        return KroghInterpolator(list(known), [each.z for each in known.values()])(share)
+
+    def corrected(share):
+        return system.solve(interpolated(share), normal, here.border, tolerance=1e-11)
 
     def at(share):
-        if share not in known:
-            guess = interpolated(share)
-            known[share] = system.solve(guess, normal, here.border, tolerance=1e-11)
-        return known[share]
+        if share in known:
+            return known[share]
+        # At an end the equations are singular, but the curve is smooth.
+        return here._replace(z=interpolated(share)) if name in system.ends else corrected(share)
 
     def test(share):
-        # At an end the equations are singular, but the curve is smooth.
-        point = here._replace(z=interpolated(share)) if name in system.ends else at(share)
-        return system.tests([here, point], [name])[name][1]
+        return system.tests([here, at(share)], [name])[name][1]
 
     try:
         # Next to a halving Newton's method finds period doublings of half the period.
         if name in system.ends and name != "period halving":
-            for share in (0.25, 0.5, 0.75):
-                at(share)
+            known |= {share: corrected(share) for share in (0.25, 0.5, 0.75)}
         share = brentq(test, 0.0, upto)
+        # A clearance jumps to FAR where flights or contacts no longer turn back.
+        jumps = abs(test(share)) > ZERO * max(abs(test(0.0)), abs(test(upto)))
+        return missing if jumps else _Passed(i, share, name, at(share).z)
     except (OrbitNotFound, ValueError):
         # The orbits cannot be continued, or the test changes its sign behind `upto`.
         return missing
-    # A clearance jumps to FAR where flights or contacts no longer turn back.
-    jumps = abs(test(share)) > ZERO * max(abs(test(0.0)), abs(test(upto)))
-    return missing if jumps else _Passed(i, share, name, interpolated(share))

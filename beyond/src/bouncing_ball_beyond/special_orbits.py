@@ -9,12 +9,16 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton
 
+LONG = 2.0
+"""A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
+contacts that last for many periods, and seldom back."""
+
 
 class Kind(NamedTuple):
     """A kind of special orbit.
 
-    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says why
-    branches end there, and is empty if they go on.
+    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says
+    why branches end there, and is empty if they go on.
     """
 
     test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
@@ -118,7 +122,7 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
 
 
 def _cubic(part, ends, slopes):
-    """Hermite's cubic between the ends of steps, whose slopes are per unit of the part of the step."""
+    """Hermite's cubic between the ends of steps, with slopes per unit of the part of a step."""
     x = part[:, np.newaxis]
     chord = ends[1] - ends[0]
     bend = slopes[0] + slopes[1] - 2 * chord
@@ -218,8 +222,10 @@ def special_near(
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
         matrix[~finite] = np.eye(z.shape[1])
         step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+        size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
+        finite &= size < LONG
         z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)
-        small = np.abs(step).max(axis=1) < 1e-11 * (1 + np.abs(z[left]).max(axis=1))
+        small = size < 1e-11
         found[left] = finite & small
         left = left[finite & ~small]
         if left.size == 0:
@@ -250,7 +256,7 @@ def doubled_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, N
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Where orbits merge with those of half their period: the period doubling of these, taken twice.
+    """Where orbits merge with those of half their period: the doubling of these, taken twice.
 
     The equations of the longer orbit are singular there, those of the shorter one are not.
     """

@@ -56,7 +56,7 @@ def contact(ball, amplitude, tau, u):
 
 
 def flight(amplitude, leaves, gap, speed):
-    """The first landing at δ = 0 after a release: time and closing speed, and the greatest height."""
+    """The first landing at δ = 0 after a release: time, closing speed and greatest height."""
     height = gap + amplitude * np.sin(leaves)
     velocity = speed + amplitude * np.cos(leaves)
 

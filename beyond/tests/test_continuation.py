@@ -1,4 +1,4 @@
-"""Branches and cascades: against closed forms, the replication, simulated motions and universal ratios."""
+"""Branches and cascades against closed forms, the replication, simulation and universal ratios."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from bouncing_ball_beyond.continuation import (
 from bouncing_ball_beyond.orbits import OrbitNotFound, orbit, orbit_near, orbits
 from bouncing_ball_beyond.paths import ParameterPath
 
-# Special orbits are located to some rounding errors of their tests, relative to the slopes of these.
+# Special orbits are located to some rounding errors of their tests, over the slopes of these.
 LOCATED = 1e-10
 
 

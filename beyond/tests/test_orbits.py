@@ -1,4 +1,4 @@
-"""Periodic orbits against closed forms, an integrator with events, and the code of the replication."""
+"""Periodic orbits against closed forms, an integrator with events, and the replication."""
 
 import warnings
 from functools import cache
@@ -25,7 +25,7 @@ from bouncing_ball_beyond.simulation import Balls, follow
 
 # Rounding errors of an orbit: some hundred times eps for numbers up to 20.
 ROUNDED = 1e-12
-# An integrator with the tolerance 1e-13 over some hundred steps, on orbits that stretch errors by 10.
+# An integrator with the tolerance 1e-13 over some hundred steps.
 INTEGRATED = 1e-9
 
 RNG = np.random.default_rng(78)
@@ -244,7 +244,7 @@ def test_wrong_arguments_are_named_in_one_line(call, text):
 
 
 def test_digits_that_are_left_are_no_more_than_another_rounding_leaves():
-    """Λ is changed by its last digit: the orbit moves by less than the uncertainty that is given."""
+    """Λ is changed by its last digit: the orbit moves by less than the given uncertainty."""
     moved = []
     for each in several_orbits():
         equations = each.equations

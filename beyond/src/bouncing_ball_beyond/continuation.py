@@ -39,8 +39,8 @@ from bouncing_ball_beyond.special_orbits import (
 FIRST_STEP = 0.1
 LONGEST_STEP = 0.4
 SHORTEST_STEP = 1e-9
-"""Lengths of steps: changes of the unknowns, root mean square over the impacts, and relative ones of
-the parameter."""
+"""Lengths of steps: root mean squares of the changes of the unknowns over the impacts, and relative
+changes of the parameter."""
 
 STRAIGHT = 0.95
 """The least cosine of the angle between the tangents at the ends of a step."""
@@ -49,8 +49,11 @@ TURN = 0.3
 """The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
 
 NEAREST = 1e-9
-"""Relative distance from a period doubling below which doubled orbits are not told apart: at a distance
-ξ, rounding errors of the orbits are eps/ξ², and ξ² is proportional to the change of the parameter."""
+"""Relative distance from a period doubling below which doubled orbits are not told apart.
+
+At a distance ξ, rounding errors of the orbits are eps/ξ², and ξ² is proportional to the change of
+the parameter.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -145,19 +148,18 @@ class FollowedBranch:
 class _Start(NamedTuple):
     """Where branches start, by rows.
 
-    The orbits z and the directions from there; the first steps; the values of the parameter that are
-    to be reached, and windows in which it stays, shape (rows, 2); the special orbits before z, if
-    there are any; and the reasons for no branch, "" if there is one.
+    The orbits z and the directions from there, the values of the parameter that are to be reached,
+    and the reasons for no branch, "" if there is one; the first steps, and the special orbits
+    before z, if there are any.
     """
 
     equations: OrbitEquations
     z: NDArray
     direction: NDArray
-    step: NDArray
     goal: NDArray
-    window: NDArray
-    origin: NDArray | None
     reasons: NDArray
+    step: NDArray
+    origin: NDArray | None = None
 
     def take(self, which) -> "_Start":
         """Some of the rows."""
@@ -167,7 +169,7 @@ class _Start(NamedTuple):
 
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Directions of the curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
     normal = np.ones(z.shape)
     for _ in range(2):
         normal = _unit(newton(equations, z, normal, iterations=1).tangent)
@@ -235,7 +237,7 @@ class _Steps(NamedTuple):
 
 
 class _Predicted(NamedTuple):
-    """Where steps lead: lengths, predicted orbits, normals, and which end at an end of the window."""
+    """Where steps lead: lengths, predicted orbits, normals, and which end where the window ends."""
 
     length: NDArray
     z: NDArray
@@ -243,10 +245,10 @@ class _Predicted(NamedTuple):
     last: NDArray
 
 
-def _predicted(here: _Points, step, units, window) -> _Predicted:
-    """Steps along the tangents; one that would leave its window ends there, at a fixed parameter."""
+def _predicted(here: _Points, step, units, low, high) -> _Predicted:
+    """Steps along the tangents; one that would leave its window ends there, at this parameter."""
     rate = here.tangents[:, -1] * units[:, -1]
-    target = np.where(rate > 0, window[:, 1], window[:, 0])
+    target = np.where(rate > 0, high, low)
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = (target - here.z[:, -1]) / rate
     last = whole <= step
@@ -264,11 +266,11 @@ def _angle(points: _Points) -> NDArray:
     return np.arctan(points.tests[:, 1] - 1)
 
 
-def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
-    """Accepted steps of branches until their parameter is at an end of its window, or until they end.
+def _march(start: _Start, window, points: int, until: str | None) -> list[_Steps]:
+    """Accepted steps of branches, until they end or their parameter is at an end of its window.
 
-    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change too
-    much.
+    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
+    too much.
     """
     equations = start.equations
     units = scales(equations, start.z)
@@ -280,8 +282,8 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
     step = start.step
     farthest = np.zeros(len(rows))
     while rows.size:
-        window = start.window[rows]
-        ahead = _predicted(here, step, units, window)
+        low, high = window[rows].T
+        ahead = _predicted(here, step, units, low, high)
         solution = newton(equations, ahead.z, ahead.normal, iterations=7)
         solution.z[ahead.last, -1] = ahead.z[ahead.last, -1]
         with np.errstate(all="ignore"):
@@ -292,7 +294,7 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
             turned = np.minimum(turned, np.pi - turned)
             cosine = np.sum(there.tangents * here.tangents, axis=1)
             missed = np.linalg.norm((there.z - ahead.z) / units, axis=1)
-            inside = (there.z[:, -1] >= window[:, 0]) & (there.z[:, -1] <= window[:, 1])
+            inside = (there.z[:, -1] >= low) & (there.z[:, -1] <= high)
         good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * ahead.length)
         good &= (turned < TURN) | (ahead.length < 1e-6)
         easy = (cosine > 0.99) & (turned < TURN / 2)
@@ -315,8 +317,11 @@ def _march(start: _Start, points: int, until: str | None) -> list[_Steps]:
         if not going.all():
             rows = rows[going]
             equations = start.equations.rows(rows)
-            here, first = here.take(going), first.take(going)
-            units, step, farthest = units[going], step[going], farthest[going]
+            here = here.take(going)
+            first = first.take(going)
+            units = units[going]
+            step = step[going]
+            farthest = farthest[going]
     whole = zip(paths, ends, scales(start.equations, start.z), strict=True)
     return [_Steps(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
 
@@ -349,7 +354,7 @@ def _from_start(equations, first: _Points, here: _Points, units) -> NDArray:
 
 
 def _path_of(path: list[_Points], end: str, equations, units) -> _Points:
-    """The points of one row as one, with tangents of z; a closed branch ends exactly at its start."""
+    """The points of one row, with tangents of z; a closed branch ends exactly at its start."""
     if end == _CLOSED:
         ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units) > 0
         turns = 2 * np.pi * np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
@@ -360,12 +365,12 @@ def _path_of(path: list[_Points], end: str, equations, units) -> _Points:
     return points._replace(tangents=points.tangents * units)
 
 
-def _followed(start: _Start, points, until, own) -> list[FollowedBranch]:
+def _followed(start: _Start, window, points, until, own) -> list[FollowedBranch]:
     """Branches from their starts to a value of their parameter, with their special orbits.
 
     ``own`` is the kind of the special orbits at the starts, which are not listed.
     """
-    steps = _march(start, points, until)
+    steps = _march(start, window, points, until)
     row = np.repeat(np.arange(len(steps)), [len(each.points.z) for each in steps])
     z, slopes, tests, _ = (np.concatenate(e) for e in zip(*(s.points for s in steps), strict=True))
     crossings = crossings_of(start.equations, row, z, slopes, tests)
@@ -459,9 +464,9 @@ def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
 def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500):
     """The branch of a periodic orbit along a parameter, or the branches of many, side by side.
 
-    From an ordinary orbit and from the grazing of a release the branch through it is followed; from a
-    saddle-node the branch that is stable there; from a period doubling that of twice the period; from
-    a period halving that of half the period; from the grazing of a flight that with one impact
+    From an ordinary orbit and from the grazing of a release the branch through it is followed; from
+    a saddle-node the branch that is stable there; from a period doubling that of twice the period;
+    from a period halving that of half the period; from the grazing of a flight that with one impact
     more. At other special orbits branches end.
 
     Parameters
@@ -507,7 +512,7 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
 
 
 def cascade(doubling, *, to, impacts: int = 64):
-    """The branches of a cascade of period doublings: each up to the doubling from which the next goes on.
+    """The branches of a cascade of period doublings, each up to the doubling where the next begins.
 
     Parameters
     ----------
@@ -553,8 +558,10 @@ def cascade(doubling, *, to, impacts: int = 64):
 
 
 def _follow_all(orbits, along, to, points, until) -> list:
-    """Branches of orbits, or reasons, in order; orbits with the same kind of equations side by side."""
-    found, tasks, groups = list(orbits), {}, []
+    """Branches of orbits, or reasons, in order; orbits with the same equations side by side."""
+    found = list(orbits)
+    tasks = {}
+    groups = []
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
@@ -593,9 +600,10 @@ def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArra
     ValueError
         If the orbit is not on the path.
     """
-    ball, amplitude = orbit.ball, orbit.amplitude
-    equations = OrbitEquations(ball, orbit.impacts, orbit.periods, amplitude, (path,))
-    value = float(path.place(ball, amplitude))
+    value = float(path.place(orbit.ball, orbit.amplitude))
+    equations = OrbitEquations(
+        orbit.ball, orbit.impacts, orbit.periods, amplitude=orbit.amplitude, along=(path,)
+    )
     return equations, np.append(orbit.z[: orbit.equations.size], value)
 
 
@@ -633,11 +641,12 @@ def _stacked(tasks: list[_Task]) -> _Task:
         periods=np.array([each.equations.periods for each in tasks]),
         amplitude=np.array([each.equations.amplitude for each in tasks]),
     )
-    return _Task(equations, *(np.concatenate(rows) for rows in zip(*(t[1:] for t in tasks))))
+    columns = zip(*(each[1:] for each in tasks), strict=True)
+    return _Task(equations, *(np.concatenate(rows) for rows in columns))
 
 
 def _windows(z, goal, limits) -> NDArray:
-    """The values between which the parameter stays: the goal, and as far behind z; shape (rows, 2)."""
+    """Where the parameter stays: between the goal and a value as far behind z; shape (rows, 2)."""
     behind = np.clip(2 * z[:, -1] - goal, *limits.T)
     return np.sort(np.stack([goal, behind], axis=-1), axis=-1)
 
@@ -650,79 +659,85 @@ def _from_special(task: _Task, way: int, kind, points, until) -> list:
     going = np.flatnonzero(start.reasons == "")
     if not going.size:
         return found
-    for i, branch in zip(going, _followed(start.take(going), points, until, kind), strict=True):
+    window = _windows(task.z, start.goal, task.limits)[going]
+    branches = _followed(start.take(going), window, points, until, kind)
+    for i, branch in zip(going, branches, strict=True):
         path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
         text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
         found[i] = replace(branch, z=path, start=text)
     return found
 
 
+def _none(task: _Task) -> NDArray:
+    """No reasons against a branch."""
+    return np.full(len(task.z), "", object)
+
+
+def _on_side(reasons, away, task: _Task, goal, what: str) -> None:
+    """Add the reason that orbits are on the other side of a special orbit than the goal."""
+    name = task.equations.along[-1].name
+    here = task.z[:, -1]
+    for i in np.flatnonzero((reasons == "") & ~(away * (goal - here) > 0)):
+        side = "above" if away[i] > 0 else "below"
+        reasons[i] = what.format(side=side, place=f"{name} = {here[i]:.10g}")
+
+
 def _ordinary_start(task: _Task, way: int) -> _Start:
     """The branch through orbits."""
-    equations, z, goals, limits = task
-    goal = goals[:, way]
-    direction = tangents(equations, z)
-    direction = direction * np.sign((goal - z[:, -1]) * direction[:, -1])[:, np.newaxis]
-    reasons = np.full(len(z), "", object)
-    for i in np.flatnonzero(goal == z[:, -1]):
-        reasons[i] = f"{equations.along[-1].name} = {goal[i]:.10g} is that of the orbit already"
-    step, window = np.full(len(z), FIRST_STEP), _windows(z, goal, limits)
-    return _Start(equations, z, direction, step, goal, window, None, reasons)
+    goal = task.goals[:, way]
+    ahead = goal - task.z[:, -1]
+    direction = tangents(task.equations, task.z)
+    direction = direction * np.sign(ahead * direction[:, -1])[:, np.newaxis]
+    reasons = _none(task)
+    for i in np.flatnonzero(ahead == 0):
+        name = task.equations.along[-1].name
+        reasons[i] = f"{name} = {goal[i]:.10g} is that of the orbit already"
+    step = np.full(len(goal), FIRST_STEP)
+    return _Start(task.equations, task.z, direction, goal, reasons, step)
 
 
 def _fold_start(task: _Task, way: int) -> _Start:
-    """The branch that is stable next to a saddle-node; and the other one, if both ways are followed.
+    """The branch that is stable next to a saddle-node; also the other one, if both are followed.
 
     Both are on the same side of the parameter.
     """
-    equations, z, goals, limits = task
-    direction, units = tangents(equations, z), scales(equations, z)
-    direction = _unit(direction / units)
-    length = np.full((len(z), 1), 1e-2)
-    for _ in range(8):
-        near = newton(equations, z + length * direction * units, direction / units)
-        length = np.where(near.found[:, np.newaxis], length, length / 4)
-        if near.found.all():
-            break
-    upwards = near.z[:, -1] > z[:, -1]
-    stable = np.sign(1 - equations.turn(near.linear))[:, np.newaxis] * direction * units
-    goal = np.where(upwards, goals.max(axis=1), goals.min(axis=1))
-    reasons = np.full(len(z), "", object)
-    for i in np.flatnonzero((goal > z[:, -1]) != upwards):
-        place = f"{equations.along[-1].name} = {z[i, -1]:.10g}"
-        side = "above" if upwards[i] else "below"
-        reasons[i] = f"the orbits of the saddle-node at {place} are {side} it"
-    if goals.shape[1] == 2 and way == 0:
-        stable = -stable
-    step, window = np.full(len(z), FIRST_STEP), _windows(z, goal, limits)
-    return _Start(equations, z, stable, step, goal, window, None, reasons)
+    units = scales(task.equations, task.z)
+    direction = _unit(tangents(task.equations, task.z) / units)
+    near = newton(task.equations, task.z + 1e-3 * direction * units, direction / units)
+    away = near.z[:, -1] - task.z[:, -1]
+    stable = np.sign(1 - task.equations.turn(near.linear))
+    other = task.goals.shape[1] == 2 and way == 0
+    direction = direction * units * (-stable if other else stable)[:, np.newaxis]
+    goal = np.where(away > 0, task.goals.max(axis=1), task.goals.min(axis=1))
+    reasons = _none(task)
+    reasons[~near.found] = "no orbit is found beside the saddle-node"
+    _on_side(reasons, away, task, goal, "the orbits of the saddle-node at {place} are {side} it")
+    step = np.full(len(goal), FIRST_STEP)
+    return _Start(task.equations, task.z, direction, goal, reasons, step)
 
 
 def _grazing_start(task: _Task, way: int) -> _Start:
     """The branch with one impact more, from orbits with a flight that touches the table."""
-    rows, name = len(task.z), task.equations.along[-1].name
-    size, q = task.equations.length, task.equations.unknowns
-    origin, direction = np.zeros((2, rows, size + q))
-    reasons = np.full(rows, "", object)
     more = replace(task.equations, impacts=task.equations.impacts + 1)
-    for i in range(rows):
+    origin = np.zeros((len(task.z), more.length))
+    direction = np.ones(origin.shape)
+    reasons = _none(task)
+    for i, z in enumerate(task.z):
         try:
-            _, origin[i], direction[i] = one_impact_more(single(task.equations, i), task.z[i])
+            _, origin[i], direction[i] = one_impact_more(single(task.equations, i), z)
         except OrbitNotFound as error:
             reasons[i] = str(error)
     # One step away from the touch, where the added impact has the speed 0.
-    units, step = scales(more, origin), np.full(rows, 1e-3)
-    ahead = np.where((reasons == "")[:, np.newaxis], _unit(direction / units), 0.0)
-    start = newton(more, origin + step[:, np.newaxis] * ahead * units, ahead / units)
-    goal = task.goals[:, way]
+    units = scales(more, origin)
+    ahead = _unit(direction / units)
+    start = newton(more, origin + 1e-3 * ahead * units, ahead / units)
     reasons[(reasons == "") & ~start.found] = "the orbits with one impact more are not found"
+    goal = task.goals[:, way]
     away = start.z[:, -1] - origin[:, -1]
-    for i in np.flatnonzero((reasons == "") & (away * (goal - origin[:, -1]) <= 0)):
-        side = "above" if away[i] > 0 else "below"
-        place = f"{name} = {origin[i, -1]:.10g}"
-        reasons[i] = f"the orbits with one impact more are {side} the grazing at {place}"
-    window = _windows(origin, goal, task.limits)
-    return _Start(more, start.z, start.z - origin, step, goal, window, origin, reasons)
+    what = "the orbits with one impact more are {side} the grazing at {place}"
+    _on_side(reasons, away, task, goal, what)
+    step = np.full(len(goal), 1e-3)
+    return _Start(more, start.z, start.z - origin, goal, reasons, step, origin)
 
 
 def _halved_start(task: _Task, way: int) -> _Start:
@@ -735,7 +750,7 @@ def _no_start(task: _Task, way: int) -> _Start:
     """No branch goes on from this kind of special orbit."""
     reasons = np.full(len(task.z), "branches end at a special orbit of this kind", object)
     goal = task.goals[:, way]
-    return _Start(task.equations, task.z, task.z, goal, goal, task.limits, None, reasons)
+    return _Start(task.equations, task.z, task.z, goal, reasons, goal)
 
 
 def _doubled_start(task: _Task, way: int) -> _Start:
@@ -746,49 +761,50 @@ def _doubled_start(task: _Task, way: int) -> _Start:
     until the latter has hardly changed: then no bifurcation is between the doubling and the step.
     """
     twice, origin = doubled_of(task.equations, task.z)
-    goal, rows, name = task.goals[:, way], len(origin), twice.along[-1].name
+    rows = len(origin)
     units = scales(twice, origin)
     direction = _unit(_flip(task.equations, task.z) / units)
-    length, good = np.full(rows, 0.02), np.zeros(rows, bool)
-    start, pair = origin.copy(), twice.rows(np.tile(np.arange(rows), 2))
+    pair = twice.rows(np.tile(np.arange(rows), 2))
+    start = origin.copy()
+    step = np.full(rows, 0.02)
+    good = np.zeros(rows, bool)
     for _ in range(40):
-        reach = np.concatenate([length, length / 2])[:, np.newaxis]
+        reach = np.concatenate([step, step / 2])[:, np.newaxis]
         guess = np.tile(origin, (2, 1)) + reach * np.tile(direction * units, (2, 1))
         solution = newton(pair, guess, np.tile(direction / units, (2, 1)))
         with np.errstate(all="ignore"):
             away = (solution.z[:, -1] - np.tile(origin[:, -1], 2)).reshape(2, rows)
             lost = 1 - pair.turn(solution.linear).reshape(2, rows)
             bend = np.linalg.norm((solution.z - guess)[:rows] / units, axis=1)
-            quadratic = _about_four(away) & _about_four(lost) & (bend < 0.2 * length)
-            new = ~good & solution.found.reshape(2, rows).all(axis=0) & quadratic
-            new &= np.abs(lost[0]) < 0.3
+            new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < 0.2 * step)
+            new &= _about_four(away) & _about_four(lost) & (np.abs(lost[0]) < 0.3)
         start[new] = solution.z[:rows][new]
         good |= new
         if good.all():
             break
-        length[~good] /= 2
-    reasons = np.full(rows, "", object)
+        step[~good] /= 2
+    goal = task.goals[:, way]
+    reasons = _none(task)
     reasons[~good] = "the start of the orbits of twice the period is not found"
-    with np.errstate(all="ignore"):
-        share = (goal - origin[:, -1]) / (start[:, -1] - origin[:, -1])
-    for i in np.flatnonzero(good & ~(share > 0)):
-        side = "above" if start[i, -1] > origin[i, -1] else "below"
-        place = f"{name} = {origin[i, -1]:.10g}"
-        reasons[i] = f"the orbits of twice the period are {side} the period doubling at {place}"
-    near = np.abs(goal - origin[:, -1]) < NEAREST * units[:, -1]
+    away = start[:, -1] - origin[:, -1]
+    what = "the orbits of twice the period are {side} the period doubling at {place}"
+    _on_side(reasons, away, task, goal, what)
+    near = (reasons == "") & (np.abs(goal - origin[:, -1]) < NEAREST * units[:, -1])
+    name = twice.along[-1].name
     reasons[near] = f"{name} is too near to the period doubling: rounding errors hide the orbits"
+    with np.errstate(all="ignore"):
+        share = (goal - origin[:, -1]) / away
     short = (reasons == "") & (share < 1.5)
     if short.any():
         # The whole branch is hardly longer than its start, or shorter.
-        length = np.where(short, 0.3 * length * np.sqrt(np.abs(share)), length)
-        guess = origin + length[:, np.newaxis] * direction * units
+        step = np.where(short, 0.3 * step * np.sqrt(np.abs(share)), step)
+        guess = origin + step[:, np.newaxis] * direction * units
         solution = newton(twice, guess, direction / units)
         start[short] = solution.z[short]
         reasons[short & ~solution.found] = (
             "the start of the orbits of twice the period is not found"
         )
-    window = _windows(origin, goal, task.limits)
-    return _Start(twice, start, start - origin, length, goal, window, origin, reasons)
+    return _Start(twice, start, start - origin, goal, reasons, step, origin)
 
 
 def _about_four(pair: NDArray) -> NDArray:
@@ -822,7 +838,7 @@ def _joined(parts: list):
 
 
 class Limits(NamedTuple):
-    """The special orbits between which orbits with one impact are stable; None where there is none."""
+    """The orbits between which those with one impact are stable; None where there is none."""
 
     saddle_node: PeriodicOrbit | None
     period_doubling: PeriodicOrbit | None
@@ -831,8 +847,8 @@ class Limits(NamedTuple):
 def limits(ball: Ball, *, n=1):
     """The saddle-node and the period doubling of the n-T orbits of a ball.
 
-    An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0, and no
-    saddle-node.
+    An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
+    and no saddle-node.
 
     Parameters
     ----------
@@ -865,9 +881,9 @@ def limits(ball: Ball, *, n=1):
 
 
 def _between_limits(equations: OrbitEquations) -> list:
-    """An orbit with one impact for each row, between the limits of the restitution model if it can be."""
-    ball, n = equations.ball, np.asarray(equations.periods)
-    r = ball.signature(1.5 * np.pi * n).restitution
+    """An orbit with one impact for each row, if possible between the limits of instants."""
+    n = np.asarray(equations.periods)
+    r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)
     fold = np.pi * n * (1 - r) / (1 + r)
     found = [OrbitNotFound("no orbit with one impact is found")] * len(n)

@@ -1,9 +1,9 @@
 """The equations of periodic orbits with k impacts in m periods of the table, and Newton's method.
 
-The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T. Times
-grow along an orbit, so that a flight ends where the next impact starts, and nothing has to be
-searched for. An orbit is a row z: the unknowns of its k impacts one after the other, and after them
-the values of the parameters that may change. Functions take many rows at once, shape (rows, N).
+The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T.
+Times grow along an orbit, so that a flight ends where the next impact starts, and nothing has to
+be searched for. An orbit is a row z: the unknowns of its k impacts one after the other, and after
+them the values of the parameters that may change. Functions take many rows at once, (rows, N).
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ ROUNDING = 4 * np.finfo(float).eps
 """Rounding errors of the equations, relative to the largest unknown."""
 
 DENSE = 16
-"""Systems of more legs are halved first: libraries of linear algebra start threads for large ones."""
+"""Systems of more legs are halved: libraries of linear algebra start threads for large matrices."""
 
 
 class Linear(NamedTuple):
@@ -43,8 +43,8 @@ class Linear(NamedTuple):
 class Flights(NamedTuple):
     """The flights after contacts, each field of the shape (rows, k).
 
-    ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, ``flight`` is the
-    time to the next impact, and ``amplitude`` is Λ.
+    ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, ``flight`` is
+    the time to the next impact, and ``amplitude`` is Λ.
     """
 
     leaves: NDArray
@@ -228,7 +228,7 @@ class OrbitEquations:
         return Flights(leaves, impact.gap, impact.speed, time, amplitude)
 
     def clearance(self, z) -> NDArray:
-        """How far the ball stays above the table where a flight turns back from it: the least of all.
+        """How far the ball is above the table where a flight turns back from it: the least of all.
 
         After a release by the force the ball is clear of the contact if it is above the line
         δ + κδ′ = 0, on which a contact would resume.
@@ -249,7 +249,7 @@ class OrbitEquations:
         return least.min(axis=-1)
 
     def contact_clearance(self, z) -> NDArray:
-        """How far release functions stay below zero where they turn back: the least of all contacts."""
+        """How far release functions are below zero where they turn back: the least of all."""
         if not self.ball.lasts:
             return np.full(len(z), FAR)
         during = self._during(z)
@@ -262,8 +262,9 @@ class OrbitEquations:
         )
 
     def max_height(self, z) -> NDArray:
-        """The greatest height of the ball, shape (rows,): at the summit of a flight or in a contact,
-        in which a table below a compliant contact may lift the ball higher than it flies.
+        """The greatest height of the ball, shape (rows,): at a summit of a flight or in a contact.
+
+        In a compliant contact the table may lift the ball higher than it flies.
         """
         leaves, gap, speed, time, amplitude = self.ends(z)
         bounce = speed + amplitude * np.cos(leaves)
@@ -314,8 +315,11 @@ class OrbitEquations:
         return -depth.max(axis=-1)
 
     def halves(self, z) -> NDArray:
-        """Differences of the impacts half an orbit apart, shape (rows, kq/2): zero if the orbit is one
-        of half the period, taken twice; ones if the impacts or the periods have no half."""
+        """Differences of the impacts half an orbit apart, shape (rows, kq/2).
+
+        They are zero if the orbit is one of half the period, taken twice, and 1 if the impacts or
+        the periods have no half.
+        """
         if self.impacts % 2:
             return np.ones((len(z), 1))
         x, _, _ = self.split(z)

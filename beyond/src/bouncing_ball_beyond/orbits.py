@@ -89,7 +89,7 @@ class PeriodicOrbit:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Λ, the parameters of the ball, and the variables of the paths on which the orbit was found."""
+        """Λ, the parameters of the ball, and the variables of the paths of the orbit."""
         values = {"amplitude": self.amplitude, **self.ball.parameters}
         names = [path.name for path in self.equations.along]
         values |= dict(zip(names, self.z[self.equations.size :], strict=True))
@@ -174,7 +174,7 @@ class PeriodicOrbit:
 
     @property
     def monodromy(self) -> NDArray:
-        """Derivative of the return map in (τ, δ′) at the start of the first impact, shape (2, 2)."""
+        """Derivative of the return map in (τ, δ′) as the first impact starts, shape (2, 2)."""
         signs = np.diag([1.0, -1.0])
         return signs @ product_of(self.equations.maps(self._linear))[0] @ signs
 
@@ -200,7 +200,7 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """Whether no neighbouring motion leaves: an elastic ball's stays near, others' come nearer."""
+        """Whether no neighbouring motion leaves; those of an elastic ball stay near."""
         return bool(self.equations.stable(self._linear)[0])
 
     @cached_property
@@ -217,8 +217,8 @@ class PeriodicOrbit:
     def digits_left(self) -> float:
         """How many decimal places of the times and speeds of the impacts are certain.
 
-        The rounding errors of the numbers z and of the terms of the equations, eps |J| |z|, move the
-        solution by at most |J⁻¹| times as much (R. D. Skeel, J. ACM 26, 494, 1979).
+        The rounding errors of the numbers z and of the terms of the equations, eps |J| |z|, move
+        the solution by at most |J⁻¹| times as much (R. D. Skeel, J. ACM 26, 494, 1979).
         """
         _, jacobian = self.equations.residuals(self.z[np.newaxis])
         size = self.equations.size
@@ -461,9 +461,9 @@ def orbits(
 ) -> list[PeriodicOrbit]:
     """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
 
-    With one impact, the speeds at which a ball comes back are found at 96 phases, and from there all
-    orbits. With several impacts this is a search: Newton's method closes the motions of 2592 first
-    impacts, and orbits may be missed.
+    With one impact, the speeds at which a ball comes back are found at 96 phases, and from there
+    all orbits. With several impacts this is a search: Newton's method closes the motions of 2592
+    first impacts, and orbits may be missed.
 
     Parameters
     ----------
@@ -582,10 +582,10 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
 def orbit_near(
     ball: Ball, *, amplitude: float, phases: ArrayLike, velocities: ArrayLike
 ) -> PeriodicOrbit:
-    """The periodic orbit near a guess: the phases and the velocities of the ball before its impacts.
+    """The periodic orbit near a guess: phases and velocities of the ball before its impacts.
 
-    The number of periods follows from the velocities, because a flight lasts as long as its velocity
-    falls by.
+    The number of periods follows from the velocities, because a flight lasts as long as its
+    velocity falls by.
 
     Parameters
     ----------

@@ -73,7 +73,8 @@ class Frequency:
             with np.errstate(divide="ignore", invalid="ignore"):
                 ratios = np.divide(LIMITS.get(name, (0.0, np.inf)), ball.parameters[name])
                 ends = np.sort(here * ratios ** (1 / power))
-            low, high = np.fmax(low, ends[0]), np.fmin(high, ends[1])
+            low = np.fmax(low, ends[0])
+            high = np.fmin(high, ends[1])
         return low, high
 
 
@@ -137,30 +138,33 @@ class ParameterPath:
         return (ball.at(**values) if values else ball), amplitude
 
     def place(self, ball: Ball, amplitude):
-        """The value of the variable, by bisection of the first function.
+        """The value of the variable, by the first function.
 
         Raises
         ------
         ValueError
             If the parameters of the ball are not those of the path.
         """
+        # Only paths of one's own need this module, which takes long to import.
+        from scipy.optimize import brentq
+
         here = {**ball.parameters, "amplitude": amplitude}
         name, function = next(iter(self.functions.items()))
-        wanted = np.asarray(here[name], float)
-        low, high = np.full(wanted.shape, self.low), np.full(wanted.shape, self.high)
-        rises = function(self.high) > function(self.low)
-        for _ in range(60):
-            middle = (low + high) / 2
-            above = (function(middle) > wanted) == rises
-            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        ends = np.sort([function(self.low), function(self.high)])
+        if not ends[0] <= here[name] <= ends[1]:
+            raise ValueError(
+                f"the orbit is not on the path {self.name}: its {name} is {here[name]:.10g}, and on"
+                f" the path it is in [{ends[0]:g}, {ends[1]:g}]"
+            )
+        # Numbers that differ by rounding are on the path.
+        place = brentq(lambda x: function(x) - here[name], self.low, self.high, xtol=1e-15)
         for name, function in self.functions.items():
-            on_path = function(high)
-            if not np.allclose(on_path, here[name], rtol=1e-9, atol=0):
+            if not np.isclose(function(place), here[name], rtol=1e-9, atol=0):
                 raise ValueError(
                     f"the orbit is not on the path {self.name}: its {name} is {here[name]:.10g},"
-                    f" and {on_path:.10g} where the path is nearest"
+                    f" and {function(place):.10g} on the path"
                 )
-        return high[()]
+        return place
 
     def limits(self, ball: Ball, amplitude):
         """The range of the variable."""

@@ -185,7 +185,7 @@ def located(equations, crossings: Crossings) -> tuple[NDArray, NDArray]:
     return z, found & (np.abs(value) < 1e-6 * np.maximum(largest, 1e-3))
 
 
-def test_with_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:
+def value_and_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:
     """The test of a kind of special orbit, shape (rows,), and its gradient, shape (rows, N).
 
     The gradient is a central difference. Its errors, some 1e-10, slow Newton's method down a little
@@ -216,7 +216,7 @@ def special_near(
     for _ in range(iterations):
         part = equations.rows(left)
         legs, jacobian = part.residuals(z[left])
-        value, gradient = test_with_gradient(part, kind, z[left])
+        value, gradient = value_and_gradient(part, kind, z[left])
         matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
         right = np.concatenate([legs, value[:, np.newaxis]], axis=1)
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)

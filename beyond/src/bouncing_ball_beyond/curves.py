@@ -50,7 +50,7 @@ from bouncing_ball_beyond.forms import (
 )
 from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
-from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, test_with_gradient
+from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, value_and_gradient
 
 FIRST_STEP = 0.05
 LONGEST_STEP = 0.2
@@ -175,7 +175,7 @@ class _System:
         ``derivatives`` are those of the legs at z and, if impacts have a T, on both sides of z.
         """
         if border is None:
-            value, gradient = test_with_gradient(self.equations, self.kind, z[np.newaxis])
+            value, gradient = value_and_gradient(self.equations, self.kind, z[np.newaxis])
             return value[0], gradient[0], None, None
         size = len(border.v)
         matrix = np.zeros((size + 1, size + 1))

@@ -9,6 +9,8 @@ import xarray as xr
 
 from bouncing_ball_beyond.cli import commands, main
 
+LAW = "--law tsuji --restitution 0.85 --set duration=0.1 --set speed=3 --amplitude 1"
+SHAKER = "--frequency 50Hz --acceleration 0.8g --stiffness 1e7N/m --restitution 0.85"
 RIGID = "--restitution 0.65 --amplitude 1"
 SPRING = f"{RIGID} --frequency-ratio 80"
 ANSWERS = {
@@ -23,12 +25,12 @@ ANSWERS = {
     " --range restitution 0.4 0.6": ["period doubling"],
     f"simulate {RIGID} --impacts 4": ["impact_velocity"],
     "motion --restitution 0.85 --amplitude 1.1": ["3"],
-    f"thresholds {RIGID}": ["82.178", "82.1774", "2.29014", "132.569"],
-    f"error-law {SPRING}": ["-0.01027"],
-    "shaker --mass 20g --frequency 50Hz --acceleration 0.8g --stiffness 1e7N/m --restitution 0.85": [
-        "558.9 µm",
-        "is not good enough",
+    f"thresholds {RIGID} --corrected": ["82.178", "82.1774", "2.29014", "132.569"],
+    f"error-law {SPRING} --corrected": ["-0.01027", "-7.545e-06"],
+    "error-law --law tsuji --restitution 0.85 --set duration=0.1 --set speed=3 --amplitude 1": [
+        "-0.02579"
     ],
+    f"shaker --mass 20g {SHAKER}": ["558.9 µm", "is not good enough"],
 }
 
 
@@ -53,7 +55,8 @@ MISTAKES = {
     f"orbit {RIGID} --law tsuji --set stiffness": "--set",
     f"follow {RIGID} --to 2 --along hardness": "--along = 'hardness'",
     f"thresholds {RIGID} --tolerance 0": "--tolerance",
-    "shaker --frequency 50m --acceleration 1g --restitution 0.8 --stiffness 1 --mass 1": "--frequency",
+    f"shaker --mass 20g {SHAKER.replace('50Hz', '50m')}": "--frequency = '50m'",
+    f"shaker {SHAKER}": "--mass",
     "fly": "fly",
 }
 

@@ -198,13 +198,13 @@ def write(found: Any, output: str | None) -> None:
         data.to_dataframe().to_csv(output)
 
 
-def table(head: list[str], rows: list[list[str]]) -> str:
-    """Columns of texts, the first one to the left."""
-    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
-    return "\n".join(
-        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])])
-        for row in [head, *rows]
-    )
+def table(head: list[str], columns: list[dict[str, str]]) -> str:
+    """Columns of texts by the names of quantities, which are the first column."""
+    rows = [f"{'':22}" + "".join(f"{title:>19}" for title in head)]
+    for name in columns[0]:
+        values = "".join(f"{column[name]:>19}" for column in columns)
+        rows.append(f"{name.replace('_', ' '):22}{values}")
+    return "\n".join(rows)
 
 
 @commands.command()
@@ -285,7 +285,9 @@ def diagram(ball, amplitude, points, output):
     """The motions on which balls end, over the amplitude."""
     import numpy as np
 
-    show(bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points)), output)
+    found = bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points))
+    click.echo(found)
+    write(found, output)
 
 
 @commands.command()
@@ -309,19 +311,27 @@ def simulate(ball, amplitude, phase, velocity, impacts, output):
 def thresholds(ball, amplitude, n, tolerance):
     """From which stiffness on simple models are good enough.
 
-    The answer is ϖ for a contact with a spring and a damper, also if only r is given. For
-    another law it is the factor by which its contact may be shorter.
+    The answer is ϖ for a contact with a spring and a damper, also if only r is given. For another
+    law it is π over the duration of a free impact. With --corrected, also for this model.
     """
-    contacts = ball if ball.lasts else bb.SpringDamper(1.0, restitution=ball.restitution)
+    contacts, models = _judged(ball)
+    if not contacts.lasts:
+        contacts = bb.SpringDamper(1.0, restitution=contacts.restitution)
     known = {"amplitude": amplitude, "n": n, "tolerance": tolerance}
-    law = bb.law_thresholds(contacts, **known)
-    exact = bb.error_thresholds(contacts, **known)
-    corrected = bb.error_thresholds(contacts, simple=bb.Corrected, **known)
-    rows = [
-        [name.replace("_", " "), f"{law[name]:.6g}", _ratio(exact[name]), _ratio(corrected[name])]
-        for name in law
+    columns = [
+        {name: f"{ratio:.6g}" for name, ratio in bb.law_thresholds(contacts, **known).items()}
     ]
-    click.echo(table(["", "error law", "exact", "corrected model"], rows))
+    for simple in models.values():
+        found = bb.error_thresholds(contacts, simple=simple, **known)
+        columns.append({name: _ratio(threshold) for name, threshold in found.items()})
+    click.echo(table(["error law", *models], columns))
+
+
+def _judged(ball: Any) -> tuple[Any, dict[str, Any]]:
+    """The ball with its contact, and the models in its place that are judged, by their names."""
+    if isinstance(ball, bb.Corrected):
+        return ball.of, {"restitution model": None, "corrected model": bb.Corrected}
+    return ball, {"restitution model": None}
 
 
 def _ratio(threshold: Any) -> str:
@@ -334,17 +344,16 @@ def _ratio(threshold: Any) -> str:
 @AMPLITUDE
 @N
 def error_law(ball, amplitude, n):
-    """Errors of the restitution model on a contact, by the error law and exactly."""
-    law = bb.law_errors(ball, amplitude=amplitude, n=n)
-    remainders = bb.law_remainders(ball, amplitude=amplitude, n=n)
-    exact = bb.exact_errors(ball, amplitude=amplitude, n=n)
-    corrected = bb.exact_errors(ball, amplitude=amplitude, n=n, simple=bb.Corrected)
-    rows = [
-        [name.replace("_", " ")]
-        + [f"{each[name]:.4g}" for each in (law, remainders, exact, corrected)]
-        for name in law
-    ]
-    click.echo(table(["", "error law", "right to", "exact", "corrected model"], rows))
+    """Errors of the restitution model on a contact, by the error law and exactly.
+
+    With --corrected, also those of this model.
+    """
+    contact, models = _judged(ball)
+    known = {"amplitude": amplitude, "n": n}
+    errors = [bb.law_errors(contact, **known), bb.law_remainders(contact, **known)]
+    errors += [bb.exact_errors(contact, simple=simple, **known) for simple in models.values()]
+    columns = [{name: f"{error:.4g}" for name, error in each.items()} for each in errors]
+    click.echo(table(["error law", "right to", *models], columns))
 
 
 @commands.command()

@@ -25,10 +25,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper
-from bouncing_ball_beyond.special_orbits import special_near
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.orbits import guess_of_instants, rows_of
+from bouncing_ball_beyond.special_orbits import special_near
 
 QUANTITIES = (
     "max_height",
@@ -265,9 +265,10 @@ def law_thresholds(
     Parameters
     ----------
     contacts
-        A ball with a spring and a damper, whose ϖ is disregarded. Or one with a contact law with
-        units, or a function from a number x to the ball: the contact then lasts 1/x as long as that
-        of the law or as that at x = 1, and x takes the place of ϖ.
+        A ball with a spring and a damper, whose ϖ is disregarded. Or one with a contact law that
+        has units, whose stiffness is disregarded: π/(D + κ) takes the place of ϖ, with the duration
+        D and κ = -δ/δ′ at the end of the free impact, where t_c = r (D + κ)/(1 + r). Or a function
+        from a number in the place of ϖ to the ball; the duration is in proportion to its inverse.
     amplitude
         Λ, a number or an array that broadcasts with the parameters of the ball.
     tolerance
@@ -287,7 +288,7 @@ def law_thresholds(
     >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
     (82.18, 132.3)
     """
-    impact = free_impact(along_ratio(contacts, tolerance)(1.0), n)
+    impact = free_impact(along_ratio(contacts, n, tolerance)(1.0), n)
     coefficients = law_coefficients(impact, amplitude=amplitude)
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     # The error of the height is largest where Y₁ rises as fast as the depth of the instant, and
@@ -327,17 +328,21 @@ def _longest(impact, amplitude, tolerance, name, turn) -> NDArray:
     return np.where(error(end, amplitude, *impact) > -tolerance, end, found.x)
 
 
-def along_ratio(contacts: SpringDamper | ForceLaw | Callable, tolerance: float) -> Callable:
-    """The function from ϖ, or from the number x in its place, to the ball."""
+def along_ratio(
+    contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
+) -> Callable:
+    """The function from ϖ, or from the number in its place, to the ball."""
     if not 0 < tolerance < np.inf:
         raise ValueError(f"tolerance = {tolerance!r}: must be positive")
     if isinstance(contacts, SpringDamper):
         return lambda ratio: contacts.at(frequency_ratio=ratio)
     if isinstance(contacts, ForceLaw):
-        # With lengths and times that are all 1/x of what they were, f(p, p′) is x f(xp, p′).
-        powers = {name: -length - time for name, (_, length, time) in contacts.units.items()}
+        impact = free_impact(contacts, n)
+        share = np.pi * impact.restitution / ((1 + impact.restitution) * impact.centroid)
+        # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
+        powers = {name: length + time for name, (_, length, time) in contacts.units.items()}
         return lambda ratio: contacts.at(
-            **{name: contacts.parameters[name] * ratio**power for name, power in powers.items()}
+            **{name: contacts.values[name] * (share / ratio) ** powers[name] for name in powers}
         )
     return contacts
 
@@ -393,7 +398,7 @@ def contact_values(
 
 
 def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
-    """The n-T orbits on the stable side of the saddle-node, shape (rows, N), NaN where there is none.
+    """The n-T orbits on the stable side of the saddle-node, shape (rows, N), NaN if there is none.
 
     They are solved from the instants of the corrected model, and are not searched for elsewhere.
     """
@@ -550,7 +555,7 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
     """
-    path = along_ratio(contacts, tolerance)
+    path = along_ratio(contacts, n, tolerance)
     known = {"amplitude": amplitude, "n": n, "simple": simple}
     shape = rows_of(path(high), amplitude)[2]
     grid = np.geomspace(low, high, samples)

@@ -19,7 +19,6 @@ from bouncing_ball_beyond.error_law import (
     law_errors,
     restitution_values,
 )
-
 from bouncing_ball_beyond.named_laws import tsuji
 from bouncing_ball_beyond.paths import Frequency
 

@@ -143,7 +143,7 @@ def test_a_figure_needs_its_stage_only(complete):
 def test_the_comparison_knows_what_else_is_requested(complete):
     def inputs(*targets):
         plan = complete.plan(*targets, "diff")
-        (block,) = re.findall(r"^localrule diff:\n +input: (.*)", plan, re.MULTILINE)
+        (block,) = re.findall(r"^(?:local)?rule diff:\n +input: (.*)", plan, re.MULTILINE)
         return {file for file in block.split(", ") if file.startswith("results/")}
 
     assert inputs("ext_map") == {f"results/{file}" for file in files("ext_map")}

@@ -15,7 +15,7 @@ from bouncing_ball_beyond.continuation import (
     kind_named,
     limits,
 )
-from bouncing_ball_beyond.orbits import OrbitNotFound, orbit, orbit_near, orbits
+from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
 from bouncing_ball_beyond.paths import ParameterPath
 
 # Special orbits are located to some rounding errors of their tests, over the slopes of these.

@@ -20,7 +20,7 @@ from bouncing_ball_beyond.error_law import (
     restitution_values,
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.orbits import orbit
+from bouncing_ball_beyond.periodic import orbit
 
 ARTICLE = {
     # Quantity: K, and ϖ for 1 % by the law, exactly, and of the corrected model (Table 1).

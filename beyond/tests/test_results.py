@@ -21,7 +21,7 @@ from bouncing_ball_beyond import (
     to_dataset,
 )
 from bouncing_ball_beyond.curves import DEGENERATE
-from bouncing_ball_beyond.orbits import orbits
+from bouncing_ball_beyond.periodic import orbits
 from bouncing_ball_beyond.pictures import MARKS
 from bouncing_ball_beyond.special_orbits import KINDS
 

@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.error_law import contact_values
-from bouncing_ball_beyond.orbits import orbit
+from bouncing_ball_beyond.periodic import orbit
 from bouncing_ball_beyond.shaker import in_si, in_words, on_shaker
 
 TABLE = {"frequency": "50 Hz", "acceleration": "0.8 g", "restitution": 0.85}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.balls import Ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
 from bouncing_ball_beyond.forms import one_impact_more
-from bouncing_ball_beyond.orbits import (
+from bouncing_ball_beyond.periodic import (
     OrbitNotFound,
     PeriodicOrbit,
     near_instants,
@@ -33,7 +33,6 @@ from bouncing_ball_beyond.special_orbits import (
     kind_named,
     located,
     scales,
-    special_near,  # noqa: F401
 )
 
 FIRST_STEP = 0.1

@@ -48,7 +48,7 @@ from bouncing_ball_beyond.forms import (
     one_impact_less,
     taken_twice,
 )
-from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
+from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
 from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, value_and_gradient
 

@@ -27,7 +27,7 @@ from scipy.optimize.elementwise import find_root
 from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
-from bouncing_ball_beyond.orbits import guess_of_instants, rows_of
+from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
 from bouncing_ball_beyond.special_orbits import special_near
 
 QUANTITIES = (

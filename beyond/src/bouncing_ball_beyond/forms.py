@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Corrected
 from bouncing_ball_beyond.equations import OrbitEquations, dense, flight, newton
-from bouncing_ball_beyond.orbits import OrbitNotFound, PeriodicOrbit
+from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
 
 MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
 """The multiplier that a kind of special orbit has."""

@@ -17,7 +17,7 @@ from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pie
 from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import newton
-from bouncing_ball_beyond.orbits import PeriodicOrbit
+from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
 from bouncing_ball_beyond.special_orbits import scales
 

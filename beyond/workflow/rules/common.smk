@@ -38,7 +38,7 @@ def modules(package, *names):
 ORBITS = modules(
     "bouncing_ball_beyond",
     *("balls", "equations", "paths", "one_ball", "simulation"),
-    *("orbits", "special_orbits", "forms", "continuation"),
+    *("periodic", "special_orbits", "forms", "continuation"),
 )
 ERRORS = [*ORBITS, *modules("bouncing_ball_beyond", "laws", "root_time", "error_law")]
 SAVING = ["studies/variables", "bouncing_ball/datasets"]

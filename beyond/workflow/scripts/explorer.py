@@ -13,7 +13,7 @@ from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
 from bouncing_ball_beyond.one_ball import settling
-from bouncing_ball_beyond.orbits import OrbitNotFound, orbit
+from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
 from studies.orbits import random_orbits
 from studies.variables import VARIABLES

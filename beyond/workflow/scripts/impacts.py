@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets import save_stage
 from bouncing_ball_beyond.balls import Impact, SpringDamper, damping_of
-from bouncing_ball_beyond.orbits import orbit
+from bouncing_ball_beyond.periodic import orbit
 from studies.variables import VARIABLES
 
 RELEASES = ["displacement", "force"]

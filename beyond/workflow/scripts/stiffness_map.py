@@ -11,7 +11,7 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values, free_impact
-from bouncing_ball_beyond.orbits import guess_of_instants
+from bouncing_ball_beyond.periodic import guess_of_instants
 from bouncing_ball_beyond.paths import Parameter
 from studies.orbits import flight_height, solved
 from studies.variables import VARIABLES

@@ -13,7 +13,7 @@ from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations, dense, newton, solve_bordered
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.orbits import (
+from bouncing_ball_beyond.periodic import (
     OrbitNotFound,
     PeriodicOrbit,
     apart,

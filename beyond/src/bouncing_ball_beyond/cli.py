@@ -75,22 +75,22 @@ def with_options(*options: Callable) -> Callable:
     return decorate
 
 
-def _known_suffix(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
-    """The name of a file that can be written."""
-    if value is not None and Path(value).suffix not in (".nc", ".csv", *PICTURES):
-        allowed = ", ".join([".nc", ".csv", *PICTURES])
-        raise click.BadParameter(f"{value!r} must end with one of {allowed}")
-    return value
+def output(*suffixes: str) -> Callable:
+    """The option of a file, whose name must end with one of some suffixes."""
+
+    def check(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+        if value is not None and Path(value).suffix not in suffixes:
+            raise click.BadParameter(f"{value!r} must end with one of {', '.join(suffixes)}")
+        return value
+
+    text = f"Also write a file: {', '.join(suffixes)}."
+    return click.option("--output", callback=check, metavar="FILE", help=text)
 
 
 AMPLITUDE = click.option("--amplitude", type=float, required=True, help="Amplitude Λ of the table.")
 N = click.option("--n", type=int, default=1, show_default=True, help="Periods of the n-T orbit.")
-OUTPUT = click.option(
-    "--output",
-    callback=_known_suffix,
-    metavar="FILE",
-    help="Also as a .nc, .csv, .png, .pdf or .svg.",
-)
+DATA = output(".nc", ".csv")
+DRAWN = output(".nc", ".csv", *PICTURES)
 START = with_options(
     click.option("--phase", type=float, help="Phase of the table at the first impact."),
     click.option("--velocity", type=float, help="Absolute velocity of the ball before it."),
@@ -187,12 +187,11 @@ def write(found: Any, output: str | None) -> None:
     """Write orbits, a branch or a dataset to a file, if one is wanted."""
     if output is None:
         return
-    suffix = Path(output).suffix
-    if suffix in PICTURES:
+    if output.endswith(PICTURES):
         bb.plot(found).savefig(output)
         return
     data = found if hasattr(found, "to_netcdf") else bb.to_dataset(found)
-    if suffix == ".nc":
+    if output.endswith(".nc"):
         data.to_netcdf(output)
     else:
         data.to_dataframe().to_csv(output)
@@ -217,7 +216,7 @@ def table(head: list[str], columns: list[dict[str, str]]) -> str:
     default="stable",
     help="Side of the saddle-node.",
 )
-@OUTPUT
+@DATA
 def orbit(ball, amplitude, n, side, output):
     """The n-T orbit, with one impact in n periods of the table."""
     found = bb.orbit(ball, amplitude=amplitude, n=n, side=side)
@@ -228,7 +227,7 @@ def orbit(ball, amplitude, n, side, output):
 @commands.command()
 @with_ball
 @N
-@OUTPUT
+@DATA
 def limits(ball, n, output):
     """The saddle-node and the period doubling of n-T orbits."""
     found = [special for special in bb.limits(ball, n=n) if special is not None]
@@ -239,7 +238,7 @@ def limits(ball, n, output):
 
 @commands.command()
 @with_branch
-@OUTPUT
+@DRAWN
 def follow(branch, output):
     """A branch of orbits along a parameter, with its special orbits."""
     click.echo(branch)
@@ -253,7 +252,7 @@ def follow(branch, output):
 @click.option(
     "--range", "ranges", type=(str, float, float), multiple=True, help="NAME LOW HIGH of the curve."
 )
-@OUTPUT
+@DRAWN
 def curve(branch, kind, across, ranges, output):
     """The curve in two parameters of the first special orbit of a kind on a branch."""
     found = bb.special_curve(
@@ -272,22 +271,32 @@ def curve(branch, kind, across, ranges, output):
 @click.option("--impacts", type=int, default=2000, show_default=True, help="Followed at most.")
 def motion(ball, amplitude, phase, velocity, impacts):
     """The motion on which a ball ends."""
-    found = bb.motion_of(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
-    click.echo(found)
+    found = bb.motion_of(ball, amplitude=amplitude, impacts=impacts, **given(phase, velocity))
+    for name, value in found.items():
+        click.echo(f"{name:20}{value.item()}")
 
 
 @commands.command()
 @with_ball
 @click.option("--amplitude", type=(float, float), required=True, help="First and last Λ.")
 @click.option("--points", type=int, default=300, show_default=True, help="Number of amplitudes.")
-@OUTPUT
+@DRAWN
 def diagram(ball, amplitude, points, output):
-    """The motions on which balls end, over the amplitude."""
+    """The motions on which balls end, over the amplitude, each with its share of the starts."""
     import numpy as np
 
     found = bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points))
-    click.echo(found)
-    write(found, output)
+    motions = found[["kind", "periods", "impacts"]].to_dataframe()
+    click.echo(motions.groupby("amplitude").value_counts(normalize=True).to_string())
+    if output is not None and output.endswith(PICTURES):
+        from matplotlib.figure import Figure
+
+        axes = Figure(layout="tight").subplots()
+        dots = {"s": 1, "c": "black", "edgecolors": "none"}
+        found.plot.scatter(x="amplitude", y="impact_phase", ax=axes, **dots)
+        axes.figure.savefig(output)
+    else:
+        write(found, output)
 
 
 @commands.command()
@@ -295,7 +304,7 @@ def diagram(ball, amplitude, points, output):
 @AMPLITUDE
 @START
 @click.option("--impacts", type=int, default=20, show_default=True, help="Their number.")
-@OUTPUT
+@DATA
 def simulate(ball, amplitude, phase, velocity, impacts, output):
     """The impacts that follow a given one."""
     found = bb.simulate(ball, amplitude=amplitude, impacts=impacts, **given(phase, velocity))

@@ -39,7 +39,7 @@ SHIFT = 0.02
 the seventh derivative, 5e-13, and by rounding over h, 1e-14."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ForceLaw(Ball):
     """A contact with a force of any law.
 
@@ -102,6 +102,10 @@ class ForceLaw(Ball):
         for name in self.values.keys() & set(TAKEN):
             raise ValueError(f"{name}: is no name for a parameter of a law; choose another")
         check_force(self)
+
+    def __repr__(self):
+        values = ", ".join(f"{name}={value}" for name, value in self.values.items())
+        return f"{self.force.__name__.lstrip('_')}({values})"
 
     @property
     def parameters(self):
@@ -200,6 +204,7 @@ class ForceLaw(Ball):
         """Coefficients of the interpolation by the numbers of the ranges."""
         return {}
 
+    @np.errstate(invalid="ignore")
     def computed_signature(self, u):
         """As :meth:`signature`, by free impacts at each speed and parameter.
 
@@ -266,7 +271,7 @@ class ForceLaw(Ball):
         kappa = self.at(**self._own(stepped)).kappa
         start = (-kappa * np.minimum(stepped["u"], 0.0)) ** (1 / self.root)
         by = np.array([np.imag(start) + none, rows.steps.get("u", none)])
-        u = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
+        u = given["u"] = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
         if T is None:
             depth = self.at(**self._own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)

@@ -200,6 +200,11 @@ class Panel(NamedTuple):
     early: np.ndarray
     change: np.ndarray
 
+    def of(self, rows):
+        """The panels of some rows."""
+        nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
+        return Panel(nodes, end, *(x[rows] for x in self[2:]))
+
     def replace_some(self, at, new):
         """Write other panels into these."""
         old = (*self.nodes, *self.end, *self[2:])
@@ -321,16 +326,19 @@ def _resolved(panel, size):
 
 
 def _first_event(motion, events, side, start, panel):
-    """The first event of each panel, about its place on [0, 1], and the sides; -1 if there is none.
+    """The first event of each panel, -1 if there is none, and about its place on [0, 1].
 
-    The sides are the signs of the functions before their events, 0 where they are not known yet.
+    ``side`` has the signs of the functions before their events. It is written where it is not known
+    yet, 0, and where a kink was crossed at the end of the last panel, together with another event.
     """
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     which, place = np.full(start[0].size, -1), np.full(start[0].size, np.inf)
     x = np.concatenate([[0.0], _NODES, [1.0]])
     for k, event in enumerate(events):
         values = event(*states, motion.given)
-        side[k] = np.where(side[k] == 0, np.sign(values[1]), side[k])
+        if k < len(motion.kinks):
+            crossed = (values[0] * side[k] <= 0) & (values[1] * side[k] <= 0)
+            side[k, crossed] = np.sign(values[1, crossed])
         over = values[1:] * side[k] < 0
         crossed = np.flatnonzero(over.any(0))
         after = 1 + over[:, crossed].argmax(0)
@@ -340,7 +348,7 @@ def _first_event(motion, events, side, start, panel):
         here = np.maximum(here, x[1] / 2)
         first = here < place[crossed]
         place[crossed[first]], which[crossed[first]] = here[first], k
-    return which, place, side
+    return which, place
 
 
 def _shift(motion, event, state, by):
@@ -351,16 +359,27 @@ def _shift(motion, event, state, by):
 
 
 def _next_panel(motion, events, side, start, length, newton):
-    """The next panels, which end at their first events, the events (-1 is none), and their sides."""
+    """The next panels, which end at their first events, and these; -1 is none. ``side`` is written."""
     panel = solve_panel(motion, start, length, newton=newton)
-    which, place, side = _first_event(motion, events, side, start, panel)
-    for k in np.unique(which[which >= 0]):
-        at = np.flatnonzero(which == k)
-        begin = [y[at] for y in start]
-        short = length[at] * place[at]
-        new = solve_panel(motion.of(at), begin, short, events[k], newton=newton)
-        panel.replace_some(at, new)
-    return panel, which, side
+    which, place = _first_event(motion, events, side, start, panel)
+    rows, found, place = np.arange(which.size), which, length * place
+    for _ in events:
+        for k in np.unique(found[found >= 0]):
+            at = rows[found == k]
+            begin = [y[at] for y in start]
+            new = solve_panel(motion.of(at), begin, place[found == k], events[k], newton=newton)
+            panel.replace_some(at, new)
+        rows = rows[found >= 0]
+        if not rows.size:
+            break
+        which[rows] = found[found >= 0]
+        # Another event may turn out to be earlier than the one that seemed to be the first.
+        others = side[:, rows]
+        others[which[rows], np.arange(rows.size)] = np.nan
+        begin = [y[rows] for y in start]
+        found, place = _first_event(motion.of(rows), events, others, begin, panel.of(rows))
+        place = panel.length[rows] * place
+    return panel, which
 
 
 def _turn(q, v, t, given):
@@ -411,9 +430,9 @@ def follow(motion, q, v, by, length, until=None, by_until=0.0):
                 left = until[here] - s
                 pieces = np.fmax(np.ceil(left / h - 1e-9), 1)
                 h = left / pieces
-            panel, which, side[:, here] = _next_panel(
-                part, events, side[:, here], start, h, lies
-            )
+            sides = side[:, here]
+            panel, which = _next_panel(part, events, sides, start, h, lies)
+            side[:, here] = sides
             greatest = np.abs(panel.nodes[1]).max(0)
             size[here] = np.fmax(size[here], greatest)
             scale = np.fmax(1e-6 * size[here], greatest) if lies else size[here]
@@ -424,8 +443,8 @@ def follow(motion, q, v, by, length, until=None, by_until=0.0):
             here, which, part = here[good], which[good], part.of(good)
             now[:, here] = np.array([s + panel.length, *panel.end])[:, good]
             if directions:
-                nodes = [y[:, good] for y in panel.nodes]
-                by[1:, here] = carried(part, nodes, by[1:, here], panel.length[good])
+                kept = panel.of(good)
+                by[1:, here] = carried(part, kept.nodes, by[1:, here], kept.length)
                 for k in np.unique(which[which >= 0]):
                     at = np.flatnonzero(which == k)
                     i, turned = here[at], part.of(at)

@@ -25,11 +25,13 @@ class Command(click.Command):
         """Run the command."""
         try:
             return super().invoke(ctx)
-        except ValueError as error:
+        # Mistakes, files that cannot be written, and extras that are not installed.
+        except (ValueError, OSError, ImportError) as error:
             options = {parameter.name: parameter.opts[0] for parameter in self.params}
-            # Names of parameters, but not where a ball is written in parentheses.
-            text = re.sub(r"\([^)]*\)|\w+", lambda word: options.get(word[0], word[0]), str(error))
-            raise click.ClickException(text) from error
+            # Names before the colon, but not where a ball is written in parentheses.
+            names, colon, allowed = str(error).partition(":")
+            names = re.sub(r"\([^)]*\)|\w+", lambda word: options.get(word[0], word[0]), names)
+            raise click.ClickException(names + colon + allowed) from error
 
 
 class Commands(click.Group):
@@ -133,7 +135,7 @@ def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> A
     """The ball of a named law, with its parameters from texts such as "stiffness=1000"."""
     from bouncing_ball_beyond.named_laws import LAWS
 
-    name = law.replace("-", "_")
+    name = underscored(law)
     if name not in LAWS:
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
     values = {} if restitution is None else {"restitution": restitution}
@@ -147,6 +149,11 @@ def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> A
         return LAWS[name](**values)
     except TypeError as error:
         raise ValueError(f"settings: {error}") from error
+
+
+def underscored(name: str) -> str:
+    """The name of a parameter in Python."""
+    return name.replace("-", "_")
 
 
 def given(phase: float | None, velocity: float | None) -> dict[str, float]:
@@ -165,9 +172,10 @@ def with_branch(function: Callable) -> Callable:
             start = bb.orbit_of_motion(ball, amplitude=amplitude, **motion)
         else:
             start = bb.orbit(ball, amplitude=amplitude, n=n)
-        branch = bb.follow(start, along=along, to=to)
+        goal = {"along": underscored(along), "to": to}
+        branch = bb.follow(start, **goal)
         for _ in range(doublings):
-            branch = bb.follow(branch.first("period doubling"), along=along, to=to)
+            branch = bb.follow(branch.first("period doubling"), **goal)
         return function(branch, **others)
 
     decorate = with_options(
@@ -257,8 +265,8 @@ def curve(branch, kind, across, ranges, output):
     """The curve in two parameters of the first special orbit of a kind on a branch."""
     found = bb.special_curve(
         branch.first(kind),
-        along=(branch.along, across),
-        ranges={name: (low, high) for name, low, high in ranges},
+        along=(branch.along, underscored(across)),
+        ranges={underscored(name): (low, high) for name, low, high in ranges},
     )
     click.echo(found)
     write(found, output)

@@ -369,7 +369,8 @@ def _times(ball, amplitude, n, name, exact) -> float:
     for _ in range(30):
         shaken, there = path.apply(ball, amplitude, times * np.sqrt(amplitude))
         found = contact_values(shaken, amplitude=there, n=n, quantities=[name])[name]
-        before, times = times, np.sqrt(found / amplitude)
+        before = times
+        times = np.sqrt(found / amplitude)
         if abs(times - before) < 1e-6 * times:
             return float(times)
     return np.nan

@@ -97,6 +97,11 @@ class Ball:
         """T of impacts: 0 for impacts without a duration."""
         return 0.0 * (tau + u + amplitude)
 
+    def first_impact(self, tau, u, amplitude, gravity=1.0):
+        """T of the first release, and the impact up to it."""
+        T = self.first_release(tau, u, amplitude, gravity)
+        return T, self.contact(tau, u, T, amplitude, gravity)
+
 
 def _varies(value):
     return not (value is None or callable(value) or isinstance(value, str))

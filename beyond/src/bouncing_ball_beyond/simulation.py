@@ -103,6 +103,13 @@ def safe_steps(t, f, slope, second, bend, jerk):
     return step, near | (step <= ROUNDING * t)
 
 
+def table_at(phase, amplitude):
+    """Λ cos τ and Λ sin τ, the velocity and the height of the table, by one tangent."""
+    half = np.tan(phase / 2)
+    sine = 2 * half / (1 + half * half)
+    return amplitude * (1 - half * sine), amplitude * sine
+
+
 def flights(t, gap, w, x, y):
     """:func:`.one_ball.flight` for arrays."""
     half = np.tan(t / 2)
@@ -201,7 +208,7 @@ def releases(ball, phase, u, amplitude):
     """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
     releases: :func:`.one_ball.release` for arrays.
     """
-    given = ball.start(u), u, amplitude * np.cos(phase), amplitude * np.sin(phase), amplitude
+    given = ball.start(u), u, *table_at(phase, amplitude), amplitude
     parameters = np.broadcast_arrays(u, ball.frequency_ratio, ball.zeta, ball.kappa)[1:]
     rows = np.array([0 * u, *given])
     duration = np.full(u.shape, np.inf)
@@ -269,28 +276,47 @@ def leave(balls):
         duration, w = releases(ball, balls.phase, u, amplitude)
         own_time = np.where(duration < np.inf, duration * ball.frequency_ratio, np.nan)
     else:
-        own_time = ball.first_release(balls.phase, u, amplitude)
-        duration, gap, w, _ = ball.contact(balls.phase, u, own_time, amplitude)
+        own_time, (duration, gap, w, _) = ball.first_impact(balls.phase, u, amplitude)
         duration = np.where(np.isnan(own_time), np.inf, duration)
     if isinstance(ball, Corrected):
         return rest_after_contacts(balls, gap, w)
     if not ball.lasts:
         return rest(balls, w)
-    if isinstance(ball, SpringDamper):
+    if isinstance(ball, SpringDamper) or np.any(ball.kappa):
         # The release is a zero of δ + κδ′, but for rounding.
         gap = -ball.kappa * w
-    ends = np.where(duration < np.inf, balls.phase + duration, 0.0)
-    turns, phase = reduced(ends)
-    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
+    turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
+    leaving = Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
+    if not np.any(ball.kappa):
+        duration[sinking(leaving, amplitude)] = np.nan
+    return leaving
+
+
+def sinking(leaving, amplitude):
+    """The indices of balls that were released below the level of the table and do not rise to it.
+
+    Their contacts resume. It is not known where if the force does not vanish where δ + κδ′ = 0.
+    """
+    gap, w = leaving.gap, leaving.speed
+    x, y = table_at(leaving.phase, amplitude)
+    rising = np.zeros(w.shape)
+    for i in may_sink(gap, w, amplitude, 0.0).nonzero()[0]:
+        rising[i] = one_ball.emergence(0.0, gap[i], w[i], x[i], y[i], amplitude[i])
+    return np.isinf(rising).nonzero()[0]
 
 
 def rest(balls, w):
     """How balls leave after instantaneous impacts, some of them after a rest on the table."""
     amplitude, phase = balls.amplitude, balls.phase
     stay = np.full(w.shape, -1.0)
-    for i in (w <= one_ball.slowest(amplitude)).nonzero()[0]:
-        restitution = w[i] / max(balls.speed[i], TINY)
-        stay[i] = one_ball.rest(w[i], restitution, phase[i], amplitude[i])
+    restitution = w / np.maximum(balls.speed, TINY)
+    (slow,) = (w <= one_ball.slowest(amplitude)).nonzero()
+    # Slightly above the limit of :func:`.one_ball.settling`, so that rounding does not decide here.
+    gravity = 1 - amplitude[slow] * np.sin(phase[slow])
+    limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution[slow])
+    limit /= np.maximum(amplitude[slow], 1.0)
+    for i in slow[(w[slow] <= limit) | (w[slow] == 0)]:
+        stay[i] = one_ball.rest(w[i], restitution[i], phase[i], amplitude[i])
     lift_off = np.arcsin(1 / np.maximum(amplitude, 1.0))
     return after_rest(balls, stay, np.where(stay < 0, phase, lift_off), 0 * w, w)
 
@@ -307,7 +333,9 @@ def rest_after_contacts(balls, gap, w):
 
 
 def left_of_contacts(balls):
-    """How long the contacts would last for which instants stand, after these."""
+    """How long the contacts would last for which instants stand, after these; 0 for other balls."""
+    if not isinstance(balls.ball, Corrected):
+        return 0.0
     signature = balls.ball.signature(balls.speed)
     return signature.duration - signature.centroid
 
@@ -342,8 +370,7 @@ def reduced(phase):
 def fly(balls, leaving):
     """The flights of balls up to their next impacts."""
     ball, amplitude, gap, w = balls.ball, balls.amplitude, leaving.gap, leaving.speed
-    x = amplitude * np.cos(leaving.phase)
-    y = amplitude * np.sin(leaving.phase)
+    x, y = table_at(leaving.phase, amplitude)
     # A ball without a speed leaves because the table falls away: Y ≥ 1, but for rounding.
     y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)
     strongest = 1 + amplitude
@@ -353,16 +380,16 @@ def fly(balls, leaving):
     left_behind = (2 * x + np.sqrt(4 * x * x + 12 * amplitude * fall)) / amplitude
     start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
     resumes = np.zeros(w.shape, bool)
-    if isinstance(ball, Corrected):
-        left = left_of_contacts(balls)
-        for i in may_sink(gap, w, amplitude, left).nonzero()[0]:
-            start[i] = one_ball.emergence(left[i], gap[i], w[i], x[i], y[i], amplitude[i])
-    else:
+    if np.any(ball.kappa):
         kappa = np.broadcast_to(ball.kappa, w.shape)
         slow = (gap < 0) & ((w < 0) | (at_level <= kappa * strongest))
         for i in slow.nonzero()[0]:
             given = gap[i], w[i], x[i], y[i], amplitude[i], kappa[i]
             resumes[i], start[i] = one_ball.rise(*given)
+    else:
+        left = np.broadcast_to(left_of_contacts(balls), w.shape)
+        for i in may_sink(gap, w, amplitude, left).nonzero()[0]:
+            start[i] = one_ball.emergence(left[i], gap[i], w[i], x[i], y[i], amplitude[i])
     landed, speed = landings(start, gap, w, x, y, amplitude)
     if resumes.any():
         landed[resumes] = start[resumes]
@@ -560,6 +587,11 @@ def dataset(grid, variables, descriptions, **coordinates):
     for name, value in variables.items():
         value = np.reshape(value, grid.shape + np.shape(value)[1:])
         found[name] = ((*grid.dims, *names[: value.ndim - grid.ndim]), value)
+    return described(found, descriptions)
+
+
+def described(found, descriptions):
+    """A dataset whose variables have a long name, a symbol and a unit."""
     for name in found.variables:
         if name in descriptions:
             labels = zip(("long_name", "symbol", "units"), descriptions[name], strict=True)
@@ -771,7 +803,7 @@ def states_at(pieces, balls, times):
     gap, rate = np.zeros(times.shape), np.zeros(times.shape)
     flying = Pieces(*(each[~contact] for each in here))
     leaves = flying.phase + flying.duration
-    table = amplitude * np.cos(leaves), amplitude * np.sin(leaves)
+    table = table_at(leaves, amplitude)
     passed = since[~contact] - flying.duration
     gap[~contact], rate[~contact], _ = flights(passed, flying.gap, flying.bounce_speed, *table)
     if ball.lasts and contact.any():

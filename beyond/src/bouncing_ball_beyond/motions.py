@@ -1,0 +1,823 @@
+"""The motions on which balls end: permanent contact, a motion that repeats, or chaos.
+
+A ball is followed together with the derivative M of its motion over its last k impacts. If it has
+returned to where it was k impacts ago, up to a small distance, and if the fixed point of the
+motion,
+
+    s* = s + (I - M)⁻¹ (F(s) - s),
+
+is as near, and if the multipliers of M are below 1 by a margin, then the ball is on a periodic
+motion with k impacts. A ball that *sticks* to the table after instantaneous impacts leaves it in a
+state that does not depend on earlier impacts: a motion that sticks twice is *locked*. A contact of
+finite duration sticks if it lasts longer than two free impacts. What neither repeats nor rests is
+called chaotic if neighbouring motions separate exponentially, and undecided otherwise.
+"""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import stdtrit
+
+from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.one_ball import TURN
+from bouncing_ball_beyond.periodic import OrbitNotFound, solved
+from bouncing_ball_beyond.simulation import (
+    DESCRIPTIONS,
+    Balls,
+    contacts,
+    dataset,
+    described,
+    first_impacts,
+    follow,
+    grid_of,
+    has_closed_form,
+    some_of,
+    table_at,
+)
+
+NEAR = 1e-7
+"""The distance, an angle and a speed over 1 + Λ, within which a ball has returned: far above
+rounding errors, and far below the distance of two orbits whose multipliers have the margin."""
+NEAR_BEFORE = 1e-5
+"""The distance of the impacts of the turn before the last one from those of the last one."""
+CANDIDATES = 8
+"""The number of returns to within this distance that are tried, from the latest one on."""
+MARGIN = 1e-3
+"""The multipliers of a motion that repeats are below 1 by this margin."""
+FORGOTTEN = np.log(NEAR / 2.0**-52)
+"""The logarithm of the growth of deviations over which a rounding error becomes visible."""
+SECTION = 25
+SECTIONS = 1024
+"""Impacts of a section over which the growth of deviations is summed up, at least, and the number
+of sections of a motion, at most."""
+ROWS = 1 << 18
+"""Impacts that are followed at a time, of all balls together."""
+TINY = 1e-300
+BLOCK = 4096
+"""Balls that are followed at a time."""
+ERRORS = 5.0
+"""The exponent of a chaotic motion is positive by so many standard errors: by chance once in three
+million."""
+SETTLED = 5.0
+TELLING = 20.0
+"""Relaxation lengths that are left out before an exponent is computed, and that tell its error. In
+one of them areas contract by e, and energies approach their mean by as much."""
+EVEN = (0.7548776662466927, 0.5698402909980532)
+"""The fractional parts of multiples of these numbers cover a square evenly."""
+NEIGHBOURS = 32
+"""Balls beside a chaotic one that show whether its chaos is a transient."""
+
+LIFT_OFF = 1e-12
+"""The height Λ sin τ = 1 of the table at a lift-off, up to rounding."""
+
+PERIODIC, LOCKED, PERMANENT, CHAOTIC, UNDECIDED = (
+    "periodic",
+    "locked",
+    "permanent contact",
+    "chaotic",
+    "undecided",
+)
+NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
+MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
+ROUNDING = "rounding errors grow to the size of the motion before it repeats"
+RESUMES = "a contact resumes below the level of the table, where its law does not say"
+TRANSIENT = "it looks chaotic, but a ball beside it comes to rest or repeats: it may be a transient"
+
+
+def tangent_maps(balls, record, lifts):
+    """Derivatives of each next (τ, u) by (τ, u) of an impact.
+
+    Parameters
+    ----------
+    balls : Balls
+    record : ndarray, shape (impacts, 7, balls)
+        As of :func:`.simulation.follow`.
+    lifts : ndarray of bool, shape (impacts, balls)
+        As of :func:`lift_offs`.
+
+    Returns
+    -------
+    ndarray, shape (2, 2, impacts, balls)
+        Zero where a ball leaves by the lift-off after a rest, because it forgets its past there.
+    """
+    ball, amplitude = balls.ball, balls.amplitude
+    _, tau, u, T, duration, w, time = np.moveaxis(record, 1, 0)
+    if has_closed_form(ball):
+        slopes = slopes_of_oscillator(balls, tau, u, duration, w)
+    else:
+        slopes = slopes_of_contact(balls, tau, u, T)
+    if not ball.lasts:
+        slopes = np.where(duration > 0, 0.0, slopes)
+    later, dgap, dw = slopes
+    later = later + np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]
+    leaves = tau + duration
+    x, y = table_at(leaves, amplitude)
+    x_end, y_end = table_at(leaves + time, amplitude)
+    rate = w + x - time - x_end
+    start = ball.start(-rate + 1j * H).imag / H
+    dgap = dgap + time * dw + (x - x_end - y * time) * later
+    drate = dw + (y_end - y) * later
+    dtime = -(dgap + start * drate) / (rate + start * (y_end - 1))
+    maps = np.array([later + dtime, -drate - (y_end - 1) * dtime])
+    return np.where(lifts, 0.0, maps)
+
+
+def slopes_of_contact(balls, tau, u, T):
+    """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, shape (3, 2, impacts, balls)."""
+    ball = balls.ball
+    unknowns = 3 if ball.lasts else 2
+    steps = 1j * H * np.eye(3)[:, :unknowns, np.newaxis, np.newaxis]
+    impact = ball.contact(tau + steps[0], u + steps[1], T + steps[2], balls.amplitude)
+    slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
+    if not ball.lasts:
+        return slopes
+    # T follows from the zero of the release function.
+    release = impact.release.imag / H
+    return slopes[:, :2] - slopes[:, 2:] * (release[:2] / release[2])
+
+
+def slopes_of_oscillator(balls, tau, u, duration, w):
+    """The same for a spring and a damper, by the responses of which its motion is a sum."""
+    ball = balls.ball
+    ratio, zeta, kappa = ball.frequency_ratio, ball.zeta, ball.kappa
+    x, y = table_at(tau, balls.amplitude)
+    start = np.where(u < 0, kappa, 0.0)
+    load = contacts(duration, 0.0, 0.0, 0.0, 0.0, ratio, zeta)
+    by_tau = contacts(duration, 0.0, 0.0, -y, x, ratio, zeta)
+    by_u = contacts(duration, start, 1.0, 0.0, 0.0, ratio, zeta)
+    gap = np.array([by_tau[0] - load[0], by_u[0] - load[0]])
+    rate = np.array([by_tau[1] - load[1], by_u[1] - load[1]])
+    push = table_at(tau + duration, balls.amplitude)[1] - 1
+    second = push - 2 * zeta * ratio * w + ratio * ratio * kappa * w
+    later = -(gap + kappa * rate) / (w + kappa * second)
+    return np.array([later, gap + w * later, rate + second * later])
+
+
+def lift_offs(balls, record):
+    """Where balls leave by the lift-off after a rest, shape (impacts, balls)."""
+    _, tau, _, _, duration, w, _ = np.moveaxis(record, 1, 0)
+    if balls.ball.lasts:
+        return np.zeros(tau.shape, bool)
+    rests = (duration > 0) & (w == 0)
+    height = balls.amplitude * np.sin(np.where(rests, tau + duration, 0.0))
+    return rests & (height < 1 + LIFT_OFF)
+
+
+def product(maps):
+    """The products of maps of the shape (2, 2, impacts, balls), the last one on the left."""
+    while (n := maps.shape[2]) > 1:
+        pairs = np.einsum("ijnb,jknb->iknb", maps[:, :, 1::2], maps[:, :, : n - 1 : 2])
+        maps = np.concatenate([pairs, maps[:, :, n - n % 2 :]], axis=2)
+    return maps[:, :, 0]
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """Balls that are followed, with a deviation of each.
+
+    ``lane`` is the index of a ball among all, ``vector`` its deviation of length 1, ``climb`` the
+    logarithm of its growth above the least one since the last lift-off, and ``most`` the greatest
+    climb since then. ``lifted`` and ``lifted_at`` are the number of the impact before the last
+    lift-off, -1 if there was none, and its time. ``sections`` has the growth, the time and the
+    logarithm of the contraction of areas in each section.
+    """
+
+    balls: Balls
+    lane: np.ndarray
+    vector: np.ndarray
+    climb: np.ndarray
+    most: np.ndarray
+    lifted: np.ndarray
+    lifted_at: np.ndarray
+    marginal: np.ndarray
+    sections: np.ndarray
+
+    @classmethod
+    def of(cls, balls):
+        """Balls before their first impacts."""
+        m = balls.phase.size
+        return cls(
+            balls=balls,
+            lane=np.arange(m),
+            vector=np.tile([[1.0], [0.0]], m),
+            climb=np.zeros(m),
+            most=np.zeros(m),
+            lifted=np.full(m, -1),
+            lifted_at=np.zeros(m),
+            marginal=np.zeros(m, bool),
+            sections=np.zeros((0, 3, m)),
+        )
+
+    def take(self, which):
+        """Some of the balls."""
+        rows = {name: each[..., which] for name, each in vars(self).items() if name != "balls"}
+        return Tracked(balls=self.balls.take(which), **rows)
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The motions on which a row of balls ends; a field for each of the variables of
+    :func:`motion_of`.
+    """
+
+    kind: np.ndarray
+    impacts: np.ndarray
+    periods: np.ndarray
+    lyapunov_exponent: np.ndarray
+    lyapunov_error: np.ndarray
+    exponent_sum: np.ndarray
+    reason: np.ndarray
+    followed: np.ndarray
+    end_phase: np.ndarray
+    end_speed: np.ndarray
+
+    @classmethod
+    def unknown(cls, m):
+        """Those of balls whose motions are not known."""
+        counts = {name: np.zeros(m, int) for name in ("impacts", "periods", "followed")}
+        texts = {name: np.full(m, "", object) for name in ("kind", "reason")}
+        numbers = [name for name in cls.__annotations__ if name not in counts | texts]
+        return cls(**counts, **texts, **{name: np.full(m, np.nan) for name in numbers})
+
+    def store(self, which, **values):
+        """Store values of the balls with these indices."""
+        for name, value in values.items():
+            getattr(self, name)[which] = value
+
+
+def ends_of(balls, impacts):
+    """The motions on which balls end that are followed for a number of impacts, or some more."""
+    blocks = range(0, balls.phase.size, BLOCK)
+    parts = [_ends_of(balls.take(slice(first, first + BLOCK)), impacts) for first in blocks]
+    columns = zip(*(vars(part).values() for part in parts), strict=True)
+    return Ends(*(np.concatenate(column) for column in columns))
+
+
+@np.errstate(all="ignore")
+def _ends_of(balls, impacts):
+    """The same for one block. Deviations of long motions overflow, and vanish at a lift-off."""
+    found = Ends.unknown(balls.phase.size)
+    section = max(SECTION, -(-impacts // SECTIONS))
+    tracked = Tracked.of(balls)
+    seen = 0
+    while tracked.lane.size and seen < impacts:
+        count = min(max(seen // section, 1), -(-(impacts - seen) // section))
+        count = min(count, max(ROWS // tracked.lane.size // section, 1))
+        record, going, after = follow(tracked.balls, count * section)
+        resting = np.delete(np.arange(tracked.lane.size), going)
+        _store_resting(found, tracked.lane[resting], record[:, :, resting], seen)
+        tracked = tracked.take(going)
+        record = record[:, :, going]
+        lifts = lift_offs(tracked.balls, record)
+        maps = tangent_maps(tracked.balls, record, lifts)
+        again = recurrence(tracked.balls, record, after, maps)
+        tracked, lap = stretched(tracked, record, after, maps, lifts, section)
+        seen += len(record)
+        _store_periodic(found, tracked, record, again, seen)
+        tracked, locked = _store_locked(found, tracked, record, lifts, lap, seen - len(record))
+        tracked = replace(tracked, marginal=again.marginal)
+        tracked = tracked.take(~locked & ~again.found)
+    _store_others(found, tracked, seen)
+    return found
+
+
+def stretched(tracked, record, after, maps, lifts, section):
+    """The balls after some more impacts, with their deviations, and the growth since the lift-off
+    before the last one.
+    """
+    turns, phase = record[:, 0], record[:, 1]
+    vector, climb, most = tracked.vector, tracked.climb, tracked.most
+    lap = np.zeros(most.shape)
+    growth = np.zeros(lifts.shape)
+    for i in range(len(record)):
+        vector = np.einsum("ijb,jb->ib", maps[:, :, i], vector)
+        length = np.hypot(*vector)
+        again = lifts[i] | ~(length > TINY)
+        growth[i] = np.where(again, 0.0, np.log(length))
+        vector = np.where(again, [[1.0], [0.0]], vector / length)
+        lap = np.where(lifts[i], most, lap)
+        climb = np.where(again, 0.0, np.maximum(climb + growth[i], 0.0))
+        most = np.where(lifts[i], 0.0, np.maximum(most, climb))
+    starts = TURN * np.vstack([turns, after.turns]) + np.vstack([phase, after.phase])
+    areas = contraction(maps)
+    sums = np.stack([growth, np.diff(starts, axis=0), np.where(np.isfinite(areas), areas, 0.0)])
+    sections = sums.reshape(3, -1, section, growth.shape[1]).sum(axis=2)
+    sections = np.concatenate([tracked.sections, np.moveaxis(sections, 0, 1)])
+    later = replace(tracked, balls=after, vector=vector, climb=climb, most=most, sections=sections)
+    return later, lap
+
+
+class Recurrence(NamedTuple):
+    """Returns of balls after ``impacts`` in ``periods``, with the moduli of the larger multipliers
+    and the logarithms of the contraction of areas; ``found`` are those that repeat, and
+    ``marginal`` those whose neighbours come closer too slowly.
+    """
+
+    found: np.ndarray
+    marginal: np.ndarray
+    impacts: np.ndarray
+    periods: np.ndarray
+    radius: np.ndarray
+    areas: np.ndarray
+
+
+def recurrence(balls, record, after, maps):
+    """The first recurrence of each ball, seen from the impact after those recorded."""
+    n, _, m = record.shape
+    half = n // 2
+    turns = np.vstack([record[:, 0], after.turns])
+    phase = np.vstack([record[:, 1], after.phase])
+    speed = np.vstack([record[:, 2], after.speed]) / (1 + balls.amplitude)
+    distance = apart(phase[n] - phase[n - half : n], speed[n] - speed[n - half : n])
+    near = distance[::-1] < NEAR_BEFORE
+    near &= near.cumsum(axis=0) <= CANDIDATES
+    known = np.zeros(m, bool)
+    distance = np.full(m, np.inf)
+    lag = np.zeros(m, int)
+    radius = np.zeros(m)
+    areas = np.zeros(m)
+    for k in near.any(axis=1).nonzero()[0] + 1:
+        (some,) = (near[k - 1] & ~known).nonzero()
+        last = phase[:, some], speed[:, some]
+        turn = apart(*(each[n + 1 - k :] - each[n + 1 - 2 * k : n + 1 - k] for each in last))
+        some = some[turn.max(axis=0) < NEAR_BEFORE]
+        scale = 1 + balls.amplitude[some]
+        angle = (phase[n] - phase[n - k])[some]
+        angle -= TURN * np.round(angle / TURN)
+        change = (speed[n] - speed[n - k])[some] * scale
+        lap = maps[:, :, n - k :, some]
+        (a, b), (c, d) = product(lap)
+        divisor = 1 - (a + d) + (a * d - b * c)
+        to_phase = ((1 - d) * angle + b * change) / divisor
+        to_speed = (c * angle + (1 - a) * change) / divisor
+        lag[some] = k
+        distance[some] = apart(to_phase, to_speed / scale)
+        radius[some] = largest_multiplier(a + d, a * d - b * c)
+        areas[some] = contraction(lap).sum(axis=0)
+        # Several turns have the same fixed point: the shortest one counts.
+        known[some] = distance[some] < NEAR_BEFORE
+    found = (distance < NEAR) & (radius < 1 - MARGIN)
+    marginal = np.abs(radius - 1) < MARGIN
+    row = np.arange(m)
+    passed = TURN * (turns[n] - turns[n - lag, row]) + (phase[n] - phase[n - lag, row])
+    periods = np.round(passed / TURN).astype(int)
+    return Recurrence(found, marginal, lag, periods, radius, areas)
+
+
+def apart(angle, speed):
+    """The distance of states by differences of their phases, and of their speeds over 1 + Λ."""
+    return np.maximum(np.abs(angle - TURN * np.round(angle / TURN)), np.abs(speed))
+
+
+def largest_multiplier(trace, determinant):
+    """The greatest modulus of the two multipliers."""
+    root = np.sqrt(trace * trace / 4 - determinant + 0j)
+    return np.maximum(np.abs(trace / 2 + root), np.abs(trace / 2 - root))
+
+
+def contraction(maps):
+    """The logarithms of the moduli of determinants."""
+    return np.log(np.abs(maps[0, 0] * maps[1, 1] - maps[0, 1] * maps[1, 0]))
+
+
+def _store_resting(found, lane, record, seen):
+    """Store the balls that stay on the table."""
+    count = np.isfinite(record[:, 0]).sum(axis=0)
+    duration = record[count - 1, 4, np.arange(lane.size)]
+    found.store(lane, kind=PERMANENT, periods=1, lyapunov_error=0.0, followed=seen + count)
+    found.store(lane[np.isnan(duration)], kind=UNDECIDED, periods=0, reason=RESUMES)
+
+
+def _store_locked(found, tracked, record, lifts, lap, seen):
+    """Store the balls that stick for the second time. Returns all balls, and which stick."""
+    row = np.arange(tracked.lane.size)
+    last = len(lifts) - 1 - lifts[::-1].argmax(axis=0)
+    times = TURN * record[:, 0] + record[:, 1] + record[:, 4]
+    earlier = lifts & (np.arange(len(lifts))[:, np.newaxis] < last)
+    before = len(lifts) - 1 - earlier[::-1].argmax(axis=0)
+    twice = earlier.any(axis=0)
+    number = np.where(twice, seen + before, tracked.lifted)
+    time = np.where(twice, times[before, row], tracked.lifted_at)
+    lifted = lifts.any(axis=0)
+    again = lifted & (number >= 0)
+    known = lap[again] < FORGOTTEN
+    found.store(
+        tracked.lane[again],
+        kind=LOCKED,
+        impacts=np.where(known, (seen + last - number)[again], 0),
+        periods=np.where(known, np.round((times[last, row] - time)[again] / TURN), 0),
+        reason=np.where(known, "", ROUNDING),
+        lyapunov_exponent=-np.inf,
+        lyapunov_error=0.0,
+        exponent_sum=-np.inf,
+        followed=seen + last[again] + 1,
+        end_phase=tracked.balls.phase[again],
+        end_speed=tracked.balls.speed[again],
+    )
+    tracked = replace(
+        tracked,
+        lifted=np.where(lifted, seen + last, tracked.lifted),
+        lifted_at=np.where(lifted, times[last, row], tracked.lifted_at),
+    )
+    return tracked, again
+
+
+def _store_periodic(found, tracked, record, again, seen):
+    """Store the balls that repeat. Their contacts stick if they last longer than two free impacts."""
+    some = again.found.nonzero()[0]
+    ball = some_of(tracked.balls.ball, some)
+    kind = np.full(some.size, PERIODIC, object)
+    if ball.lasts:
+        u, own_time = record[:, 2, some], record[:, 3, some]
+        sticks = ~(own_time <= 2 * ball.free(np.abs(u)))
+        of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again.impacts[some]
+        kind[(sticks & of_lap).any(axis=0)] = LOCKED
+    found.store(
+        tracked.lane[some],
+        kind=kind,
+        impacts=again.impacts[some],
+        periods=again.periods[some],
+        lyapunov_exponent=np.log(again.radius[some]) / again.periods[some],
+        lyapunov_error=0.0,
+        exponent_sum=again.areas[some] / again.periods[some],
+        followed=seen,
+        end_phase=tracked.balls.phase[some],
+        end_speed=tracked.balls.speed[some],
+    )
+
+
+def _store_others(found, tracked, seen):
+    """Store the balls that have neither repeated nor come to rest: chaotic ones, if their
+    neighbours separate exponentially.
+    """
+    for j, lane in enumerate(tracked.lane):
+        growth, time, areas = tracked.sections[:, :, j].T
+        rate, scatter, error = exponent(growth, time, areas)
+        if tracked.marginal[j]:
+            reason = MARGINAL
+        elif rate > ERRORS * scatter and growth.sum() > FORGOTTEN:
+            reason = ""
+        elif rate < -ERRORS * scatter and tracked.most[j] > FORGOTTEN:
+            reason = ROUNDING
+        else:
+            reason = NO_RECURRENCE
+        found.store(
+            lane,
+            kind=UNDECIDED if reason else CHAOTIC,
+            reason=reason,
+            lyapunov_exponent=TURN * rate,
+            lyapunov_error=TURN * error,
+            exponent_sum=TURN * areas.sum() / time.sum(),
+            followed=seen,
+            end_phase=tracked.balls.phase[j],
+            end_speed=tracked.balls.speed[j],
+        )
+
+
+def exponent(growth, time, areas):
+    """The growth per unit of time over sections of a motion, its standard error between sections,
+    and an error of which twice is an interval of 95 %.
+
+    Nearly elastic balls change their energy slowly. What they do in the first relaxation lengths is
+    left out, with the first quarter of the sections, and neighbouring sections are not independent:
+    the error is the largest one for blocks of 1, 2, 4, ... sections (Flyvbjerg and Petersen, J.
+    Chem. Phys. 91, 461, 1989), multiplied by the quotient of the quantiles of Student's and of the
+    normal distribution. It is NaN if the sections are too few relaxation lengths.
+
+    Examples
+    --------
+    >>> rate, scatter, error = exponent(np.array([1.0, 3.0] * 8), np.ones(16), np.full(16, -9.0))
+    >>> float(rate), round(float(scatter), 2)
+    (2.0, 0.3)
+    """
+    lengths = -np.cumsum(areas)
+    first = max(growth.size // 4, int(np.searchsorted(lengths, SETTLED)))
+    first = min(first, max(growth.size - 2, 0))
+    rate = growth[first:].sum() / time[first:].sum()
+    residual = growth[first:] - rate * time[first:]
+    errors = []
+    while residual.size >= (4 if errors else 2):
+        n = residual.size
+        error = np.sqrt(n / (n - 1) * np.sum(residual**2)) / time[first:].sum()
+        errors.append(error * np.array([1.0, stdtrit(n - 1, 0.975) / 1.96]))
+        residual = residual[: n // 2 * 2].reshape(-1, 2).sum(axis=1)
+    scatter, widest = errors[0][0], np.max(errors, axis=0)[1]
+    tells = lengths[-1] - lengths[first] >= TELLING
+    return rate, scatter, widest if tells else np.nan
+
+
+OF_MOTIONS = DESCRIPTIONS | {
+    "kind": ("kind of motion on which the ball ends", "", "1"),
+    "impacts": ("impacts until the motion repeats, 0 if it does not", "k", "1"),
+    "periods": ("periods of the table until the motion repeats, 0 if it does not", "m", "1"),
+    "lyapunov_exponent": ("largest Lyapunov exponent, per period of the table", "λ", "1"),
+    "lyapunov_error": ("error of the exponent: twice it on both sides are 95 %", "", "1"),
+    "exponent_sum": ("sum of both Lyapunov exponents, per period of the table", "", "1"),
+    "reason": ("why the motion is undecided, or its period not known", "", "1"),
+    "followed": ("number of impacts for which the ball was followed", "", "1"),
+    "end_phase": ("phase of the table at an impact of the motion", "φ", "rad"),
+    "end_velocity": ("velocity of the ball before that impact", "z′", "1"),
+    "in_words": ("the kind of the motion, and for how long the ball was followed", "", "1"),
+    "speed": ("closing speed of the first impact", "u", "1"),
+    "destination": ("number of the motion on which a start ends", "", "1"),
+    "motion": ("number of a motion", "", "1"),
+    "share": ("share of the starts that end on the motion", "", "1"),
+    "share_error": ("standard error of the share", "", "1"),
+    "start": ("number of the start", "", "1"),
+    "impact_speed": ("closing speed of the impact", "u", "1"),
+}
+"""Long name, symbol and unit of the variables of datasets of motions."""
+
+
+def motion_of(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000):
+    """The motion on which a ball ends, after a first impact as in :func:`.simulate`.
+
+    Parameters
+    ----------
+    ball, amplitude, phase, velocity, relative_velocity
+        As in :func:`.simulate`; arrays span a grid.
+    impacts : int
+        Number of impacts after which the search for a repetition ends, up to the next multiple of
+        25.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``kind``: "periodic"; "locked", if the ball also sticks to the table in each repetition;
+        "permanent contact"; "chaotic"; or "undecided", for the ``reason`` given. The ``impacts`` and the
+        ``periods`` of the table until the motion repeats; a locked motion has 0 if rounding decides
+        on them, as the ``reason`` says. ``lyapunov_exponent`` per period of the table with
+        ``lyapunov_error``, 0 for motions that repeat, and ``exponent_sum``, that of both exponents.
+        The number of impacts ``followed``, one impact of the motion (``end_phase``,
+        ``end_velocity``), and all ``in_words``.
+
+    Raises
+    ------
+    ValueError
+        As :func:`.simulate`.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = motion_of(Rigid(0.5), amplitude=[0.5, 1.2, 1.6])
+    >>> found.kind.values.tolist(), found.impacts.values.tolist()
+    (['permanent contact', 'periodic', 'periodic'], [0, 1, 2])
+    """
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    return dataset_of(grid, balls.amplitude, ends_of(balls, impacts))
+
+
+def dataset_of(grid, amplitude, ends):
+    """The dataset of motions over a grid."""
+    found = vars(ends).copy()
+    speed = found.pop("end_speed")
+    found["end_velocity"] = amplitude * np.cos(ends.end_phase) - speed
+    found["in_words"] = np.array(
+        [in_words(*each) for each in zip(ends.kind, ends.followed, ends.reason, strict=True)]
+    )
+    found["kind"] = ends.kind.astype(str)
+    found["reason"] = ends.reason.astype(str)
+    return dataset(grid, found, OF_MOTIONS)
+
+
+def in_words(kind, followed, reason):
+    """A motion in words.
+
+    Examples
+    --------
+    >>> in_words("periodic", 50, "")
+    'periodic, found within 50 impacts'
+    """
+    why = f": {reason}" if reason else ""
+    if kind == CHAOTIC:
+        return f"{kind} in all {followed} impacts followed; more may show a long transient"
+    if kind == UNDECIDED:
+        return f"{kind} after {followed} impacts{why}"
+    return f"{kind}, found within {followed} impacts" + (
+        f"; its period is not known{why}" if why else ""
+    )
+
+
+def lyapunov(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000):
+    """The Lyapunov exponents of the motion on which a ball ends, as in :func:`motion_of`.
+
+    Where the motion looks chaotic, 32 balls that start beside its end are followed for as many
+    impacts. If one of them comes to rest on the table or repeats its motion, the chaos may be a
+    transient: the kind is "undecided", and the exponent NaN.
+
+    Parameters
+    ----------
+    ball, amplitude, phase, velocity, relative_velocity, impacts
+        As in :func:`motion_of`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m with its larger
+        multiplier μ, and -∞ if the later motion does not depend on earlier impacts. The error is
+        NaN
+        if a ball was followed for too few relaxation lengths of about 1/(1 - r²) impacts.
+
+    Examples
+    --------
+    The multipliers of the 1-T orbit are complex, of modulus r:
+
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = lyapunov(Rigid(0.85), amplitude=1.0, phase=1.1)
+    >>> round(float(found.lyapunov_exponent - np.log(0.85)), 6)
+    0.0
+    """
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    ends = ends_of(balls, impacts)
+    (chaotic,) = (ends.kind == CHAOTIC).nonzero()
+    beside = np.repeat(chaotic, NEIGHBOURS)
+    shift = NEAR * np.tile(np.arange(1, NEIGHBOURS + 1), chaotic.size)
+    neighbours = replace(
+        balls.take(beside), phase=ends.end_phase[beside], speed=ends.end_speed[beside] + shift
+    )
+    kinds = ends_of(neighbours, impacts).kind.reshape(-1, NEIGHBOURS)
+    leaves = np.isin(kinds, [CHAOTIC, UNDECIDED], invert=True).any(axis=1)
+    unknown = {"lyapunov_exponent": np.nan, "lyapunov_error": np.nan}
+    ends.store(chaotic[leaves], kind=UNDECIDED, reason=TRANSIENT, **unknown)
+    return dataset_of(grid, balls.amplitude, ends)
+
+
+def fastest(ball, amplitude):
+    """A speed above which every impact slows the ball: (1 + r) max(Λ, 1)/(1 - r), for 1 - r ≥ 0.05.
+
+    An impact changes the absolute speed v of a ball to r v + (1 + r) Λ at most, which is less than
+    v above this. r is that of a free impact of the speed 2π, or 0 if there is none.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> float(fastest(Rigid(0.5), 2.0))
+    6.0
+    """
+    r = np.nan_to_num(ball.signature(TURN).restitution)
+    return (1 + r) * np.maximum(amplitude, 1.0) / np.maximum(1 - r, 0.05)
+
+
+def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2000):
+    """The motions on which balls end that start from a grid of first impacts, and their shares.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    amplitude : float
+        Λ.
+    starts : int
+        Number of starts along each axis, the phase of the table and the closing speed.
+    relative_velocity_max : float, optional
+        The largest closing speed; by default one that balls seldom exceed (:func:`fastest`).
+    impacts : int
+        As in :func:`motion_of`. A ball is no longer followed once its motion is known.
+
+    Returns
+    -------
+    xarray.Dataset
+        The ``destination`` of each start, the number of a ``motion``, and of each motion the
+        ``kind``, the ``impacts`` and ``periods``, and the ``share`` of the starts with its standard
+        error. Motions of the same kind, impacts and periods count as one.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = basins(Rigid(0.5), amplitude=1.2, starts=20)
+    >>> sorted(found.kind.values.tolist()), float(found.share.sum())
+    (['locked', 'periodic'], 1.0)
+    """
+    middle = (np.arange(starts) + 0.5) / starts
+    fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
+    phase = TURN * middle - np.pi
+    speed = fast * middle
+    given = {"amplitude": amplitude, "speed": speed, "phase": phase}
+    grid, ball, (amplitude, u, tau) = grid_of(ball, **given)
+    if grid.shape != (starts, starts):
+        raise ValueError("amplitude, ball: basins are those of a single ball on one table")
+    ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u), impacts)
+    names = {"kind": ends.kind.astype(str), "impacts": ends.impacts, "periods": ends.periods}
+    keys = np.rec.fromarrays(list(names.values()), names=list(names))
+    motions, which, count = np.unique(keys, return_inverse=True, return_counts=True)
+    share = count / which.size
+    names = {name: motions[name] for name in names} | {
+        "share": share,
+        "share_error": np.sqrt(share * (1 - share) / which.size),
+        "motion": np.arange(share.size),
+    }
+    found = dataset(grid, {"destination": which}, OF_MOTIONS)
+    of_motions = {name: ("motion", value) for name, value in names.items()}
+    return described(found.assign(of_motions), OF_MOTIONS)
+
+
+def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
+    """The motions on which balls end along Λ or a parameter of the ball, from several starts.
+
+    Parameters
+    ----------
+    ball : Ball
+    amplitude : float or array
+        Λ. Either it or a parameter of the ball is an array.
+    starts : int
+        Number of balls at each value, spread evenly over phases and speeds. As many more start from
+        the ends of those at the next larger and the next smaller value, so that motions are
+        followed in both directions.
+    samples : int
+        Number of impacts that are recorded of each motion.
+    impacts : int
+        As in :func:`motion_of`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of :func:`motion_of` for each ``start``, with ``impact_phase`` and ``impact_speed`` of
+        each ``impact``, NaN in permanent contact.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = orbit_diagram(Rigid(0.5), amplitude=[1.5, 1.6], starts=2, impacts=200)
+    >>> found.impacts.max("start").values.tolist()
+    [1, 2]
+    """
+    grid, ball, (amplitude,) = grid_of(ball, amplitude=amplitude)
+    if grid.ndim != 1:
+        raise ValueError("amplitude, ball: exactly one parameter must be an array")
+    value, start = np.mgrid[: grid.size, :starts].reshape(2, -1)
+    phase = TURN * (EVEN[0] * (start + 1) % 1)
+    speed = fastest(ball, amplitude[value]) * (EVEN[1] * (start + 1) % 1)
+    balls = Balls(some_of(ball, value), amplitude[value], 0 * phase, phase, speed)
+    first = ends_of(balls, impacts)
+    passes = [first]
+    for step in (1, -1):
+        beside = np.clip(value + step, 0, grid.size - 1) * starts + start
+        moves = np.isfinite(first.end_phase[beside])
+        phase = np.where(moves, first.end_phase[beside], balls.phase)
+        speed = np.where(moves, first.end_speed[beside], balls.speed)
+        passes.append(ends_of(replace(balls, phase=phase, speed=speed), impacts))
+    shape = grid.size, starts
+    columns = zip(*(vars(each).values() for each in passes), strict=True)
+    ends = Ends(*(np.hstack([x.reshape(shape) for x in column]).ravel() for column in columns))
+    value = np.repeat(np.arange(grid.size), len(passes) * starts)
+    balls = Balls(
+        some_of(ball, value), amplitude[value], 0 * ends.end_phase, ends.end_phase, ends.end_speed
+    )
+    (moving,) = np.isfinite(ends.end_phase).nonzero()
+    impact_phase = np.full((value.size, samples), np.nan)
+    impact_speed = np.full((value.size, samples), np.nan)
+    record, _, _ = follow(balls.take(moving), samples)
+    impact_phase[moving] = record[:, 1].T
+    impact_speed[moving] = record[:, 2].T
+    grid = grid.expand_dims(start=np.arange(len(passes) * starts), axis=1)
+    recorded = {"impact_phase": impact_phase, "impact_speed": impact_speed}
+    recorded = dataset(grid, recorded, OF_MOTIONS, impact=np.arange(samples))
+    return dataset_of(grid, balls.amplitude, ends).merge(recorded)
+
+
+def orbit_of_motion(
+    ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000
+):
+    """The periodic orbit on which a ball ends, confirmed by Newton's method.
+
+    Parameters
+    ----------
+    ball, amplitude, phase, velocity, relative_velocity, impacts
+        As in :func:`motion_of`, all of them numbers.
+
+    Returns
+    -------
+    PeriodicOrbit
+
+    Raises
+    ------
+    OrbitNotFound
+        If the motion does not repeat, or not without a rest on the table; the message says why.
+    ValueError
+        As :func:`.simulate`.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> orbit = orbit_of_motion(Rigid(0.5), amplitude=1.6)
+    >>> orbit.impacts, orbit.periods
+    (2, 2)
+    """
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    if grid.ndim:
+        raise ValueError("the orbit of a motion is that of a single ball from one start")
+    ends = ends_of(balls, impacts)
+    words = in_words(ends.kind[0], ends.followed[0], ends.reason[0])
+    if not ends.impacts[0]:
+        raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
+    if ends.kind[0] == LOCKED and not ball.lasts:
+        raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
+    on_orbit = Balls(ball, balls.amplitude, np.zeros(1), ends.end_phase, ends.end_speed)
+    record, _, _ = follow(on_orbit, int(ends.impacts[0]))
+    turns, tau, u, T = record[:, :4, 0].T
+    columns = [TURN * turns + tau, u, T] if ball.lasts else [TURN * turns + tau, u]
+    z = np.append(np.stack(columns, axis=1).ravel(), balls.amplitude)
+    equations = OrbitEquations(ball, int(ends.impacts[0]), int(ends.periods[0]))
+    return solved(equations, z, "the orbit on which the ball ends")

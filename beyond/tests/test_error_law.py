@@ -8,7 +8,7 @@ from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.error_law import (
     QUANTITIES,
     FreeImpact,
-    along_ratio,
+    ball_at_ratio,
     contact_values,
     error_thresholds,
     exact_errors,
@@ -277,7 +277,7 @@ def test_law_of_other_contacts_is_of_second_order(name):
     law = LAWS[name]
     remainders = []
     for ratio in (1.0, 2.0):
-        ball = along_ratio(law, 1, 0.01)(np.pi / 0.02 * ratio)
+        ball = ball_at_ratio(law, 1, 0.01)(np.pi / 0.02 * ratio)
         impact = free_impact(ball)
         assert impact.restitution == pytest.approx(0.65, rel=1e-9)
         through = impact.centroid * 1.65 / 0.65

@@ -205,7 +205,7 @@ def write(found: Any, output: str | None) -> None:
         data.to_dataframe().to_csv(output)
 
 
-def table(head: list[str], columns: list[dict[str, str]]) -> str:
+def in_columns(head: list[str], columns: list[dict[str, str]]) -> str:
     """Columns of texts by the names of quantities, which are the first column."""
     rows = [f"{'':22}" + "".join(f"{title:>19}" for title in head)]
     for name in columns[0]:
@@ -253,7 +253,7 @@ def follow(branch, output):
     write(branch, output)
 
 
-@commands.command()
+@commands.command("curve")
 @with_branch
 @click.option("--kind", default="saddle-node", show_default=True, help="Kind of special orbit.")
 @click.option("--across", required=True, help="The second parameter.")
@@ -261,7 +261,7 @@ def follow(branch, output):
     "--range", "ranges", type=(str, float, float), multiple=True, help="NAME LOW HIGH of the curve."
 )
 @DRAWN
-def curve(branch, kind, across, ranges, output):
+def follow_special(branch, kind, across, ranges, output):
     """The curve in two parameters of the first special orbit of a kind on a branch."""
     found = bb.special_curve(
         branch.first(kind),
@@ -307,25 +307,25 @@ def diagram(ball, amplitude, points, output):
         write(found, output)
 
 
-@commands.command()
+@commands.command("simulate")
 @with_ball
 @AMPLITUDE
 @START
 @click.option("--impacts", type=int, default=20, show_default=True, help="Their number.")
 @DATA
-def simulate(ball, amplitude, phase, velocity, impacts, output):
+def impacts_after(ball, amplitude, phase, velocity, impacts, output):
     """The impacts that follow a given one."""
     found = bb.simulate(ball, amplitude=amplitude, impacts=impacts, **given(phase, velocity))
     click.echo(found.to_dataframe().to_string())
     write(found, output)
 
 
-@commands.command()
+@commands.command("thresholds")
 @with_ball
 @AMPLITUDE
 @N
 @click.option("--tolerance", type=float, default=0.01, show_default=True, help="Largest error.")
-def thresholds(ball, amplitude, n, tolerance):
+def needed_ratios(ball, amplitude, n, tolerance):
     """From which stiffness on simple models are good enough.
 
     The answer is ϖ for a contact with a spring and a damper, also if only r is given. For another
@@ -341,7 +341,7 @@ def thresholds(ball, amplitude, n, tolerance):
     for simple in models.values():
         found = bb.error_thresholds(contacts, simple=simple, **known)
         columns.append({name: _ratio(threshold) for name, threshold in found.items()})
-    click.echo(table(["error law", *models], columns))
+    click.echo(in_columns(["error law", *models], columns))
 
 
 def _judged(ball: Any) -> tuple[Any, dict[str, Any]]:
@@ -370,7 +370,7 @@ def error_law(ball, amplitude, n):
     errors = [bb.law_errors(contact, **known), bb.law_remainders(contact, **known)]
     errors += [bb.exact_errors(contact, simple=simple, **known) for simple in models.values()]
     columns = [{name: f"{error:.4g}" for name, error in each.items()} for each in errors]
-    click.echo(table(["error law", "right to", *models], columns))
+    click.echo(in_columns(["error law", "right to", *models], columns))
 
 
 @commands.command()

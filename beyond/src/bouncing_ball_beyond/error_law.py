@@ -288,7 +288,7 @@ def law_thresholds(
     >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
     (82.18, 132.3)
     """
-    impact = free_impact(along_ratio(contacts, n, tolerance)(1.0), n)
+    impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
     coefficients = law_coefficients(impact, amplitude=amplitude)
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     # The error of the height is largest where Y₁ rises as fast as the depth of the instant, and
@@ -328,7 +328,7 @@ def _longest(impact, amplitude, tolerance, name, turn) -> NDArray:
     return np.where(error(end, amplitude, *impact) > -tolerance, end, found.x)
 
 
-def along_ratio(
+def ball_at_ratio(
     contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
 ) -> Callable:
     """The function from ϖ, or from the number in its place, to the ball."""
@@ -555,7 +555,7 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
     """
-    path = along_ratio(contacts, n, tolerance)
+    path = ball_at_ratio(contacts, n, tolerance)
     known = {"amplitude": amplitude, "n": n, "simple": simple}
     shape = rows_of(path(high), amplitude)[2]
     grid = np.geomspace(low, high, samples)

@@ -74,7 +74,7 @@ def in_words(value: float, unit: str) -> str:
     return "–" if np.isnan(value) else f"{UNITS.Quantity(value, unit).to_compact():.4g~P}"
 
 
-class Comparison(NamedTuple):
+class ByModel(NamedTuple):
     """A quantity by the restitution model, on the contact exactly, and there by the error law."""
 
     by_restitution: float
@@ -99,11 +99,11 @@ class ShakerAnswer:
     contact_duration: float
     """Of a free impact with the speed of the orbit, in s."""
     tolerance: float
-    saddle_node: Comparison
+    saddle_node: ByModel
     """The Λ from which on the ball bounces."""
-    period_doubling: Comparison
+    period_doubling: ByModel
     """The Λ up to which the orbit is stable."""
-    max_height: Comparison
+    max_height: ByModel
     """The greatest height of the ball above the middle position of the table, in m."""
     lowest_frequency: float
     """In Hz: from here on the ball bounces on this contact, at the same stroke."""
@@ -336,7 +336,7 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
     )["max_height"]
     unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
     compared = {
-        name: Comparison(
+        name: ByModel(
             float(simple[name]) * unit[name],
             float(exact[name]) * unit[name],
             float(simple[name] * (1 + law[name])) * unit[name],

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from bouncing_ball_beyond.balls import H, Ball, Impact, Signature
+from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
 from bouncing_ball_beyond.root_time import Motion, follow, load, rows_of
 
 SLOWEST = 1e-12
@@ -179,7 +179,7 @@ class ForceLaw(Ball):
         if self.kinks or not fixed or not np.all(u.real > 0):
             return self.computed_signature(u)
         number = np.floor(np.log(u.real) / np.log(FACTOR))
-        found = np.zeros((4, *u.shape), u.dtype)
+        found = np.full((4, *u.shape), np.nan, u.dtype)
         for k in np.unique(number[np.isfinite(number)]):
             at = number == k
             found[:, at] = self._interpolated(k, u[at])

@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from bouncing_ball_beyond.balls import H, PATIENCE
+from bouncing_ball_beyond.balls import PATIENCE, H
 
 ORDER = 20
 """Gauss nodes of a panel."""
@@ -52,6 +52,9 @@ NEAR = 1e-12
 MOST_PANELS, PATIENT = 4000, 40
 """The largest number of panels of a contact, and the one from which on Newton's method solves them.
 An impact takes about six panels."""
+
+CALM = 1e-6
+"""The least speed of a ball that lies on the table, over its greatest one, that is resolved."""
 
 STEADY = 1e-9
 """A motion that has changed by less in a period of the table, relatively, is a permanent contact."""
@@ -260,7 +263,7 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
     """
     q0, v0, t0 = start
     v, push = np.broadcast_to(v0, (ORDER, v0.size)), 0.0
-    moved, near, early = 0.0, True, np.zeros(v0.size)
+    moved, near, early, shortest = 0.0, True, np.zeros(v0.size), h / 10
     for sweep in range(SWEEPS):
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
@@ -279,8 +282,9 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         if event:
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
-            near = np.abs(moved) <= NEAR * h
-        if np.all(near & (change <= CONVERGED * np.abs(v).max(0))):
+            # A contact that starts at the zero of a function does not end there.
+            near = (np.abs(moved) <= NEAR * h) & (h > shortest)
+        if np.all(near & (change <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
             break
         if event:
             h = h + moved
@@ -344,7 +348,6 @@ def _first_event(motion, events, side, start, panel):
         after = 1 + over[:, crossed].argmax(0)
         low, high = np.abs(values[after - 1, crossed]), np.abs(values[after, crossed])
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
-        # A contact that starts at the zero of a function does not end there.
         here = np.maximum(here, x[1] / 2)
         first = here < place[crossed]
         place[crossed[first]], which[crossed[first]] = here[first], k
@@ -369,10 +372,10 @@ def _next_panel(motion, events, side, start, length, newton):
             begin = [y[at] for y in start]
             new = solve_panel(motion.of(at), begin, place[found == k], events[k], newton=newton)
             panel.replace_some(at, new)
-        rows = rows[found >= 0]
+        which[rows[found >= 0]] = found[found >= 0]
+        rows = rows[(found >= 0) & np.isfinite(panel.change[rows])]
         if not rows.size:
             break
-        which[rows] = found[found >= 0]
         # Another event may turn out to be earlier than the one that seemed to be the first.
         others = side[:, rows]
         others[which[rows], np.arange(rows.size)] = np.nan
@@ -434,13 +437,13 @@ def follow(motion, q, v, by, length, until=None, by_until=0.0):
             panel, which = _next_panel(part, events, sides, start, h, lies)
             side[:, here] = sides
             greatest = np.abs(panel.nodes[1]).max(0)
-            size[here] = np.fmax(size[here], greatest)
-            scale = np.fmax(1e-6 * size[here], greatest) if lies else size[here]
+            scale = np.fmax((CALM if lies else 1.0) * size[here], greatest)
             good, factor = _resolved(panel, scale)
             length[here] = h * np.where(good & (which >= 0), 1.0, factor)
             if until is not None:
                 ended[here] = good & (pieces == 1) & (which < 0)
             here, which, part = here[good], which[good], part.of(good)
+            size[here] = np.fmax(size[here], greatest[good])
             now[:, here] = np.array([s + panel.length, *panel.end])[:, good]
             if directions:
                 kept = panel.of(good)

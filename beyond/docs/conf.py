@@ -18,36 +18,23 @@ import bouncing_ball_beyond
 
 ROOT = Path(__file__).parents[2]
 EXPLORER = "beyond/figures/explorer.html"
-PACKAGES = {"bouncing_ball_beyond": "beyond/src"}
 
 project = "Bouncing ball"
 author = "The bouncing-ball maintainers"
 version = release = bouncing_ball_beyond.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.apidoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "README"
 include_patterns = [
     "*.md",
     "docs/*.md",
     "figures/*.md",
     "beyond/*.md",
-    "beyond/docs/**.md",
+    "beyond/docs/*.md",
     "beyond/figures/*.md",
     "contacts/*.md",
     "contacts/docs/*.md",
-    "beyond/results/api/**.rst",
 ]
-exclude_patterns = [
-    *("**/.*", "results", "beyond/results/[!a]*", "**/src", "**/tests", "**/workflow"),
-]
-apidoc_modules = [
-    {
-        "path": f"../../{folder}/{package}",
-        "destination": f"beyond/results/api/{package}",
-        "separate_modules": True,
-        "module_first": True,
-    }
-    for package, folder in PACKAGES.items()
-]
+exclude_patterns = ["**/.*", "**/results", "**/src", "**/tests", "**/workflow"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 myst_enable_extensions = ["dollarmath", "html_image"]
@@ -60,8 +47,6 @@ html_extra_path = ["../figures/explorer.html"]
 html_show_sourcelink = False
 html_copy_source = False
 html_math_renderer = "mathml"
-# Public names are documented twice, at the top and in their modules.
-suppress_warnings = ["ref.python"]
 
 PARTS = {
     "The replication": [
@@ -72,24 +57,16 @@ PARTS = {
     "Beyond the paper": [
         "beyond/README",
         "beyond/article",
-        "beyond/docs/beyond",
         "beyond/figures/*",
-        "beyond/docs/python",
+        "beyond/docs/first-hour",
+        "beyond/docs/orbits",
+        "beyond/docs/laws",
+        "beyond/docs/thesis",
         "beyond/docs/gallery",
-        "beyond/docs/lesson",
-        "beyond/docs/contact-laws",
         "beyond/docs/impact-as-an-instant",
         "beyond/docs/error-law",
-        "beyond/docs/periodic-orbits",
-        "beyond/docs/thesis",
         "beyond/docs/speed",
-    ],
-    "The models of the paper": [
-        "beyond/docs/inherited/python",
-        "beyond/docs/inherited/gallery",
-        "beyond/docs/inherited/lesson",
-        "beyond/docs/inherited/contacts",
-        "beyond/docs/inherited/closed-form",
+        "beyond/docs/api",
     ],
     "Contacts with units": [
         "contacts/README",
@@ -99,10 +76,7 @@ PARTS = {
         "contacts/docs/measured",
         "contacts/docs/python",
     ],
-    "Code": [
-        *("CONTRIBUTING", "CHANGELOG"),
-        *(f"beyond/results/api/{name}/modules" for name in PACKAGES),
-    ],
+    "Changes": ["CONTRIBUTING", "CHANGELOG"],
 }
 
 
@@ -127,7 +101,7 @@ def prepare(app, name, text):
         return found[1] if (ROOT / target).is_dir() else found[0]
 
     text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])
-    if not text[0].lstrip().startswith("#") and "api" not in folder.parts:
+    if not text[0].lstrip().startswith("#"):
         text[0] = f"# {title_of(name)}\n\n{text[0]}"
     if name == root_doc:
         for caption, pages in PARTS.items():

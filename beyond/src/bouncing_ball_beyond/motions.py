@@ -52,9 +52,12 @@ SECTION = 25
 SECTIONS = 1024
 """Impacts of a section over which the growth of deviations is summed up, at least, and the number
 of sections of a motion, at most."""
-ROWS = 1 << 18
+ROWS = 1 << 16
 """Impacts that are followed at a time, of all balls together."""
-TINY = 1e-300
+RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
+"""The map with which a deviation starts again after a lift-off; its numbers do not matter."""
+FAR_BELOW = 1e6
+"""More than the logarithm of the growth in any number of impacts that are followed at a time."""
 BLOCK = 4096
 """Balls that are followed at a time."""
 ERRORS = 5.0
@@ -125,7 +128,7 @@ def tangent_maps(balls, record, lifts):
 
 
 def slopes_of_contact(balls, tau, u, T):
-    """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, shape (3, 2, impacts, balls)."""
+    """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, (3, 2, impacts, balls)."""
     ball = balls.ball
     unknowns = 3 if ball.lasts else 2
     steps = 1j * H * np.eye(3)[:, :unknowns, np.newaxis, np.newaxis]
@@ -283,29 +286,56 @@ def _ends_of(balls, impacts):
     return found
 
 
-def stretched(tracked, record, after, maps, lifts, section):
-    """The balls after some more impacts, with their deviations, and the growth since the lift-off
-    before the last one.
+def running_products(maps):
+    """The products of all maps up to each impact, as matrices of the size 1 and the logarithms of
+    their sizes, by doublings of the number of factors.
     """
-    turns, phase = record[:, 0], record[:, 1]
-    vector, climb, most = tracked.vector, tracked.climb, tracked.most
-    lap = np.zeros(most.shape)
-    growth = np.zeros(lifts.shape)
-    for i in range(len(record)):
-        vector = np.einsum("ijb,jb->ib", maps[:, :, i], vector)
-        length = np.hypot(*vector)
-        again = lifts[i] | ~(length > TINY)
-        growth[i] = np.where(again, 0.0, np.log(length))
-        vector = np.where(again, [[1.0], [0.0]], vector / length)
-        lap = np.where(lifts[i], most, lap)
-        climb = np.where(again, 0.0, np.maximum(climb + growth[i], 0.0))
-        most = np.where(lifts[i], 0.0, np.maximum(most, climb))
-    starts = TURN * np.vstack([turns, after.turns]) + np.vstack([phase, after.phase])
+    products = maps.copy()
+    logarithms = np.zeros(maps.shape[2:])
+    factors = 1
+    while factors < maps.shape[2]:
+        longer = np.einsum("ijnb,jknb->iknb", products[:, :, factors:], products[:, :, :-factors])
+        size = np.abs(longer).max(axis=(0, 1))
+        products[:, :, factors:] = longer / size
+        logarithms[factors:] += logarithms[:-factors] + np.log(size)
+        factors *= 2
+    return products, logarithms
+
+
+def stretched(tracked, record, after, maps, lifts, section):
+    """The balls after some more impacts, with their deviations, and the greatest climb between the
+    last two lift-offs.
+    """
+    # A deviation starts again at a lift-off, in a direction that does not matter.
+    smooth = np.where(lifts | ~np.isfinite(maps).all(axis=(0, 1)), RESTART, maps)
+    products, logarithms = running_products(smooth)
+    vectors = np.einsum("ijnb,jb->inb", products, tracked.vector)
+    length = np.hypot(*vectors)
+    growth = np.diff(logarithms + np.log(length), axis=0, prepend=0.0)
+    growth = np.where(lifts, 0.0, growth)
+    # Behind each lift-off the sum of the growth is far below all sums before.
+    number = lifts.cumsum(axis=0)
+    sums = growth.cumsum(axis=0) - FAR_BELOW * number
+    lowest = np.minimum(np.minimum.accumulate(sums, axis=0), -tracked.climb)
+    climb = sums - lowest
+    since = number == number[-1]
+    lap = np.where(number == number[-1] - 1, climb, 0.0).max(axis=0)
+    most = np.where(since, climb, 0.0).max(axis=0)
+    lap = np.where(number[-1] == 1, np.maximum(lap, tracked.most), lap)
+    most = np.where(number[-1] == 0, np.maximum(most, tracked.most), most)
+    starts = TURN * np.vstack([record[:, 0], after.turns])
+    starts += np.vstack([record[:, 1], after.phase])
     areas = contraction(maps)
     sums = np.stack([growth, np.diff(starts, axis=0), np.where(np.isfinite(areas), areas, 0.0)])
-    sections = sums.reshape(3, -1, section, growth.shape[1]).sum(axis=2)
-    sections = np.concatenate([tracked.sections, np.moveaxis(sections, 0, 1)])
-    later = replace(tracked, balls=after, vector=vector, climb=climb, most=most, sections=sections)
+    sums = sums.reshape(3, len(record) // section, section, growth.shape[1]).sum(axis=2)
+    later = replace(
+        tracked,
+        balls=after,
+        vector=vectors[:, -1] / length[-1],
+        climb=climb[-1],
+        most=most,
+        sections=np.concatenate([tracked.sections, np.moveaxis(sums, 0, 1)]),
+    )
     return later, lap
 
 
@@ -425,7 +455,7 @@ def _store_locked(found, tracked, record, lifts, lap, seen):
 
 
 def _store_periodic(found, tracked, record, again, seen):
-    """Store the balls that repeat. Their contacts stick if they last longer than two free impacts."""
+    """Store the balls that repeat; contacts stick that last longer than two free impacts."""
     some = again.found.nonzero()[0]
     ball = some_of(tracked.balls.ball, some)
     kind = np.full(some.size, PERIODIC, object)
@@ -546,9 +576,9 @@ def motion_of(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=
     -------
     xarray.Dataset
         The ``kind``: "periodic"; "locked", if the ball also sticks to the table in each repetition;
-        "permanent contact"; "chaotic"; or "undecided", for the ``reason`` given. The ``impacts`` and the
-        ``periods`` of the table until the motion repeats; a locked motion has 0 if rounding decides
-        on them, as the ``reason`` says. ``lyapunov_exponent`` per period of the table with
+        "permanent contact"; "chaotic"; or "undecided", for the ``reason`` given. The ``impacts`` and
+        the ``periods`` of the table until the motion repeats; a locked motion has 0 if rounding
+        decides on them, as the ``reason`` says. ``lyapunov_exponent`` per period of the table with
         ``lyapunov_error``, 0 for motions that repeat, and ``exponent_sum``, that of both exponents.
         The number of impacts ``followed``, one impact of the motion (``end_phase``,
         ``end_velocity``), and all ``in_words``.

@@ -19,7 +19,10 @@ ANSWERS = {
     f"orbit {SPRING} --corrected": ["PeriodicOrbit"],
     "limits --restitution 0.65": ["saddle-node", "0.666398", "period doubling", "1.2394"],
     "follow --restitution 0.85 --amplitude 1 --to 1.3": ["period doubling at 1.0383042"],
-    "follow --restitution 0.85 --amplitude 1 --to 1.3 --doublings 1": ["1.3 is reached"],
+    "follow --restitution 0.85 --amplitude 1 --to 1.3 --doublings 1": [
+        "impacts         2",
+        "1.3 is reached",
+    ],
     "follow --restitution 0.5 --amplitude 1.6 --phase 1 --velocity -3 --to 1.61": ["impacts"],
     "curve --restitution 0.5 --amplitude 1.4 --to 1.8 --kind period-doubling --across restitution"
     " --range restitution 0.4 0.6": ["period doubling"],

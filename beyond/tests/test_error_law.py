@@ -170,7 +170,10 @@ def test_stretched_impact_is_that_of_another_ratio():
 
 def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
     """Eq. R9, and that no error above the threshold exceeds the tolerance."""
-    r, amplitude = random_orbits(np.random.default_rng(4), 200)
+    rng = np.random.default_rng(4)
+    r, amplitude = random_orbits(rng, 200)
+    # Next to the saddle-node some errors leave the tolerance upwards.
+    amplitude[::2] = np.pi * (1 - r[::2]) / (1 + r[::2]) * (1 + 10 ** rng.uniform(-6, -1, 100))
     unit = SpringDamper(1.0, restitution=r)
     impact = free_impact(unit)
     found = law_thresholds(unit, amplitude=amplitude, tolerance=0.01)
@@ -188,6 +191,8 @@ def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
         for error in (-0.01, 0.01)
     ]
     assert np.abs(defects).min(axis=0).max() < 1e-12
+    upwards = np.abs(defects).argmin(axis=0) == 1
+    assert 10 < upwards.sum() < 100
     for factor in np.geomspace(1 + 1e-9, 1e5, 60):
         for name in ("max_height", "phase"):
             law = law_errors(
@@ -245,6 +250,17 @@ def test_no_orbit_is_nan():
     assert np.isnan(contact_values(BALL.at(frequency_ratio=50.0), amplitude=0.5)["max_height"])
 
 
+def test_solutions_that_are_no_orbits_are_left_out():
+    """Newton's method ends on such ones of very lossy and compliant contacts."""
+    ball = SpringDamper(
+        np.array([2.371432, 1.057858, 2.148550]), restitution=[0.1773, 0.0752, 0.0996]
+    )
+    heights = contact_values(ball, amplitude=[1.136049, 2.440847, 1.047684])["max_height"]
+    assert np.isnan(heights).all()
+    nodes = contact_values(Corrected(SpringDamper(2.0, restitution=0.05)), amplitude=1.0)
+    assert not nodes["saddle_node"] < 0
+
+
 @pytest.mark.parametrize(
     ("mistake", "named"),
     [
@@ -285,11 +301,9 @@ def test_law_of_other_contacts_is_of_second_order(name):
         by_law = law_errors(impact, amplitude=0.9)
         exact = exact_errors(ball, amplitude=0.9)
         remainders.append({each: exact[each] - by_law[each] for each in QUANTITIES})
-    for each in ("bounce_velocity", "phase", "apparent_restitution", "saddle_node"):
-        assert remainders[0][each] / remainders[1][each] == pytest.approx(4, rel=0.1), each
-    for each in ("max_height", "period_doubling"):
-        # Their terms of second order nearly cancel.
-        assert abs(remainders[0][each]) < 0.02**2
+    for each in QUANTITIES:
+        # Terms of third order are some per cent of those of second order.
+        assert remainders[0][each] / remainders[1][each] == pytest.approx(4, rel=0.08), each
 
 
 def test_constant_restitution_misses_the_doubling():

@@ -408,7 +408,7 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     good = solution.found & (equations.turn(solution.linear) < 1)
     # On compliant contacts Newton's method may run to a solution that is no orbit.
     leaves = equations.ends(solution.z).speed[:, 0] > 0
-    good &= leaves & (np.abs(solution.z - guess)[:, 0] < np.pi)
+    good &= leaves & (solution.z[:, 1] > 0) & (np.abs(solution.z - guess)[:, 0] < np.pi)
     return np.where(good[:, np.newaxis], solution.z, np.nan)
 
 

@@ -27,7 +27,7 @@ VARIABLES = datasets.VARIABLES | {
     "motion": Variable("ball that is followed"),
     # One contact
     "free_force": Variable("force of a free contact, over mω times the impact speed", "F/(mωv)"),
-    "contact_end": Variable("when a free contact ends, in units of 1/ω", "ωt_c"),
+    "contact_end": Variable("duration of a free contact, in units of 1/ω", "ωD"),
     "end_restitution": Variable("restitution coefficient of a free impact by the release", "r"),
     "contact_force": Variable("force of the table over the weight", "F", floor=1.0),
     "flight_before": Variable("flight before the contact, continued", "z"),
@@ -84,21 +84,133 @@ VARIABLES = datasets.VARIABLES | {
         floor=1.0,
     ),
     # Map
+    "level": Variable("frequency ratio of a line of the map", "ϖ"),
+    "judge": Variable("whose frequency ratio is tried"),
+    "lower_threshold": Variable(
+        "frequency ratio at which the height is too small by the tolerance", "ϖ"
+    ),
     "threshold_by_law": Variable(
         "frequency ratio for the tolerance of the height by the error law", "ϖ"
     ),
-    "law_differs_above": Variable("share by which both frequency ratios differ where it is marked"),
+    "law_differs_above": Variable("share by which two frequency ratios differ where it is counted"),
     "rule_product": Variable(
         "n times the frequency ratio times the error, at the threshold; its modulus is at most 1 "
         "where the frequency ratio 1/(nε) is enough",
         "nϖe",
     ),
+    "stability_threshold": Variable(
+        "frequency ratio above which the orbit is below the period doubling, the least of the "
+        "range if it is so at all of them",
+        "ϖ",
+    ),
+    "stability_by_law": Variable(
+        "frequency ratio above which the orbit is below the period doubling, by the error law",
+        "|K|/(1-Λ/Λ_PD)",
+    ),
+    "jump_lift": Variable(
+        "Λ sin ψ up to which the height is too large by the tolerance at some frequency ratio",
+        "Y₀",
+    ),
+    "jump_ratio": Variable(
+        "frequency ratio of this error at this Λ sin ψ", "ϖ", tolerance=1e-5, floor=1.0
+    ),
+    "too_high_lift": Variable(
+        "Λ sin ψ up to which the height is too large by the tolerance at this frequency ratio or "
+        "a larger one",
+        "Y₀",
+    ),
+    "too_high_lift_by_law": Variable("the same by the error law", "Y₀"),
+    "saddle_node_error": Variable("relative error of the amplitude of the saddle-node"),
+    "saddle_node_law": Variable("the same by the error law", "-s/C"),
+    "period_doubling_error": Variable("relative error of the amplitude of the period doubling"),
+    "period_doubling_law": Variable("the same by the error law"),
+    "judged_ratio": Variable("frequency ratio that is tried", "ϖ"),
+    "judged_error": Variable("relative error of the height at this frequency ratio", floor=1e-2),
+    "judged_multiplier": Variable(
+        "the least multiplier on the contact, where both are real", "μ", floor=1.0
+    ),
+    "judged_stable": Variable("whether the orbit on the contact is stable and admissible"),
+    "window_amplitude": Variable(
+        "amplitude in the middle between the saddle-nodes of both models", "Λ"
+    ),
+    "window_stable": Variable("whether the orbit on the contact is stable and admissible there"),
     # Other contact laws
     "law_error_zero": Variable(
         "π over D + κ at which the error passes through zero", "π/(D+κ)", tolerance=1e-7
     ),
     "error_calibration": Variable("calibration of the contacts of the relative errors"),
     "stable_at_threshold": Variable("whether the orbit at the threshold is stable and admissible"),
+    # What a phase tells. Remainders at ϖ = 10⁴ are some 1e-8, known to some 1e-15, times ϖ².
+    "waveform": Variable("waveform of the table"),
+    "contact_share": Variable("share of the period that a free impact takes", "D/(2π)"),
+    "shown_share": Variable("the same of the contacts that are drawn", "D/(2π)"),
+    "above": Variable("relative height of the amplitude above the saddle-node", "Λ/Λ_SN-1"),
+    "phase_left": Variable(
+        "what the error law leaves of the phase, times ϖ²", tolerance=1e-5, floor=1.0
+    ),
+    "height_left": Variable(
+        "what the error law leaves of the greatest height, times ϖ²", tolerance=1e-5, floor=1.0
+    ),
+    "node_phase_left": Variable(
+        "what the error law leaves of the phase at the saddle-node of the restitution model, times "
+        "the power 3/2 of ϖ",
+        tolerance=1e-5,
+        floor=1.0,
+    ),
+    "node_shift": Variable(
+        "relative error of max w′ at the saddle-node, times ϖ", tolerance=1e-7, floor=1.0
+    ),
+    "node_shift_law": Variable("the same by the error law", "-sϖ/C"),
+    "touch_x": Variable("Λ cos φ at the touch", "X"),
+    "touch_y": Variable("Λ sin φ at the touch", "Y"),
+    "line_level": Variable("distance of the line of touches from the origin, error law", "C-s"),
+    "line_angle": Variable("angle of the line of touches, error law", "θ", units="rad"),
+    "restitution_line": Variable("this distance in the restitution model", "C"),
+    "steepness": Variable("greatest velocity of the table over C", "max w′/C"),
+    "touch_slope": Variable("velocity of the table at the touch over C", "w′(φ)/C"),
+    "turned_slope": Variable("velocity of the table later by θ over C", "w′(φ+θ)/C"),
+    # From a line through touches that differ little.
+    "angle_ratio": Variable("angle that is found over that of the error law", tolerance=1e-7),
+    "found_restitution": Variable("restitution coefficient that is found", "r", tolerance=1e-7),
+    "duration_ratio": Variable("D + κ that is found over the true one", tolerance=1e-7),
+    "unturned_restitution": Variable(
+        "restitution coefficient from one phase, as if the contact took no time", "r"
+    ),
+    "counterfeit": Variable(
+        "D + κ from the thresholds over the true one, as if r did not depend on the speed",
+        tolerance=1e-6,
+    ),
+    "width_change": Variable("relative change of Λ_PD² - Λ_SN² by the contact, to first order"),
+    # Noise is the same on each processor, but the last bits of a motion are not.
+    "measured_restitution": Variable(
+        "restitution coefficient of simulated measurements, mean",
+        tolerance=1.0,
+        tolerance_scale="measured_restitution_error",
+    ),
+    "measured_restitution_error": Variable("its standard deviation", tolerance=0.5),
+    "measured_duration": Variable(
+        "duration of simulated measurements over the true one, mean",
+        tolerance=1.0,
+        tolerance_scale="measured_duration_error",
+    ),
+    "measured_duration_error": Variable("its standard deviation", tolerance=0.5),
+    "staying": Variable("share of balls that stay on the orbit", tolerance=0.3, floor=1.0),
+    "half_escape": Variable(
+        "relative height above the saddle-node at which half of the balls escape",
+        tolerance=0.02,
+        floor=1.0,
+    ),
+    # Chaotic motions: averages agree as well as those of so many balls do, within five errors.
+    "mean_square": Variable(
+        "mean square of the closing speed at the touch",
+        "⟨u²⟩",
+        tolerance=5.0,
+        tolerance_scale="mean_square_error",
+    ),
+    "mean_square_error": Variable("its standard error", tolerance=0.5),
+    "slow_share": Variable(
+        "share of touches with a closing speed below 4 t_c (1 + Λ)", tolerance=0.01, floor=1.0
+    ),
     # Explorer
     "trace": Variable("trace of the derivative of the return map", "tr"),
     "determinant": Variable("determinant of the derivative of the return map", "det"),

@@ -60,11 +60,10 @@ def half_next_to_saddle_node(
 
 
 def flight_height(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The heights of the summits of flights after one impact at a given Λ, shape (rows,)."""
+    """The heights of the summits of flights after one impact, shape (rows,)."""
     ends = equations.ends(z)
-    amplitude = np.asarray(equations.amplitude)[:, np.newaxis]
-    bounce = ends.speed + amplitude * np.cos(ends.leaves)
-    return (ends.gap + amplitude * np.sin(ends.leaves) + bounce**2 / 2)[:, 0]
+    bounce = ends.speed + ends.amplitude * np.cos(ends.leaves)
+    return (ends.gap + ends.amplitude * np.sin(ends.leaves) + bounce**2 / 2)[:, 0]
 
 
 def solved(

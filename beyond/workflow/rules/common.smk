@@ -16,7 +16,7 @@ os.environ.update(PYTHONPATH=os.pathsep.join(filter(None, paths)))
 # The datasets of each stage.
 STAGES = {stage: list(names) for stage, names in config.items() if isinstance(names, dict)}
 DATASETS = [name for names in STAGES.values() for name in names]
-FIGURES = [name for name in DATASETS if name != "explorer"]
+FIGURES = [name for name in DATASETS if name not in ("ext_event", "explorer")]
 TABLES = ["ext_orders", "ext_laws"]
 
 # Settings of the whole run on which the datasets of a stage depend.
@@ -25,6 +25,8 @@ SETTINGS = {
     "error_law": ["release"],
     "stiffness_map": [],
     "contact_laws": [],
+    "phases": [],
+    "events": [],
     "explorer": [],
 }
 
@@ -63,6 +65,8 @@ MODULES = {
     "error_law": [*ERRORS, *STUDIES, *REPLICATED_ERRORS, *SAVING],
     "stiffness_map": [*ERRORS, *STUDIES, *SAVING],
     "contact_laws": [*ERRORS, "bouncing_ball_beyond/named_laws", *STUDIES, *SAVING],
+    "phases": [*ERRORS, "bouncing_ball_beyond/named_laws", "studies/waveforms", *SAVING],
+    "events": [*modules("bouncing_ball_beyond", "balls", "one_ball", "simulation"), *SAVING],
     "explorer": [*ERRORS, *STUDIES, *SAVING],
     "draw": DRAWING,
     "tables": TABULATING,

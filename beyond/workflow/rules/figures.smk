@@ -62,6 +62,21 @@ rule contact_laws:
         "../scripts/draw.py"
 
 
+rule phases:
+    """The plane of touches, and the level that they tell: ext_phase"""
+    input:
+        data=datasets("phases").values(),
+        code=code("draw"),
+    output:
+        **pictures("phases"),
+    log:
+        "results/logs/phases.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/draw.py"
+
+
 rule explorer:
     """A page to explore the models, with the orbits that it checks itself against"""
     input:

@@ -75,6 +75,42 @@ rule compute_contact_laws:
         "../scripts/contact_laws.py"
 
 
+rule compute_phases:
+    """What the phase of the touch tells about a contact"""
+    input:
+        code=code("phases"),
+    output:
+        **datasets("phases"),
+    params:
+        config=config["phases"],
+    log:
+        "results/logs/compute_phases.log",
+    benchmark:
+        "results/benchmarks/compute_phases.tsv"
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/phases.py"
+
+
+rule compute_events:
+    """Impact speeds of chaotic balls on a contact and in both models"""
+    input:
+        code=code("events"),
+    output:
+        **datasets("events"),
+    params:
+        config=config["events"],
+    log:
+        "results/logs/compute_events.log",
+    benchmark:
+        "results/benchmarks/compute_events.tsv"
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/events.py"
+
+
 rule compute_explorer:
     """Orbits with which the explorer's page compares what it computes"""
     input:

@@ -7,10 +7,12 @@ ABOUT = {
     "ext_orders": "errors of both models along the frequency ratio, and their orders",
     "ext_map": "how stiff a contact must be for the greatest height, over r and Λ",
     "ext_laws": "errors of both models on contacts of five laws",
+    "ext_phase": "what the phase of the touch tells about a contact",
+    "ext_event": "impact speeds of chaotic balls, a dataset without a figure",
 }
 
 
-for name in FIGURES:
+for name in [*FIGURES, "ext_event"]:
 
     rule:
         name:

@@ -18,8 +18,9 @@ from bouncing_ball_beyond.error_law import (
     law_errors,
     law_remainders,
     law_thresholds,
+    restitution_values,
 )
-from studies.orbits import half_next_to_saddle_node, last_zero, random_orbits
+from studies.orbits import exact_values, half_next_to_saddle_node, last_zero, random_orbits
 from studies.variables import VARIABLES
 
 # What stands in place of a contact. Without a name of a class it is the restitution coefficient.
@@ -144,9 +145,11 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
     span = parameters["frequency_ratio"]
     ratio = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), amplitude.size))
     ball = SpringDamper(ratio, damping_ratio=zeta, release=release)
-    low = free_impact(ball, n).speed - n * np.pi
-    amplitude = half_next_to_saddle_node(low, amplitude, rng)
-    remains, _ = left_by_law(ball, amplitude, n)
+    impact = free_impact(ball, n)
+    amplitude = half_next_to_saddle_node(impact.speed - n * np.pi, amplitude, rng)
+    exact = stacked(exact_values(ball, amplitude, n))
+    departure = exact / stacked(restitution_values(impact, amplitude)) - 1
+    remains = np.abs(departure - stacked(law_errors(impact, amplitude=amplitude, n=n)))
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_order": (
@@ -157,7 +160,7 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
         "order_frequency_ratio": ("pair", TWO_STIFF.ravel()),
         "law_remainder": (
             ("quantity", "law_sample"),
-            remains / stacked(law_remainders(ball, amplitude=amplitude, n=n)),
+            remains / stacked(law_remainders(impact, amplitude=amplitude, n=n)),
         ),
     }
 

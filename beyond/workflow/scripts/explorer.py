@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from bouncing_ball import restitution
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
 from bouncing_ball_beyond.one_ball import settling
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
-from studies.orbits import random_orbits
+from studies.orbits import follow_compliant, random_orbits
 from studies.variables import VARIABLES
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
@@ -27,8 +26,6 @@ BALL = {"restitution": 0.5, "frequency_ratio": 80.0}
 AMPLITUDES = [0.6, 1.2, 1.6, 2.5]
 START = {"phase": 1.0, "velocity": -3.0}
 IMPACTS = 100
-# Contacts with a smaller ϖ are too compliant for the error law to tell where the saddle-node is.
-COMPLIANT = 1.5
 # After these a motion repeats itself up to rounding; none is longer than LONGEST impacts.
 SETTLED = 400
 LONGEST = 40
@@ -49,17 +46,6 @@ def orbits_of(ball: Ball, n: NDArray, amplitude: NDArray, saddle_node: NDArray):
     return equations, z
 
 
-def saddle_nodes(ball: SpringDamper, n: NDArray, doubling: NDArray, some: NDArray) -> NDArray:
-    """Amplitudes of some saddle-nodes, on the branches down from the period doublings."""
-    row = ball.at(frequency_ratio=ball.frequency_ratio[some], restitution=ball.restitution[some])
-    starts = orbit(row, amplitude=0.999 * doubling[some], n=n[some])
-    found = []
-    for branch in follow(starts, to=1e-3):
-        nodes = [] if isinstance(branch, OrbitNotFound) else branch.special
-        found.append(next((each.amplitude for each in nodes if each.kind == "saddle-node"), np.nan))
-    return np.array(found)
-
-
 def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
     """One random orbit for each ϖ under a release, over `sample`."""
     n, zeta, amplitude, _ = random_orbits(ratios.size, seed, release, PLACES)
@@ -67,9 +53,7 @@ def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
     ball = SpringDamper(ratios, restitution=r, release=release)
     limits = ("saddle_node", "period_doubling")
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=limits)
-    compliant = ratios < COMPLIANT
-    followed_down = saddle_nodes(ball, n, exact["period_doubling"], compliant)
-    exact["saddle_node"][compliant] = followed_down
+    follow_compliant(ball, n, exact)
     equations, z = orbits_of(ball, n, amplitude, exact["saddle_node"])
     own = ball.signature(1.0).restitution
     lift = np.sqrt(amplitude**2 - restitution.saddle_node(n, own) ** 2)

@@ -286,6 +286,7 @@ def heights_of(known: Families, ratios: NDArray, tolerance: float) -> dict[str, 
     return {
         "error_threshold": (("position",), threshold),
         "lower_threshold": (("position",), lower.reshape(shape)),
+        "lower_threshold_by_law": (("position",), downwards.reshape(shape)),
         "threshold_by_law": (
             ("position",),
             np.where(upwards > 0, upwards, downwards).reshape(shape),

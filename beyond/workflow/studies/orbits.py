@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
@@ -13,6 +12,7 @@ from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
 from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values
+from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 
 OF_ORBITS = ("max_height", "bounce_velocity", "phase", "apparent_restitution")
 """The quantities of orbits; the others are amplitudes of bifurcations."""

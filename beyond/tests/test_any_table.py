@@ -33,7 +33,9 @@ class Table:
         self.largest = self.at(self.steepest, 1)
 
     def at(self, time, order=0):
-        return sum(a * k**order * np.sin(k * time + p + order * np.pi / 2) for k, a, p in self.harmonics)
+        return sum(
+            a * k**order * np.sin(k * time + p + order * np.pi / 2) for k, a, p in self.harmonics
+        )
 
     def with_slope(self, slope):
         """The phase after the steepest one at which W′ has a given value."""
@@ -104,7 +106,9 @@ def saddle_node(table, ratio):
 def test_remainders_are_of_second_order(name):
     """Times ϖ² they tend to constants: as ϖ doubles, their distance from the limit halves."""
     table = Table(name)
-    scaled = [ratio**2 * remainders(table, table.steepest + 0.2, ratio) for ratio in (100, 200, 400)]
+    scaled = [
+        ratio**2 * remainders(table, table.steepest + 0.2, ratio) for ratio in (100, 200, 400)
+    ]
     assert np.abs(scaled[2]).min() > 0.1
     assert (scaled[1] - scaled[0]) / (scaled[2] - scaled[1]) == pytest.approx([2, 2], rel=0.15)
 

@@ -16,7 +16,7 @@ TABULATING: Code = (tables.__file__, replicated_tables.__file__)
 WRITING: Code = (article.__file__, *sorted(article.TEMPLATES.glob("*.md.j2")))
 EXPLORING: Code = (explorer.__file__, *explorer.FILES)
 
-DATASETS = (*figures.FIGURES, "explorer")
+DATASETS = (*figures.FIGURES, "ext_event", "explorer")
 """All datasets."""
 
 

@@ -2,11 +2,8 @@
 
 import bouncing_ball_beyond as bb
 
-ratios = [2.0, 10.0, 100.0]
-balls = bb.SpringDamper(frequency_ratio=ratios, restitution=0.85)
-upwards = bb.follow(bb.orbit(balls, amplitude=0.9), to=1.3)
-downwards = bb.follow(bb.orbit(balls, amplitude=0.9), to=0.1)
-axes = None
-for ratio, *branches in zip(ratios, upwards, downwards, strict=True):
-    axes = bb.plot(*branches, ax=axes).axes[0]
-axes.figure.savefig("branch_for_three_stiffnesses.png")
+balls = bb.SpringDamper(frequency_ratio=[2.0, 10.0, 100.0], restitution=0.85)
+branches = bb.follow(bb.orbit(balls, amplitude=0.9), to=(0.1, 1.3))
+figure = bb.plot(*branches)
+figure.axes[0].set_title("1-T orbits, r = 0.85, ϖ = 2, 10 and 100")
+figure.savefig("branch_for_three_stiffnesses.png")

@@ -288,6 +288,7 @@ def law_thresholds(
     >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
     (82.18, 132.3)
     """
+    amplitude = np.asarray(amplitude, float)
     impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
     coefficients = law_coefficients(impact, amplitude=amplitude)
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.path import Path
 
 from bouncing_ball.datasets import parameters
 from bouncing_ball.drawing import (
@@ -221,71 +222,137 @@ def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:
 
 # Map
 
-POSITIONS = (0, 0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1)
-"""Positions of Λ in the stable range that are named; the axis is even in their square roots."""
+POSITIONS = (0, 0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 1)
+"""Positions of Λ in the stable range that are named; p = sin² of the places on the axis."""
 
-LEVELS = {-1: (15, 20, 25, 30, 40, 50, 60, 70, 80, 90), 1: (200, 1000)}
-"""Contours of ϖ where the ball on the contact bounces lower and where it bounces higher."""
+BELOW = (0, 0.001, 0.005, 0.02, 0.05, 0.1)
+"""Distances from the saddle-node that are named; the axis is even in their square roots."""
 
-RULE: Look = {"colors": "black", "linewidths": 2.0}
-JUMP: Look = {"colors": "black", "linewidths": 1.0, "linestyles": [(0, (1, 1.5))]}
-FAILS = "#b9d7ea"
-ABSENT: Look = {"facecolor": "white", "edgecolor": TABLE, "hatch": "////", "linewidth": 0}
-DIFFERS: Look = {"facecolor": "white", "edgecolor": "#b2182b", "hatch": "....", "linewidth": 0}
+LEVELS = (15, 20, 25, 30, 40, 50, 60, 70, 80, 90)
+"""Contours of the ϖ from which on the height is right, where it leaves the tolerance downwards."""
+
+EXACT: Look = {"color": "black", "linewidth": 0.8}
+BY_LAW: Look = {"color": "#7fb2d9", "linewidth": 2.6}
+JUMP: Look = {"color": "black", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}
+ON_LINE: Look = {
+    "ha": "center",
+    "va": "center",
+    "fontsize": 6.5,
+    "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+}
+TOO_HIGH = {200.0: 0.2, 1000.0: 0.13}
+"""The r at which lines of too large heights are named, which are near to each other."""
+
+ROOM = 0.025
+"""The least place of a line with a name, half the height of the name."""
+
+NOT_BY_RULE = "0.92"
+NOT_BY_PAPER = "0.8"
+
+
+def places(position: np.ndarray) -> np.ndarray:
+    """Places on the axis of positions, arcsin √p, negative below the saddle-node."""
+    return np.sign(position) * np.arcsin(np.sqrt(np.minimum(np.abs(position), 1)))
 
 
 def ext_map(data: xr.Dataset) -> Figure:
-    """Contours of the ϖ that the height needs, over r and the position of Λ in the stable range.
+    """From which ϖ on a contact is stable, as high, and bounces where the restitution model does.
 
-    Above they are those of the contact, below those of the error law. Where the rule of thumb
-    ϖ ≥ 1/(nε) fails, the map is shaded. Where the contact has no stable orbit at the ϖ that is
-    needed, the upper map is hatched. Contours end at the line across which the error reaches the
-    tolerance with the other sign, because ϖ jumps there. The lower map is dotted where its ϖ
-    differs much from that above.
+    The rows are in the order of Λ: from the period doubling down to the saddle-node, for the
+    stability and for the height, and below the saddle-node. Narrow lines are exact, wide ones those
+    of the error law. The ϖ of the rule of thumb and of the paper are not enough in shaded places.
     """
     columns = data.sizes["n"]
-    figure, slots = panels(5.6, rows=2, columns=columns, sharex=True, sharey=True, squeeze=False)
-    tolerance = parameters(data)["tolerance"]
+    options: Look = {"sharex": True, "sharey": "row", "height_ratios": (1, 1.25, 0.8)}
+    figure, slots = panels(7.4, rows=3, columns=columns, squeeze=False, **options)
     for column, n in zip(slots.T, data.n.values, strict=True):
-        family = data.sel(n=n).transpose("position", "restitution")
-        exact, law = column
-        exact.patch.set(**ABSENT)
-        draw_ratios(exact, family, family.error_threshold, 1 / (n * tolerance))
-        sign = np.sign(family.rule_product)
-        exact.contour(family.restitution, np.sqrt(family.position), sign, levels=[0], **JUMP)
-        exact.set_title(label(n=n))
-        draw_ratios(law, family, family.threshold_by_law, 1 / (n * tolerance))
-        draw_differences(law, family)
-        law.set_xlabel("restitution coefficient $r$")
-    for row, name in zip(slots, ("exact", "error law"), strict=True):
-        row[0].set_yticks(np.sqrt(POSITIONS), [f"{each:g}" for each in POSITIONS])
-        row[0].set_ylim(0, 1)
-        row[0].set_ylabel(f"{name}\n$\\Lambda$ from saddle-node (0)\nto period doubling (1)")
-    percent = f"{100 * tolerance:g} %"
-    quantity = TITLES["max_height"]
-    words = rf"{quantity}: $\varpi$ from which on the error is within {percent}"
-    figure.suptitle(words, fontsize="medium")
+        family = data.sel(n=n)
+        draw_stability(column[0], family)
+        draw_height(column[1], family)
+        draw_window(column[2], family)
+        column[0].set_title(label(n=n))
+        column[2].set_xlabel("restitution coefficient $r$")
+    given = parameters(data)
+    percent = f"{100 * given['tolerance']:g} %"
+    ranges = "$\\Lambda$ from saddle-node (0)\nto period doubling (1)"
+    answers = "it is stable", f"it is as high, within {percent}"
+    for axes, answer in zip(slots[:2, 0], answers, strict=True):
+        axes.set_yticks(places(np.array(POSITIONS)), [f"{each:g}" for each in POSITIONS])
+        axes.set_ylim(0, np.pi / 2)
+        axes.set_ylabel(f"{answer}\n{ranges}")
+    below = slots[2, 0]
+    below.set_yticks(np.sqrt(BELOW), [f"{each:g}" for each in BELOW])
+    below.set_ylim(np.sqrt(BELOW[-1]), 0)
+    below.set_ylabel("it has no orbit either\n$\\Lambda$ below saddle-node,\nas a share of it")
     entries = {
-        r"rule of thumb, $\varpi = 1/(n\varepsilon)$": sample(linewidth=RULE["linewidths"]),
-        r"a larger $\varpi$ is needed": Patch(facecolor=FAILS),
-        "the error changes its sign": sample(linewidth=1.0, linestyle=JUMP["linestyles"][0]),
-        r"orbit not stable at this $\varpi$": Patch(**ABSENT),
-        f"the law differs by more than {100 * float(data.law_differs_above):g} %": Patch(**DIFFERS),
+        r"$\varpi$ from which on, exactly": sample(**EXACT),
+        "by the error law": sample(**BY_LAW),
+        "the error of the height changes its sign": sample(**JUMP),
+        r"$\varpi=1/(n\varepsilon)$ is not enough": Patch(facecolor=NOT_BY_RULE),
+        rf"$\varpi={given['paper']:g}$ of the paper is not enough": Patch(facecolor=NOT_BY_PAPER),
     }
     legend_below(figure, entries, columns=3)
     return figure
 
 
-def draw_ratios(axes: Axes, family: xr.Dataset, needed: xr.DataArray, rule: float) -> None:
-    """Contours of a ϖ, of each sign of the error for itself, and where the rule of thumb fails."""
-    places = family.restitution, np.sqrt(family.position)
-    axes.contourf(*places, needed, levels=[0, rule, np.inf], colors=["white", FAILS])
-    for sign, levels in LEVELS.items():
-        of_sign = needed.where(np.sign(family.rule_product) == sign)
-        if of_sign.notnull().any():
-            lines = axes.contour(*places, of_sign, levels=levels, colors="black", linewidths=0.7)
-            axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)])
-    axes.contour(*places, needed, levels=[rule], **RULE)
+def draw_stability(axes: Axes, family: xr.Dataset) -> None:
+    """The positions of the period doublings of contacts, above which they are not stable."""
+    width = family.period_doubling_amplitude - family.saddle_node_amplitude
+    share = family.period_doubling_amplitude / width
+    exact = places(1 + family.period_doubling_error * share)
+    law = places(1 + family.period_doubling_law * share)
+    shade(axes, family, exact, np.pi / 2)
+    names = dict(zip(family.level.values, cycle((0.12, 0.28, 0.44)), strict=False))
+    draw_levels(axes, exact, law, names)
+
+
+def draw_window(axes: Axes, family: xr.Dataset) -> None:
+    """How far below that of the restitution model the saddle-nodes of contacts are."""
+    exact = np.sqrt(-family.saddle_node_error)
+    shade(axes, family, exact, 0.0)
+    law = np.sqrt(-family.saddle_node_law)
+    names = dict(zip(family.level.values, cycle((0.2, 0.5, 0.8)), strict=False))
+    draw_levels(axes, exact, law, names)
+
+
+def draw_height(axes: Axes, family: xr.Dataset) -> None:
+    """Contours of the ϖ that the height needs, over the position of Λ.
+
+    They end at the line across which the height leaves the tolerance upwards, where ϖ jumps. Below
+    it are the lines up to which the height is too large at one ϖ.
+    """
+    low = family.saddle_node_amplitude
+    width = family.period_doubling_amplitude - low
+
+    def place(lift: xr.DataArray) -> xr.DataArray:
+        return np.sign(lift) * places((np.hypot(low, lift) - low) / width)
+
+    r = family.restitution
+    jump = place(family.jump_lift)
+    too_high = place(family.too_high_lift)
+    shade(axes, family, too_high, 0.0)
+    edge = np.maximum(jump.fillna(0), 0)
+    above = np.column_stack([np.append(r, [r[-1], r[0]]), np.append(edge, [np.pi / 2, np.pi / 2])])
+    for name, look in {"lower_threshold_by_law": BY_LAW, "lower_threshold": EXACT}.items():
+        needed = finer(family[name].assign_coords(position=places(family.position)), "position")
+        colours: Look = {"colors": look["color"], "linewidths": look["linewidth"]}
+        lines = axes.contour(r, needed.position, needed, levels=LEVELS, **colours)
+        lines.set_clip_path(Path(above), axes.transData)
+    axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)])
+    stiff = family.level >= family.jump_ratio
+    law = place(family.too_high_lift_by_law)
+    draw_levels(axes, too_high.where(stiff), law.where(stiff), TOO_HIGH)
+    axes.plot(r, jump, **JUMP)
+
+
+def finer(data: xr.DataArray, dimension: str) -> xr.DataArray:
+    """A smooth variable with four times as many samples along a dimension, by cubic splines, with
+    this dimension first.
+    """
+    count = data.sizes[dimension]
+    numbers = np.linspace(0, count - 1, 4 * count - 3)
+    at = np.interp(numbers, np.arange(count), data[dimension])
+    return data.interp({dimension: at}, method="cubic").transpose(dimension, ...)
 
 
 def label_points(lines: ContourSet) -> Iterator[np.ndarray]:
@@ -297,13 +364,27 @@ def label_points(lines: ContourSet) -> Iterator[np.ndarray]:
         yield line[np.argmin(np.abs(height - wanted))]
 
 
-def draw_differences(axes: Axes, family: xr.Dataset) -> None:
-    """Dots where the ϖ by the error law differs from the exact one by more than a share."""
-    apart = np.abs(family.threshold_by_law / family.error_threshold - 1)
-    differs = apart > family.law_differs_above
-    places = family.restitution, np.sqrt(family.position)
-    dots = axes.contourf(*places, differs, levels=[0.5, 2], colors="none", hatches=["...."])
-    dots.set(edgecolor=DIFFERS["edgecolor"], linewidth=0)
+def shade(axes: Axes, family: xr.Dataset, lines: xr.DataArray, edge: float) -> None:
+    """Shade what lies between an edge and the line of each ϖ that is judged."""
+    for judge, colour in (("rule of thumb", NOT_BY_RULE), ("paper", NOT_BY_PAPER)):
+        ratio = float(family.judged_ratio.sel(judge=judge))
+        line = lines.sel(level=ratio, method="nearest")
+        axes.fill_between(family.restitution, line, edge, color=colour, linewidth=0, zorder=0)
+
+
+def draw_levels(
+    axes: Axes, exact: xr.DataArray, law: xr.DataArray, names: Mapping[float, float]
+) -> None:
+    """Lines of one ϖ each over r, exactly and by the law; names are at places r on the lines."""
+    for level in exact.level.values:
+        line = exact.sel(level=level)
+        axes.plot(exact.restitution, law.sel(level=level), **BY_LAW)
+        axes.plot(exact.restitution, line, **EXACT)
+        if level in names:
+            height = float(line.sel(restitution=names[level], method="nearest"))
+            if height > ROOM:
+                text = f"{level:.4g}" if level >= 100 else f"{level:.3g}"
+                axes.text(names[level], height, text, **ON_LINE)
 
 
 # Other contact laws
@@ -353,12 +434,68 @@ def ext_laws(data: xr.Dataset) -> Figure:
     return figure
 
 
+# What a phase tells
+
+WAVES: Mapping[str, Look] = {
+    "sine": {"color": COLOURS[0], "marker": "o"},
+    "three harmonics": {"color": COLOURS[1], "marker": "s"},
+    "skewed": {"color": COLOURS[3], "marker": "^"},
+}
+
+
+def ext_phase(data: xr.Dataset) -> Figure:
+    """Touches of exact orbits in the plane (X, Y), and the velocity of the table there.
+
+    On the left are the lines of the restitution model and of the error law for two durations. On
+    the right the velocity is that at the touch (open) and later by θ (filled), for tables of three
+    waveforms. By the law the second one is the level (C - s)/C.
+    """
+    figure, (plane, level) = panels(2.9, columns=2, width_ratios=(1, 1.35))
+    line = float(data.restitution_line)
+    top = 1.08 * float(data.touch_y.max())
+    plane.plot([line, line], [0, top], color=COLOURS[0], label="restitution model")
+    for share, colour in zip(data.shown_share.values, COLOURS[1:], strict=False):
+        one = data.sel(shown_share=share)
+        across, angle = float(one.line_level), float(one.line_angle)
+        # X cos θ - Y sin θ = C - s.
+        ends = [across / np.cos(angle) + y * np.tan(angle) for y in (0, top)]
+        plane.plot(ends, [0, top], color=colour, linestyle=DASHES[3])
+        name = f"$D/(2\\pi)$ = {100 * share:g} %"
+        plane.plot(one.touch_x, one.touch_y, "o", color=colour, markersize=3, label=name)
+    given = parameters(data)
+    plane.set(
+        xlabel=r"$X=\Lambda\,\cos\,\varphi$", ylabel=r"$Y=\Lambda\,\sin\,\varphi$", ylim=(0, top)
+    )
+    plane.set_title(label(n=1, restitution=given["shown_restitution"]))
+    last = data.isel(shown_share=-1)
+    for waveform, look in WAVES.items():
+        one = data.sel(waveform=waveform)
+        mark: Look = {"markersize": 3.5, "linestyle": "none", **look}
+        level.plot(one.steepness, one.touch_slope, fillstyle="none", **mark)
+        level.plot(one.steepness, one.turned_slope, label=waveform, **mark)
+    level.axhline(1, color=COLOURS[0])
+    level.axhline(float(last.line_level) / line, **GUIDE)
+    right = float(data.steepness.max())
+    notes: Look = {"fontsize": 7, "ha": "right"}
+    level.annotate("restitution model", (right, 1.002), va="bottom", **notes)
+    below = float(last.line_level) / line - 0.006
+    level.annotate(r"error law, $(C-s)/C$", (right, below), va="top", **notes)
+    share = 100 * float(data.shown_share[-1])
+    level.set_title(f"open: at the touch; filled: later by $\\theta$; $D/(2\\pi)$ = {share:g} %")
+    level.set(xlabel=r"$\max\,w'/C$", ylabel=r"velocity of the table $w'/C$")
+    level.set_ylim(bottom=below - 0.03)
+    plane.legend(fontsize=7, loc="lower right")
+    level.legend(fontsize=7)
+    return figure
+
+
 FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "ext_impact": ext_impact,
     "ext_instant": ext_instant,
     "ext_orders": ext_orders,
     "ext_map": ext_map,
     "ext_laws": ext_laws,
+    "ext_phase": ext_phase,
 }
 
 

@@ -89,6 +89,7 @@ VARIABLES = datasets.VARIABLES | {
     "lower_threshold": Variable(
         "frequency ratio at which the height is too small by the tolerance", "ϖ"
     ),
+    "lower_threshold_by_law": Variable("the same by the error law", "ϖ"),
     "threshold_by_law": Variable(
         "frequency ratio for the tolerance of the height by the error law", "ϖ"
     ),

@@ -124,10 +124,10 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     )
 
 
-def _root(square: NDArray) -> NDArray:
-    """The square root, NaN of a negative number without a warning."""
+def _ordinate(amplitude: ArrayLike, x: NDArray) -> NDArray:
+    """Y ≥ 0 of the point with X = x at the distance Λ from the origin, NaN if there is none."""
     with np.errstate(invalid="ignore"):
-        return np.sqrt(square)
+        return np.sqrt((amplitude - x) * (amplitude + x))
 
 
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike) -> dict:
@@ -136,7 +136,7 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike) -> dict:
     The restitution coefficient is the function r(v) of the impact, on whose slope the period
     doubling depends. NaN below the saddle-node Λ = C.
     """
-    lift = _root(np.square(amplitude) - impact.line**2)
+    lift = _ordinate(amplitude, impact.line)
     anywhere = 0 * (impact.line + np.asarray(amplitude))
     return {
         "max_height": lift + impact.half**2 / 2,
@@ -178,8 +178,8 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     delay = impact.centroid
     shift = impact.shift
     nearer = impact.line - shift
-    lift = _root(np.square(amplitude) - impact.line**2)
-    turned = _root(np.square(amplitude) - nearer**2)
+    lift = _ordinate(amplitude, impact.line)
+    turned = _ordinate(amplitude, nearer)
     across, along = _doubling_shift(impact)
     with np.errstate(invalid="ignore", divide="ignore"):
         turn = np.arccos(nearer / amplitude) - np.arccos(impact.line / amplitude)
@@ -235,11 +235,11 @@ def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 
     reference = restitution_values(impact, amplitude)
     delay = impact.centroid
     shift = np.abs(impact.shift)
-    weight = 1 + np.abs(1 - _root(np.square(amplitude) - impact.line**2))
+    weight = 1 + np.abs(1 - _ordinate(amplitude, impact.line))
     loaded = impact.duration * weight / (impact.restitution * impact.speed)
     small = impact.duration * np.maximum(1, amplitude) + loaded
     with np.errstate(invalid="ignore", divide="ignore"):
-        later = shift * weight / _root(np.square(amplitude) - (impact.line - shift) ** 2)
+        later = shift * weight / _ordinate(amplitude, impact.line - shift)
         risen = impact.line * later + impact.speed * delay
         node = shift / reference["saddle_node"]
         scales = {
@@ -298,7 +298,7 @@ def law_thresholds(
     later = impact.shift + impact.centroid
     turns = {
         "max_height": deeper * amplitude / np.hypot(impact.shift, deeper),
-        "phase": _root(np.maximum(np.square(amplitude) - (impact.shift / later) ** 2, 0)),
+        "phase": np.sqrt(np.maximum(np.square(amplitude) - (impact.shift / later) ** 2, 0)),
     }
     for name, turn in turns.items():
         found[name] = 1 / _longest(impact, amplitude, tolerance, name, turn)

@@ -77,7 +77,11 @@ def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
         ratios, damping_ratio=damping_of(parameters["restitution"]), release=release
     )
     found = errors(ball, amplitude, n)
-    once, twice = (errors(ball.at(frequency_ratio=STIFF), amplitude, n)[1] * STIFF**2).T
+    stiff = ball.at(frequency_ratio=STIFF)
+    once, twice = (errors(stiff, amplitude, n)[1] * STIFF**2).T
+    exact = stacked(exact_errors(stiff, amplitude=amplitude, n=n))
+    by_law = stacked(law_errors(stiff, amplitude=amplitude, n=n))
+    law_once, law_twice = ((exact - by_law) * STIFF**2).T
     left, _ = left_by_law(ball, amplitude, n)
     left_at_node, node_error = left_at_saddle_node(ball, n)
     unit = ball.at(frequency_ratio=1.0)
@@ -103,6 +107,8 @@ def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
         "coefficient": ("quantity", stacked(law_coefficients(unit, **law))),
         # The error is C/ϖ² and terms of third order, which are eliminated (Richardson).
         "second_order": ("quantity", 2 * twice - once),
+        "law_second_order": ("quantity", 2 * law_twice - law_once),
+        "law_third_order": ("quantity", (law_once - law_twice) / np.subtract(*(1 / STIFF))),
         "law_threshold": ("quantity", stacked(law_thresholds(unit, tolerance=tolerance, **law))),
         "error_threshold": (
             both,

@@ -126,10 +126,21 @@ def ext_instant(data: xr.Dataset) -> Figure:
 QUANTILES = (0.05, 0.5, 0.95)
 """The median of measured orders, and the ends of their middle 90 %."""
 
-LAW: Look = {"color": COLOURS[4], "linewidth": 1.0}
+LAW: Look = {"color": COLOURS[4], "linewidth": 1.2, "linestyle": DASHES[2]}
 """What the error law leaves."""
 
-AT_NODE: Look = {"linestyle": (0, (1, 1.2)), "linewidth": 1.6}
+AT_NODE: Mapping[str, Look] = {
+    "restitution at the saddle-node": {
+        "color": COLOURS[0],
+        "linewidth": 1.8,
+        "linestyle": (0, (1, 1.2)),
+    },
+    "error law at the saddle-node": {
+        "color": COLOURS[4],
+        "linewidth": 1.8,
+        "linestyle": (0, (3, 1.2, 1, 1.2)),
+    },
+}
 """Errors at the saddle-node of the restitution model."""
 
 
@@ -183,26 +194,26 @@ def ext_orders(data: xr.Dataset) -> Figure:
             axes.plot(*with_zero(ratio.values, error, zero), label=model, **look)
             draw_slope(axes, ratio, error, order)
             notes.append((part.order.sel(model=model), look))
-        axes.plot(ratio, part.law_left, label="error law, what it leaves", **LAW)
+        axes.plot(ratio, part.law_left, label="what the error law leaves", **LAW)
         notes.append((part.law_order, LAW))
         if quantity == "max_height":
             node = data.sel(place="saddle-node", quantity=quantity)
-            for error, slope, look in (
-                (node.node_error, 0.5, MODELS["restitution"]),
-                (node.law_left, 1.5, LAW),
+            errors = node.node_error, node.law_left
+            orders = node.node_order, node.law_order
+            for (name, look), error, order, slope in zip(
+                AT_NODE.items(), errors, orders, (0.5, 1.5), strict=True
             ):
-                axes.plot(ratio, error, **look | AT_NODE)
+                axes.plot(ratio, error, label=name, **look)
                 draw_slope(axes, ratio, error.values, slope)
-            notes += [(node.node_order, MODELS["restitution"]), (node.law_order, LAW)]
-            axes.plot([], [], color=GUIDE["color"], label="at the saddle-node", **AT_NODE)
+                notes.append((order, look))
         note_orders(axes, notes)
         along_ratio(axes, ratio)
         # Errors are below 1 but next to a phase of 0; the orders have the room above.
-        axes.set_ylim(1e-11, 1e5)
+        axes.set_ylim(1e-11, 1e6)
     given = title(data, "n", "restitution", "amplitude")
     orders = f"orders of {data.sizes['sample']} random orbits, median (and the middle 90 %)"
     figure.suptitle(f"{given}; {orders}", fontsize="medium")
-    legend_below(figure)
+    legend_below(figure, columns=3)
     return figure
 
 
@@ -212,12 +223,14 @@ def draw_slope(axes: Axes, ratio: xr.DataArray, error: np.ndarray, order: float)
 
 
 def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:
-    """Medians of measured orders and their middle 90 %, one below the other at the top right."""
-    place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top", "fontsize": 6.5}
-    for line, (order, look) in enumerate(orders):
+    """Medians of measured orders and their middle 90 %, each beside a sample of its line."""
+    texts = []
+    for order, _ in orders:
         low, middle, high = order.quantile(QUANTILES).values
-        text = f"{middle:.2f} ({low:.2f} to {high:.2f})".replace("-", "−")
-        axes.text(0.98, 0.98 - 0.07 * line, text, color=look["color"], **place)
+        texts.append(f"{middle:.2f} ({low:.2f} to {high:.2f})".replace("-", "−"))
+    lines = [sample(**look) for _, look in orders]
+    place: Look = {"loc": "upper right", "fontsize": 6.5, "borderaxespad": 0, "labelspacing": 0.2}
+    axes.legend(lines, texts, handlelength=2.6, **place)
 
 
 # Map

@@ -50,6 +50,15 @@ VARIABLES = datasets.VARIABLES | {
         tolerance=1e-6,
         floor=1.0,
     ),
+    "law_second_order": Variable(
+        "what the error law leaves times the squared frequency ratio",
+        "c₂",
+        tolerance=1e-6,
+        floor=1.0,
+    ),
+    "law_third_order": Variable(
+        "the next coefficient of what the error law leaves", "c₃", tolerance=1e-3, floor=1.0
+    ),
     "law_threshold": Variable("frequency ratio for the tolerance by the error law", "ϖ"),
     "error_zero": Variable("frequency ratio at which the error passes through zero", "ϖ"),
     # At large ϖ the corrected model's error, which passes through zero there, is itself small.

@@ -15,8 +15,9 @@ from bouncing_ball_beyond.continuation import (
     kind_named,
     limits,
 )
-from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
 from bouncing_ball_beyond.paths import ParameterPath
+from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
+from bouncing_ball_beyond.special_orbits import doubled_of
 
 # Special orbits are located to some rounding errors of their tests, over the slopes of these.
 LOCATED = 1e-10
@@ -54,11 +55,27 @@ def test_along_the_restitution_special_orbits_are_the_closed_form():
     fold = brentq(lambda r: saddle_node(1, r) - amplitude, 0.2, 0.5)
     assert branch.first("saddle node").ball.restitution == pytest.approx(fold, abs=LOCATED)
     # Behind the saddle-node the branch comes back to r = 0.8, as far behind the start.
-    assert branch.end.startswith("restitution = 0.8 is reached, as far behind the start")
+    assert branch.end.startswith("restitution = 0.8 is reached, on the other side of the start")
     assert branch.end.endswith(f"restitution = 0.2 is beyond the saddle-node at {fold:.10g}")
     other = follow(orbit(Rigid(0.5), amplitude=amplitude), along="restitution", to=1.0)
     assert other.first("period-doubling").ball.restitution == pytest.approx(flip, abs=LOCATED)
     assert other.end == "restitution = 1 is reached" and other.values[-1] == 1.0
+
+
+def test_a_branch_that_comes_back_stays_in_the_range_of_its_parameter():
+    start = orbit(Rigid(0.953), n=3, amplitude=1.155)
+    branch = follow(start, along="restitution", to=0.25)
+    assert branch.values[-1] == 1.0 and branch.values.max() == 1.0
+    assert branch.end.startswith("restitution = 1 is reached, on the other side of the start")
+
+
+def test_only_an_orbit_of_even_numbers_has_halves():
+    """Half a period later the table is at another phase if the number of periods is odd."""
+    two = orbits(Rigid(0.8), impacts=2, periods=3, amplitude=1.3)[0]
+    assert (two.equations.halves(two.z[np.newaxis]) == 1).all()
+    one = orbit(Rigid(0.8), amplitude=1.0)
+    twice, z = doubled_of(one.equations, one.z[np.newaxis])
+    assert np.abs(twice.halves(z)).max() == 0
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
@@ -220,7 +237,7 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight_of_the_orbit_without_it():
     impacts = [b.special[-1].amplitude for b in ends if b.special[-1].kind.endswith("an impact")]
     flights = [follow(each, to=20.0).first("grazing of a flight").amplitude for each in two]
     assert impacts and min(abs(np.subtract.outer(impacts, flights)).ravel()) < 1e-9
-    assert all("an impact vanishes" in each.end for each in ends)
+    assert all("lands with the speed of the table" in each.end for each in ends)
     with pytest.raises(OrbitNotFound, match="branches end at a special orbit of this kind"):
         follow(ends[0].special[-1], to=1.0)
 

@@ -438,7 +438,7 @@ def _in_words(end: str, name: str, value: float, goal: float, passed: list[_Pass
         return f"{here} is reached"
     folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
-    return f"{here} is reached, as far behind the start as the goal is ahead of it{turned}"
+    return f"{here} is reached, on the other side of the start than the goal{turned}"
 
 
 def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:

@@ -58,10 +58,6 @@ class Flights(NamedTuple):
         leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self)
         return flight(t, leaves, gap, speed, amplitude)
 
-    def acceleration(self, t) -> NDArray:
-        """δ″ at times t since the release, shape (rows, k, times)."""
-        return self.amplitude[..., np.newaxis] * np.sin(self.leaves[..., np.newaxis] + t) - 1
-
 
 @dataclass(frozen=True)
 class OrbitEquations:
@@ -228,25 +224,11 @@ class OrbitEquations:
         return Flights(leaves, impact.gap, impact.speed, time, amplitude)
 
     def clearance(self, z) -> NDArray:
-        """How far the ball is above the table where a flight turns back from it: the least of all.
-
-        After a release by the force the ball is clear of the contact if it is above the line
-        δ + κδ′ = 0, on which a contact would resume.
-        """
+        """How far the ball is above the table where a flight turns back from it: the least of all."""
         flights = self.ends(z)
-        least = turns_back(lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight)
-        kappa = np.broadcast_to(self.split(z)[1].kappa, least.shape)[..., np.newaxis]
-        if np.any(kappa):
-
-            def free(t):
-                gap, rate = flights.at(t)
-                return np.where(gap < 0, gap + kappa * rate, FAR)
-
-            def free_rate(t):
-                return flights.at(t)[1] + kappa * flights.acceleration(t)
-
-            least = np.minimum(least, turns_back(free_rate, free, flights.flight))
-        return least.min(axis=-1)
+        return turns_back(
+            lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight
+        ).min(axis=-1)
 
     def contact_clearance(self, z) -> NDArray:
         """How far release functions are below zero where they turn back: the least of all."""

@@ -36,7 +36,7 @@ KINDS = {
     ),
     "grazing of an impact": Kind(
         lambda equations, z, linear: equations.least_speed(z),
-        "an impact vanishes, because the ball lands with the speed of the table",
+        "the ball lands with the speed of the table: an impact vanishes, or is one that resumes",
     ),
     "lost release": Kind(
         lambda equations, z, linear: equations.least_release(linear, z),

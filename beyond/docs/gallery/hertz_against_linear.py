@@ -9,9 +9,7 @@ hertz = bb.tsuji(restitution=0.85, duration=0.3157, speed=3.4)
 balls = {"linear": linear, "Hertz, with the damping of Tsuji": hertz}
 figure, axes = plt.subplots(layout="constrained")
 for (name, ball), style in zip(balls.items(), ("-", "--"), strict=True):
-    found = bb.history(
-        ball, amplitude=0.0, velocity=-3.4, periods=0.1, samples=5000
-    )
+    found = bb.history(ball, amplitude=0.0, velocity=-3.4, periods=0.1, samples=5000)
     height = bb.orbit(ball, n=1, amplitude=1.0).max_height
     touching = found.where(found.contact, drop=True)
     axes.plot(touching.time, -touching.ball, style, label=f"{name}: greatest height {height:.4f}")

@@ -1,0 +1,40 @@
+"""The pages of docs: their examples, their links, and the names on the page of all functions."""
+
+import doctest
+import re
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+import bouncing_ball_beyond
+from bouncing_ball_beyond import named_laws
+
+BEYOND = Path(__file__).resolve().parents[1]
+PAGES = sorted([BEYOND / "README.md", *(BEYOND / "docs").glob("*.md")])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_examples(page, monkeypatch, tmp_path):
+    plt.switch_backend("agg")
+    monkeypatch.chdir(tmp_path)
+    failed, _ = doctest.testfile(str(page), module_relative=False)
+    plt.close("all")
+    assert failed == 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_lead_to_files(page):
+    text = page.read_text(encoding="utf-8")
+    links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", text)
+    files = [link for link in links if "://" not in link]
+    assert [file for file in files if not (page.parent / file).exists()] == []
+
+
+def test_the_page_of_all_functions_has_every_public_name():
+    text = (BEYOND / "docs" / "api.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"auto(?:function|class|exception):: (\w+)", text))
+    public = set(bouncing_ball_beyond.__all__)
+    # The page has the laws with names as a module.
+    assert public - vars(named_laws).keys() <= listed
+    assert listed <= public

@@ -47,6 +47,8 @@ html_extra_path = ["../figures/explorer.html"]
 html_show_sourcelink = False
 html_copy_source = False
 html_math_renderer = "mathml"
+# Two classes have members of the same name, to which docstrings refer.
+suppress_warnings = ["ref.python"]
 
 PARTS = {
     "The replication": [

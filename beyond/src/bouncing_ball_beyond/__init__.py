@@ -7,6 +7,8 @@ functions take it as their first argument.
 
 from importlib import import_module as _import_module
 
+__version__ = "0.1.0"
+
 # The module of each public name; a module is imported with the first use of one of its names.
 _MODULES = {
     "Ball": "balls",

@@ -1,4 +1,4 @@
-"""Periodic orbits and motions of a ball on a vibrating table, with any contact and any number of impacts.
+"""Periodic orbits and motions of a ball on a vibrating table, with any contact.
 
 All quantities are dimensionless: the table is at Λ sin τ, gravity is 1, velocities are in units
 of g/Ω. A ball is an object of one of the classes of :mod:`.balls` or :mod:`.laws`; the public

@@ -548,10 +548,10 @@ def _solve(linear: Linear, right, border, border_right) -> NDArray:
     except np.linalg.LinAlgError:
         if len(right) == 1:
             return np.full((1, border.shape[-1], right.shape[-1]), np.nan)
-    # One row spoils the others: solve them one by one.
-    each = range(len(right))
-    parts = [
-        _solve(Linear(*(a[[i]] for a in linear)), right[[i]], border[[i]], border_right[[i]])
-        for i in each
-    ]
+    # Bisect the rows to isolate those that are singular.
+    half = len(right) // 2
+    parts = []
+    for part in (slice(half), slice(half, None)):
+        some = Linear(*(each[part] for each in linear))
+        parts.append(_solve(some, right[part], border[part], border_right[part]))
     return np.concatenate(parts)

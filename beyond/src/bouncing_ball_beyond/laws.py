@@ -17,7 +17,7 @@ from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
 from bouncing_ball_beyond.root_time import Motion, follow, load, rows_of
 
 SLOWEST = 1e-12
-"""A ball that is laid on the table, without a speed, is given this one, because p would stay zero."""
+"""The speed that a ball without one is given, because p would stay zero."""
 
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
 """Names that parameters must not have."""
@@ -25,12 +25,18 @@ TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
 LIMITS = (-46.0, 23.0)
 """The range of ln p in which the depth of an impact is looked for: p from 1e-20 to 1e10."""
 
+HALVINGS = 9
+"""Of this range; the depth is then right to a seventh."""
+
 FIRST_PANEL = 0.4
 """The length of the first panel of a contact in units of P^{1/m}/u."""
 
 FACTOR, DEGREE = 8.0, 23
-"""The range of speeds of an interpolation of signatures, and its degree: with a pole of r at ln u = x ± iπ,
-like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴."""
+"""The range of speeds of an interpolation of signatures, and its degree. With a pole of r at
+ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴."""
+
+FEW = 8
+"""So many intervals of a check may have a kink; if there are more, a force is not analytic."""
 
 SHIFTS = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
@@ -53,8 +59,8 @@ class ForceLaw(Ball):
     values : mapping
         The parameters of the force by their names: numbers, or arrays for a row of balls.
     root : int
-        m: the force is an analytic function of p^{1/m}. 1 if it is smooth at p = 0, 2 if it has powers of
-        √p, such as that of Hertz, 4 if it has powers of p^{1/4}.
+        m: the force is an analytic function of p^{1/m}. It is 1 if the force is smooth at p = 0, 2
+        if it has powers of √p, such as that of Hertz, and 4 if it has powers of p^{1/4}.
     release : {"displacement", "force"}
         Contacts end where p = 0, or where the force vanishes.
     lag : callable, optional
@@ -62,8 +68,8 @@ class ForceLaw(Ball):
     kinks : tuple of callables
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
     needs : tuple of str
-        "start_speed" if the force also gets, by this name, the speed at the start of its contact; "load" if
-        it gets the load a = 1 - Λ sin τ.
+        "start_speed" if the force also gets, by this name, the speed at the start of the contact;
+        "load" if it gets the load a = 1 - Λ sin τ.
     units : mapping
         The powers of mass, length and time in the unit of each parameter.
 
@@ -80,7 +86,7 @@ class ForceLaw(Ball):
     ...     return stiffness * p * (1 + hardening * p**2) * (1 + damping * v)
     >>> bumper = ForceLaw(force, {"stiffness": 400.0, "hardening": 10.0, "damping": 0.05})
     >>> round(float(bumper.signature(3.0).restitution), 4)
-    0.9066
+    0.909
     """
 
     force: Callable
@@ -142,7 +148,7 @@ class ForceLaw(Ball):
         return {name: power for name, power in powers.items() if power}
 
     def in_si(self, mass, length, time):
-        """The parameters in SI units, for a mass in kg and the units of length in m and of time in s."""
+        """The parameters in SI units: ``mass`` in kg, the units of length in m and of time in s."""
         return {
             name: self.values[name] * mass**of_mass * length**of_length * time**of_time
             for name, (of_mass, of_length, of_time) in self.units.items()
@@ -171,8 +177,8 @@ class ForceLaw(Ball):
     def signature(self, u):
         """r, D, t_c and σ of free impacts.
 
-        A law without kinks interpolates them and their derivatives in ln u by polynomials, on ranges
-        of a factor of :data:`FACTOR` in u that are computed when they are first needed.
+        A law without kinks interpolates them and their derivatives in ln u by polynomials, on
+        ranges of a factor of :data:`FACTOR` in u that are computed when they are first needed.
         """
         u = np.asarray(u)
         fixed = all(np.ndim(x) == 0 and np.isrealobj(x) for x in self.values.values())
@@ -188,20 +194,27 @@ class ForceLaw(Ball):
     def _interpolated(self, number, u):
         """The signature at speeds in one of the ranges of the interpolation."""
         if number not in self._ranges:
-            points = chebyshev.chebpts1(DEGREE + 1)
-            speeds = FACTOR ** (number + (points + 1) / 2)
-            values = np.array(self.computed_signature(speeds * (1 + 1j * H)))
-            both = np.concatenate([values.real, values.imag / H]).T
-            self._ranges[number] = np.linalg.solve(chebyshev.chebvander(points, DEGREE), both)
-        if np.isnan(self._ranges[number]).any():
+            self._ranges[number] = self._range(number)
+        coefficients = self._ranges[number]
+        if coefficients is None:
             return np.array(self.computed_signature(u))
         x = 2 * (np.log(u.real) / np.log(FACTOR) - number) - 1
-        both = chebyshev.chebval(x, self._ranges[number])
+        both = chebyshev.chebval(x, coefficients)
         return both[:4] + 1j * both[4:] * (u.imag / u.real) if np.iscomplexobj(u) else both[:4]
+
+    def _range(self, number):
+        """Coefficients of the signature and of u d/du of it; None if impacts do not end."""
+        points = chebyshev.chebpts1(DEGREE + 1)
+        speeds = FACTOR ** (number + (points + 1) / 2)
+        if np.isnan(self.free(speeds[[0, -1]])).any():
+            return None
+        values = np.array(self.computed_signature(speeds * (1 + 1j * H)))
+        both = np.concatenate([values.real, values.imag / H])
+        return np.linalg.solve(chebyshev.chebvander(points, DEGREE), both.T)
 
     @cached_property
     def _ranges(self):
-        """Coefficients of the interpolation by the numbers of the ranges."""
+        """What :meth:`_range` has found, by the numbers of the ranges."""
         return {}
 
     @np.errstate(invalid="ignore")
@@ -227,23 +240,24 @@ class ForceLaw(Ball):
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
     def depth(self, u):
-        """About the depth P at which the force would stop a ball of the speed u: P f(P, 0) = u²."""
+        """About the depth P at which the force would stop a ball: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
-        low, high = (np.full(shape, end) for end in LIMITS)
-        for _ in range(9):
-            middle = (low + high) / 2
-            depth = np.exp(middle)
+        low = np.full(shape, LIMITS[0])
+        width = LIMITS[1] - LIMITS[0]
+        for _ in range(HALVINGS):
+            width = width / 2
+            depth = np.exp(low + width)
             soft = depth * self.force_at(depth, 0 * depth, 0.0, given) < u * u
-            low, high = np.where(soft, middle, low), np.where(soft, high, middle)
+            low = np.where(soft, low + width, low)
         return np.exp(low)
 
     def force_at(self, p, v, a, given):
-        """f under the load a; the parameters and the speed u at the start are among what is given."""
+        """f under the load a, with the parameters and the speed u at the start from ``given``."""
         more = {"load": a, "start_speed": given["u"]}
-        return self.force(p, v, **self._own(given), **{name: more[name] for name in self.needs})
+        return self.force(p, v, **self.own(given), **{name: more[name] for name in self.needs})
 
-    def _own(self, given):
+    def own(self, given):
         """The parameters of the law among what is given."""
         return {name: given[name] for name in self.values}
 
@@ -253,111 +267,124 @@ class ForceLaw(Ball):
             return -q
         if self.lag:
             # q at which p + κp′ = 0, so that the zero is a simple one for κ = 0 as well.
-            return (self.lag(**self._own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
+            return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load(t, given), given)
 
     def _followed(self, tau, u, amplitude, gravity, T=None):
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         rows = rows_of(values if T is None else values | {"T": T})
-        given, none = rows.given, np.zeros((rows.size, rows.directions))
+        given = rows.given
+        none = np.zeros((rows.size, rows.directions))
         kinks = (
-            lambda q, v, t, given, kink=kink: kink(q**self.root, v, **self._own(given))
+            lambda q, v, t, given, kink=kink: kink(q**self.root, v, **self.own(given))
             for kink in self.kinks
         )
         motion = Motion(self.root, self.force_at, self._release, tuple(kinks), given, rows.steps)
         # Where a contact resumes, the ball moves away, u < 0, from the line p + κp′ = 0.
         stepped = motion.stepped()
-        kappa = self.at(**self._own(stepped)).kappa
+        kappa = self.at(**self.own(stepped)).kappa
         start = (-kappa * np.minimum(stepped["u"], 0.0)) ** (1 / self.root)
         by = np.array([np.imag(start) + none, rows.steps.get("u", none)])
-        u = given["u"] = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
+        u = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
+        given["u"] = u
+        period = np.full(rows.size, 2 * np.pi)
         if T is None:
-            depth = self.at(**self._own(given)).depth(u)
+            depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
+            # A table at rest has no period; an impact lasts some three times P/u.
+            period = np.where(given["amplitude"] == 0, 3 * depth / np.abs(u), period)
         else:
             first = given["T"] / (self.root + 2)
         limits = given.get("T"), rows.steps.get("T", none)
-        s, q, v, t = rows.joined(*follow(motion, np.real(start)[:, 0], u, by, first, *limits))
+        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits)
+        s, q, v, t = rows.joined(*ends)
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
 
 
 def check_force(law):
-    """Raise ValueError, in one line, unless the force of a law is as :class:`ForceLaw` describes it.
+    """Raise ValueError, in one line, unless a force is as :class:`ForceLaw` describes it.
 
-    Along lines of constant rates and of constant depths the change of the force between neighbours must
-    be the integral of its derivative by complex steps. It is not where the force is not analytic, and
-    over a kink.
+    Along lines of constant rates and of constant depths, the change of the force between neighbours
+    must be the integral of its derivative by complex steps. It is not where the force is not
+    analytic, nor over a kink.
     """
-    given = {name: np.ravel(np.real(x))[0] for name, x in law.values.items()} | {"u": 1.0}
-    try:
-        probe = law.force_at(np.array([1.0 + 1j * H]), np.array([1.0 + 0j]), 0.0, given)
-    except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"force: fails for arrays of complex numbers ({reason})") from None
-    if np.shape(probe) != (1,):
-        raise ValueError(f"force: must have the shape of p and v, not {np.shape(probe)} for (1,)")
+    given = {name: np.ravel(np.real(x))[0] for name, x in law.values.items()}
+    depth = _depth_of_one(law.at(**given))
+    depths = depth * np.geomspace(1e-3, 30.0, 321)
+    rates = np.linspace(-3.003, 3.0, 241)
+    some_depths = depth * np.array([[0.02], [0.3], [1.1], [8.0]])
+    some_rates = np.array([[-1.9], [-0.4], [0.3], [1.7]])
+    given["u"] = 1.0
     with np.errstate(all="ignore"):
-        depth = float(law.at(**{name: given[name] for name in law.values}).depth(1.0))
-        if not LIMITS[0] + 1 < np.log(depth) < LIMITS[1] - 1:
-            raise ValueError("force: stops no ball of the speed 1 at any depth")
-        depths, rates = depth * np.geomspace(1e-3, 30.0, 321), np.linspace(-3.003, 3.0, 241)
-        some_rates = np.array([-1.9, -0.4, 0.3, 1.7])[:, np.newaxis]
-        some_depths = depth * np.array([0.02, 0.3, 1.1, 8.0])[:, np.newaxis]
         _check_line(law, given, "p", depths, lambda p: (p + 0 * some_rates, some_rates + 0 * p))
         _check_line(law, given, "v", rates, lambda v: (some_depths + 0 * v, v + 0 * some_depths))
         _check_root(law, given, depth)
 
 
+def _depth_of_one(law):
+    """The depth at which a ball of the speed 1 is stopped; ValueError if there is none."""
+    p = np.array([1.0 + 1j * H])
+    try:
+        force = law.force_at(p, p, 0.0, {**law.values, "u": 1.0})
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise ValueError(f"force: fails for arrays of complex numbers ({reason})") from None
+    if np.shape(force) != p.shape:
+        raise ValueError(f"force: must have the shape of p and v, {p.shape}, not {np.shape(force)}")
+    with np.errstate(all="ignore"):
+        depth = float(law.depth(1.0))
+    if not LIMITS[0] + 1 < np.log(depth) < LIMITS[1] - 1:
+        raise ValueError("force: stops no ball of the speed 1 at any depth")
+    return depth
+
+
 def _check_line(law, given, name, x, place):
-    """Compare the changes of the force along lines with the integrals of its complex steps."""
-
-    def force(x):
-        return law.force_at(*place(x), 1.0, given)
-
-    def side(x):
-        return np.array([np.sign(kink(*place(x), **law._own(given))) for kink in law.kinks])
-
+    """Compare the changes of the force between points x of lines with integrals of its slopes."""
     nodes, weights = legendre.leggauss(4)
     width = np.diff(x)
     inner = x[:-1, np.newaxis] + width[:, np.newaxis] * (nodes + 1) / 2
-    slopes = force(inner.ravel() + 1j * H).imag / H
+    slopes = law.force_at(*place(inner.ravel() + 1j * H), 1.0, given).imag / H
     expected = slopes.reshape(-1, *inner.shape) @ weights / 2 * width
-    values = force(x)
+    points = place(x)
+    values = law.force_at(*points, 1.0, given)
     change = np.diff(values)
-    scale = np.abs(change) + 1e-6 * np.abs(values[:, 1:])
-    wrong = np.abs(change - expected) > 1e-5 * scale
-    if law.kinks:
-        wrong &= (side(x)[..., 1:] * side(x)[..., :-1] > 0).all(0)
+    # The quadrature of p^{1/4} between neighbours is wrong by 1e-11 of it.
+    wrong = np.abs(change - expected) > 1e-5 * np.abs(change) + 1e-11 * np.abs(values[:, 1:])
+    for kink in law.kinks:
+        side = np.sign(kink(*points, **law.own(given)))
+        wrong &= side[:, 1:] * side[:, :-1] > 0
     if not wrong.any():
         return
     line, at = np.argwhere(wrong)[0]
-    where = ", ".join(
-        f"{n} = {each.flat[0]:.3g}"
-        for n, each in zip("pv", (y[line, at] for y in place(x)), strict=True)
-    )
-    if np.count_nonzero(wrong) > 8:
+    p, v = (each[line, at : at + 2].mean() for each in points)
+    where = f"p = {p:.2g}, v = {v:.2g}"
+    if np.count_nonzero(wrong) <= FEW:
         raise ValueError(
-            f"force: is not analytic in {name} at {where}, where its derivative is"
-            f" {change[line, at] / width[at]:.4g} by a difference and"
-            f" {expected[line, at] / width[at]:.4g} by a complex step; write it without abs, real and sign"
+            f"force: has a kink or a jump near {where}; declare by kinks what is zero there"
         )
     raise ValueError(
-        f"force: has a kink or a jump near {where}; declare kinks=(function, …) with a zero there"
+        f"force: is not analytic in {name} at {where}: its derivative is"
+        f" {change[line, at] / width[at]:.4g} by a difference and"
+        f" {expected[line, at] / width[at]:.4g} by a complex step; write it without abs, real, sign"
     )
 
 
 def _check_root(law, given, depth):
-    """Whether the force is an analytic function of q = p^{1/m} at q = 0."""
+    """Whether the force is an analytic function of q = p^{1/m} at q = 0.
 
-    def falls(root):
-        """Whether the Legendre coefficients of f on a short range of q fall as those of an analytic function."""
-        q = ((legendre.leggauss(24)[0] + 1) / 2) * (0.01 * depth) ** (1 / root)
-        values = law.force_at(q**root, 0.5 + 0 * q, 1.0, given)
-        sizes = np.abs(np.linalg.solve(legendre.legvander(legendre.leggauss(24)[0], 23), values))
-        return sizes[-4:].max() <= max(1e-12 * sizes.max(), 1e-3 * sizes[8:12].max())
+    Then its Legendre coefficients on a short range of q fall geometrically.
+    """
+    x, _ = legendre.leggauss(24)
+    to_coefficients = np.linalg.inv(legendre.legvander(x, 23))
 
-    if not falls(law.root):
-        others = [m for m in (1, 2, 4, 6, 8) if falls(m)]
+    def last(root):
+        """The last coefficients, over those in the middle or over rounding."""
+        q = (x + 1) / 2 * (0.01 * depth) ** (1 / root)
+        sizes = np.abs(to_coefficients @ law.force_at(q**root, 0.5 + 0 * q, 1.0, given))
+        return sizes[-4:].max() / max(1e-12 * sizes.max(), 1e-3 * sizes[8:12].max())
+
+    if last(law.root) > 1:
+        others = [m for m in (1, 2, 4, 6, 8) if last(m) <= 0.01]
         hint = f"; root={others[0]} would do" if others else ""
         raise ValueError(f"force: is not an analytic function of p^(1/{law.root}) at p = 0{hint}")

@@ -1,8 +1,8 @@
 """Contact laws that have names: functions that return a :class:`.ForceLaw`.
 
-Each law is given by the parameters of its force, or by the restitution coefficient and the duration of
-a free impact at a speed. All is dimensionless: with a ball of the mass m on a table of the frequency Ω
-under gravity g, p = Ω²x/g is the penetration and f = F/(mg) the force per mass.
+Each law is given by the parameters of its force, or by the restitution coefficient and the duration
+of a free impact at a speed. All is dimensionless: with a ball of the mass m on a table of the
+frequency Ω under gravity g, p = Ω²x/g is the penetration and f = F/(mg) the force per mass.
 
 | law | force f | contact ends at | restitution coefficient |
 | --- | --- | --- | --- |
@@ -17,10 +17,11 @@ under gravity g, p = Ω²x/g is the penetration and f = F/(mg) the force per mas
 | `adams_impact_linear` | K p + C s p′, at least 0 | p = 0 | falls with the depth, up to d |
 | `simscape_contact` | s (K p + C p′) | f = 0 | falls with the depth, up to d |
 
-Here v₀ is the speed at the start of a contact, and s = x²(3 - 2x) with x = p/d is a cubic step from 0 at
-the surface to 1 at the depth d.
+Here v₀ is the speed at the start of a contact, and s = x²(3 - 2x) with x = p/d is a cubic step from
+0 at the surface to 1 at the depth d.
 """
 
+from functools import partial
 from inspect import signature
 
 import numpy as np
@@ -29,11 +30,11 @@ from scipy.optimize import brentq
 from bouncing_ball_beyond.balls import _checked
 from bouncing_ball_beyond.laws import ForceLaw
 
-HERTZ, SPRING, DAMPER, NUMBER = (1, -0.5, -2), (1, 0, -2), (1, 0, -1), (0, 0, 0)
+HERTZ = (1, -0.5, -2)
+SPRING = (1, 0, -2)
+DAMPER = (1, 0, -1)
+NUMBER = (0, 0, 0)
 """Powers of mass, length and time in N/m^{3/2}, N/m, N s/m and 1."""
-
-MOST_DAMPED = 1e4
-"""The largest damping that is tried for a restitution coefficient, in the unit of each law."""
 
 RANGES = {
     "frequency_ratio": (0, np.inf, False),
@@ -45,8 +46,14 @@ RANGES = {
 }
 """The least and the largest value of a parameter, and whether the least one is allowed."""
 
+RATIOS = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
+"""The units of ϖ and ζ."""
+
 STEPPED = 0.1
 """The depth d of a law that is given by an impact, over the scale of the penetration."""
+
+MOST_DAMPED = 1e4
+"""The largest damping that is tried for a restitution coefficient, in the unit of each law."""
 
 
 def law_of_impact(law_of, restitution, duration, speed):
@@ -55,8 +62,9 @@ def law_of_impact(law_of, restitution, duration, speed):
     Parameters
     ----------
     law_of : callable
-        ``law_of(damping, length, speed)`` is the law with the length scale P, the speed scale v and a
-        damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P nor v.
+        ``law_of(damping, length, speed)`` is the law with the scales P of length and v of speed and
+        a damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P
+        nor v.
     restitution, duration, speed : float or array
         r in (0, 1], D > 0 and v > 0.
 
@@ -67,8 +75,9 @@ def law_of_impact(law_of, restitution, duration, speed):
 
     Examples
     --------
-    >>> ball = law_of_impact(lambda g, length, v: hunt_crossley(v**2 / length**2.5, g / v), 0.8, 0.1, 3.5)
-    >>> signature = ball.signature(3.5)
+    >>> def law_of(damping, length, speed):
+    ...     return hunt_crossley(speed**2 / length**2.5, damping / speed)
+    >>> signature = law_of_impact(law_of, 0.8, 0.1, 3.5).signature(3.5)
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
     """
@@ -76,54 +85,58 @@ def law_of_impact(law_of, restitution, duration, speed):
     duration = _checked("duration", duration, 0, np.inf, low_allowed=False)
     speed = _checked("speed", speed, 0, np.inf, low_allowed=False)
     r, lasts, v = np.broadcast_arrays(restitution, duration, speed)
-    found = {each: _damping(law_of, each) for each in np.unique(r)}
-    damping = np.array([found[each][0] for each in r.flat]).reshape(r.shape)
-    unit = np.array([found[each][1] for each in r.flat]).reshape(r.shape)
-    return law_of(damping[()], (lasts * v / unit)[()], v[()])
+    found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
+    damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)
+    length = lasts * v / unit.reshape(r.shape)
+    return law_of(damping.reshape(r.shape)[()], length[()], v[()])
 
 
-def _damping(law_of, restitution):
-    """The g with which impacts have a restitution coefficient, and their duration in units of P/v."""
+def _damping_and_duration(law_of, restitution):
+    """The g with which impacts have a restitution coefficient, and D of the one with P = v = 1."""
 
     def impact(damping):
-        """w and D of a free impact of the speed 1 with P = 1; w = 0 if the ball stays."""
-        impact = law_of(damping, 1.0, 1.0).first_impact(0.0, 1.0, 0.0, 0.0)[1]
-        return np.nan_to_num(impact.speed), impact.duration
+        """w and D; w = 0 if the ball stays."""
+        _, end = law_of(damping, 1.0, 1.0).first_impact(0.0, 1.0, 0.0, 0.0)
+        return float(np.nan_to_num(end.speed)), float(end.duration)
 
-    if restitution == 1:
-        return 0.0, impact(0.0)[1]
-    low, high = 0.0, 0.1
-    while impact(high)[0] > restitution and high < MOST_DAMPED:
-        low, high = high, 2 * high
-    damping = high
-    if impact(high)[0] <= restitution:
+    low = damping = 0.0
+    if restitution < 1:
+        damping = 0.1
+        while impact(damping)[0] > restitution and damping < MOST_DAMPED:
+            low = damping
+            damping = 2 * damping
+    if impact(damping)[0] < restitution:
+        high = damping
         damping = brentq(lambda g: impact(g)[0] - restitution, low, high, xtol=1e-16, rtol=1e-15)
-    speed, duration = impact(damping)
-    if abs(speed - restitution) > 1e-9:
-        least = max(impact(g)[0] for g in (low, high, damping))
+    r, duration = impact(damping)
+    if abs(r - restitution) > 1e-9:
+        least = max(r, impact(low)[0])
         raise ValueError(
             f"restitution = {restitution:g}: this law has none between 0 and {least:.4g}"
         )
     return damping, duration
 
 
-def _given(law, values, of_scales, restitution, duration, speed):
-    """The law with the given values of its parameters, or that of an impact."""
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    missing = [name for name, value in values.items() if value is None]
+def _given(law, values, impact, of_scales):
+    """The law with the given values of its parameters, or that of an impact.
+
+    ``law`` makes it of values, and ``of_scales(g, P, v)`` has the values at the scales P and v.
+    """
+    without = [name for name, value in values.items() if value is None]
     lacking = [name for name, value in impact.items() if value is None]
-    if not lacking and len(missing) == len(values):
-        return law_of_impact(of_scales, restitution, duration, speed)
-    if missing or len(lacking) < len(impact):
+    if not lacking and len(without) == len(values):
+        return law_of_impact(lambda *scales: law(of_scales(*scales)), **impact)
+    if without or len(lacking) < len(impact):
+        present = [name for name, value in (values | impact).items() if value is not None]
         raise ValueError(
-            f"a law is given by {' and '.join(values)}, or by restitution, duration and speed;"
-            f" here by {', '.join(n for n, x in (values | impact).items() if x is not None) or 'nothing'}"
+            f"a law is given by {' and '.join(values)}, or by restitution, duration and speed,"
+            f" and not by {', '.join(present) or 'nothing'}"
         )
-    checked = {name: _checked_parameter(name, value) for name, value in values.items()}
-    return law(**checked)
+    return law({name: _parameter(name, value) for name, value in values.items()})
 
 
-def _checked_parameter(name, value):
+def _parameter(name, value):
+    """A parameter that is in its range."""
     low, high, low_allowed = RANGES[name]
     return _checked(name, value, low, high, low_allowed=low_allowed)
 
@@ -144,8 +157,8 @@ def linear(
     frequency_ratio, damping_ratio : float or array
         ϖ > 0 and ζ ≥ 0.
     release : {"displacement", "force", "approach"}
-        Contacts end where p = 0 or where f = 0. With "approach" the damper acts on approach only, p′ > 0,
-        and contacts end where p = 0; then r is exp(-ζ arccos ζ/√(1 - ζ²)).
+        Contacts end where p = 0 or where f = 0. With "approach" the damper acts on approach only,
+        p′ > 0, and contacts end where p = 0; then r is exp(-ζ arccos ζ/√(1 - ζ²)).
     restitution, duration, speed : float or array
         In place of ϖ and ζ: r and D of a free impact of a speed.
 
@@ -162,19 +175,18 @@ def linear(
     }
     if release not in kinds:
         raise ValueError(f"release = {release!r}: must be 'displacement', 'force' or 'approach'")
-    return _oscillator(kinds[release], frequency_ratio, damping_ratio, restitution, duration, speed)
-
-
-def _oscillator(kind, frequency_ratio, damping_ratio, *impact):
-    """A law with the parameters ϖ and ζ."""
-
-    def law(frequency_ratio, damping_ratio):
-        values = {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio}
-        units = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
-        return ForceLaw(values=values, units=units, **kind)
-
+    law = partial(_of_kind, kinds[release])
     values = {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio}
-    return _given(law, values, lambda g, length, speed: law(speed / length, g), *impact)
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(law, values, impact, _of_ratios)
+
+
+def _of_kind(kind, values):
+    return ForceLaw(values=values, units=RATIOS, **kind)
+
+
+def _of_ratios(g, P, v):
+    return {"frequency_ratio": v / P, "damping_ratio": g}
 
 
 def _spring_damper(p, v, frequency_ratio, damping_ratio):
@@ -199,7 +211,7 @@ def elasto_backlash(
     """f = ϖ²p + 2ζϖp′ with a damping force of at most ϖ²p: ElastoBacklash2 of the Modelica library.
 
     During compression the damper at most doubles the force, which thus grows from zero. The force
-    has a kink where p = κp′, κ = 2ζ/ϖ, and vanishes where p = -κp′; there the contact ends.
+    has a kink where p = κp′, κ = 2ζ/ϖ, and the contact ends where it vanishes, p = -κp′.
 
     Parameters
     ----------
@@ -208,16 +220,20 @@ def elasto_backlash(
     restitution, duration, speed : float or array
         In place of ϖ and ζ: r and D of a free impact of a speed.
     """
-    kind = {
-        "force": _limited_damper,
-        "release": "force",
-        "lag": _lag_of_ratios,
-        "kinks": (_damper_as_strong_as_spring,),
-    }
-    return _oscillator(kind, frequency_ratio, damping_ratio, restitution, duration, speed)
+    law = partial(
+        ForceLaw,
+        _limited_damper,
+        release="force",
+        lag=_lag_of_ratios,
+        kinks=(_equal_forces,),
+        units=RATIOS,
+    )
+    values = {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(law, values, impact, _of_ratios)
 
 
-def _damper_as_strong_as_spring(p, v, frequency_ratio, damping_ratio):
+def _equal_forces(p, v, frequency_ratio, damping_ratio):
     return p - _lag_of_ratios(frequency_ratio, damping_ratio) * v
 
 
@@ -225,24 +241,6 @@ def _limited_damper(p, v, frequency_ratio, damping_ratio):
     damped = _lag_of_ratios(frequency_ratio, damping_ratio) * v
     limited = np.where(np.real(damped) < np.real(p), damped, p)
     return frequency_ratio * frequency_ratio * (p + limited)
-
-
-def _elastic(kind, power, stiffness, damping, unit, of_unit, *impact):
-    """A law with the parameters K and C, whose spring has the force K p^ν.
-
-    ``unit`` are the powers of mass, length and time in the unit of C, and ``of_unit`` is the C for
-    g = 1 at the scales (P, v).
-    """
-    spring = HERTZ if power == 1.5 else SPRING
-
-    def law(stiffness, damping):
-        values = {"stiffness": stiffness, "damping": damping}
-        return ForceLaw(values=values, units={"stiffness": spring, "damping": unit}, **kind)
-
-    def of_scales(g, length, speed):
-        return law(speed**2 / length ** (1 + power), g * of_unit(length, speed))
-
-    return _given(law, {"stiffness": stiffness, "damping": damping}, of_scales, *impact)
 
 
 def hunt_crossley(stiffness=None, damping=None, *, restitution=None, duration=None, speed=None):
@@ -263,9 +261,14 @@ def hunt_crossley(stiffness=None, damping=None, *, restitution=None, duration=No
     K. H. Hunt and F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440-445, as quoted by
     Simbody (``HuntCrossleyContact.h``).
     """
-    kind = {"force": _hunt_crossley, "root": 2}
-    impact = restitution, duration, speed
-    return _elastic(kind, 1.5, stiffness, damping, (0, -1, 1), lambda P, v: 1 / v, *impact)
+    law = partial(
+        ForceLaw, _hunt_crossley, root=2, units={"stiffness": HERTZ, "damping": (0, -1, 1)}
+    )
+    values = {"stiffness": stiffness, "damping": damping}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law, values, impact, lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g / v}
+    )
 
 
 def _hunt_crossley(p, v, stiffness, damping):
@@ -275,13 +278,18 @@ def _hunt_crossley(p, v, stiffness, damping):
 def hunt_crossley_linear(
     stiffness=None, damping=None, *, restitution=None, duration=None, speed=None
 ):
-    """f = K p (1 + C p′): a linear spring with Hunt and Crossley's damping, as in Drake's point contact.
+    """f = K p (1 + C p′): a linear spring with Hunt and Crossley's damping, as in Drake.
 
     The parameters are those of :func:`hunt_crossley`, and r is the same function of C v.
     """
-    kind = {"force": _linear_hunt_crossley}
-    impact = restitution, duration, speed
-    return _elastic(kind, 1.0, stiffness, damping, (0, -1, 1), lambda P, v: 1 / v, *impact)
+    law = partial(
+        ForceLaw, _linear_hunt_crossley, units={"stiffness": SPRING, "damping": (0, -1, 1)}
+    )
+    values = {"stiffness": stiffness, "damping": damping}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law, values, impact, lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g / v}
+    )
 
 
 def _linear_hunt_crossley(p, v, stiffness, damping):
@@ -291,8 +299,8 @@ def _linear_hunt_crossley(p, v, stiffness, damping):
 def tsuji(stiffness=None, damping=None, *, restitution=None, duration=None, speed=None):
     """f = K p^{3/2} + C √K p^{1/4} p′: Hertz' contact with the same restitution at all speeds.
 
-    With y = p^{5/4} and ds = p^{1/4} dt a free impact is linear, y″ + C √K y′ + (5/4) K y = 0, so that
-    C = √5 (-ln r)/√(π² + ln² r). From C = √5 on the ball does not leave. The physical force
+    With y = p^{5/4} and ds = p^{1/4} dt a free impact is linear, y″ + C √K y′ + (5/4) K y = 0, so
+    that C = √5 (-ln r)/√(π² + ln² r). From C = √5 on the ball does not leave. The physical force
     k x^{3/2} + α √(mk) x^{1/4} ẋ has C = α.
 
     Parameters
@@ -300,7 +308,7 @@ def tsuji(stiffness=None, damping=None, *, restitution=None, duration=None, spee
     stiffness, damping : float or array
         K > 0 and C ≥ 0.
     restitution, duration, speed : float or array
-        In place of K and C: r and D of a free impact of a speed, on which K depends.
+        In place of K and C: r and D of a free impact of a speed.
 
     References
     ----------
@@ -313,9 +321,12 @@ def tsuji(stiffness=None, damping=None, *, restitution=None, duration=None, spee
     >>> round(float(ball.signature(0.5).restitution), 12)
     0.85
     """
-    kind = {"force": _tsuji, "root": 4}
-    impact = restitution, duration, speed
-    return _elastic(kind, 1.5, stiffness, damping, NUMBER, lambda P, v: 1.0, *impact)
+    law = partial(ForceLaw, _tsuji, root=4, units={"stiffness": HERTZ, "damping": NUMBER})
+    values = {"stiffness": stiffness, "damping": damping}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law, values, impact, lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g + 0 * v}
+    )
 
 
 def _tsuji(p, v, stiffness, damping):
@@ -326,9 +337,9 @@ def _tsuji(p, v, stiffness, damping):
 def kuwabara_kono(stiffness=None, damping=None, *, restitution=None, duration=None, speed=None):
     """f = K (p^{3/2} + C √p p′): a viscoelastic sphere that does not adhere.
 
-    The contact ends where the force vanishes, p + C p′ = 0, and the surface is still deformed there.
-    The physical force k (x^{3/2} + (3/2) A √x ẋ), with a time A of the dissipation, has C = (3/2) AΩ. For
-    slow impacts 1 - r = 1.15 C K^{2/5} v^{1/5}.
+    The contact ends where the force vanishes, p + C p′ = 0; the surface is still deformed there.
+    The physical force k (x^{3/2} + (3/2) A √x ẋ), with a time A of the dissipation, has
+    C = (3/2) AΩ. For slow impacts 1 - r = 1.15 C K^{2/5} v^{1/5}.
 
     Parameters
     ----------
@@ -339,14 +350,24 @@ def kuwabara_kono(stiffness=None, damping=None, *, restitution=None, duration=No
 
     References
     ----------
-    G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as quoted by the
-    CGNS standard; N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E 53
-    (1996) 5382-5392, as quoted by LAMMPS; for the end T. Schwager and T. Pöschel, Physical Review E 78
-    (2008) 051304, as quoted by the toolbox Approx-ViscoElastic-CoR.
+    G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as quoted by
+    the CGNS standard; N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E
+    53 (1996) 5382-5392, as quoted by LAMMPS; for the end T. Schwager and T. Pöschel, Physical
+    Review E 78 (2008) 051304, as quoted by the toolbox Approx-ViscoElastic-CoR.
     """
-    kind = {"force": _kuwabara_kono, "root": 2, "release": "force", "lag": _lag_of_damping}
-    impact = restitution, duration, speed
-    return _elastic(kind, 1.5, stiffness, damping, (0, 0, 1), lambda P, v: P / v, *impact)
+    law = partial(
+        ForceLaw,
+        _kuwabara_kono,
+        root=2,
+        release="force",
+        lag=_lag_of_damping,
+        units={"stiffness": HERTZ, "damping": (0, 0, 1)},
+    )
+    values = {"stiffness": stiffness, "damping": damping}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law, values, impact, lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g * P / v}
+    )
 
 
 def _kuwabara_kono(p, v, stiffness, damping):
@@ -357,29 +378,14 @@ def _lag_of_damping(stiffness, damping):
     return damping
 
 
-def _by_start_speed(force, factor_inverse, stiffness, nominal_restitution, *impact):
-    """A law with the parameters K and e, whose damping depends on the speed at the start."""
-
-    def law(stiffness, nominal_restitution):
-        values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
-        units = {"stiffness": HERTZ, "nominal_restitution": NUMBER}
-        return ForceLaw(force, values, root=2, needs=("start_speed",), units=units)
-
-    def of_scales(factor, length, speed):
-        return law(speed**2 / length**2.5, factor_inverse(factor))
-
-    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
-    return _given(law, values, of_scales, *impact)
-
-
 def lankarani_nikravesh(
     stiffness=None, nominal_restitution=None, *, restitution=None, duration=None, speed=None
 ):
     """f = K p^{3/2} (1 + c p′/v₀), c = 3(1 - e²)/4, with the speed v₀ at the start of the contact.
 
-    A contact is one of Hunt and Crossley with C = c/v₀, so that r is the same at every speed. It is not
-    the nominal e: c (1 + r) = ln((1 + c)/(1 - rc)), and never below 0.663. As v₀ tends to zero the
-    damping grows without limit.
+    A contact is one of Hunt and Crossley with C = c/v₀, so that r is the same at every speed. It is
+    not the nominal e: c (1 + r) = ln((1 + c)/(1 - rc)), and never below 0.663. As v₀ tends to zero
+    the damping grows without limit.
 
     Parameters
     ----------
@@ -390,16 +396,26 @@ def lankarani_nikravesh(
 
     References
     ----------
-    H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical Design 112 (1990) 369-376, as quoted by
-    public code for multibody contacts.
+    H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical Design 112 (1990) 369-376, as quoted
+    by public code for multibody contacts.
     """
-    impact = restitution, duration, speed
-    return _by_start_speed(
+    law = partial(
+        ForceLaw,
         _lankarani_nikravesh,
-        lambda c: np.sqrt(np.maximum(1 - 4 * c / 3, 0.0)),
-        stiffness,
-        nominal_restitution,
-        *impact,
+        root=2,
+        needs=("start_speed",),
+        units={"stiffness": HERTZ, "nominal_restitution": NUMBER},
+    )
+    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law,
+        values,
+        impact,
+        lambda c, P, v: {
+            "stiffness": v**2 / P**2.5,
+            "nominal_restitution": np.sqrt(np.maximum(1 - 4 * c / 3, 0)) + 0 * v,
+        },
     )
 
 
@@ -411,7 +427,7 @@ def _lankarani_nikravesh(p, v, stiffness, nominal_restitution, start_speed):
 def flores(
     stiffness=None, nominal_restitution=None, *, restitution=None, duration=None, speed=None
 ):
-    """f = K p^{3/2} (1 + c p′/v₀), c = 8(1 - e)/(5e), with the speed v₀ at the start of the contact.
+    """f = K p^{3/2} (1 + c p′/v₀), c = 8(1 - e)/(5e), with the speed v₀ at the start of a contact.
 
     As :func:`lankarani_nikravesh`, with another c: r is 0.470 for e = 0.5.
 
@@ -427,9 +443,23 @@ def flores(
     >>> round(float(flores(2000.0, 0.5).signature(3.0).restitution), 3)
     0.47
     """
-    impact = restitution, duration, speed
-    return _by_start_speed(
-        _flores, lambda c: 8 / (8 + 5 * c), stiffness, nominal_restitution, *impact
+    law = partial(
+        ForceLaw,
+        _flores,
+        root=2,
+        needs=("start_speed",),
+        units={"stiffness": HERTZ, "nominal_restitution": NUMBER},
+    )
+    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law,
+        values,
+        impact,
+        lambda c, P, v: {
+            "stiffness": v**2 / P**2.5,
+            "nominal_restitution": 8 / (8 + 5 * c) + 0 * v,
+        },
     )
 
 
@@ -438,39 +468,13 @@ def _flores(p, v, stiffness, nominal_restitution, start_speed):
     return _hunt_crossley(p, v, stiffness, factor / start_speed)
 
 
-def _stepped(kind, power, stiffness, damping, depth, *impact):
-    """A law with the parameters K, C and d, whose spring has the force K p^ν."""
-    spring = HERTZ if power == 1.5 else SPRING
-
-    def law(stiffness, damping, depth):
-        values = {"stiffness": stiffness, "damping": damping, "depth": depth}
-        units = {"stiffness": spring, "damping": DAMPER, "depth": (0, 1, 0)}
-        return ForceLaw(values=values, units=units, **kind)
-
-    def of_scales(g, length, speed):
-        return law(speed**2 / length ** (1 + power), g * speed / length, STEPPED * length)
-
-    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
-    return _given(law, values, of_scales, *impact)
-
-
-def _step(p, depth):
-    """s(p)."""
-    x = p / depth
-    return np.where(np.real(x) < 1, x * x * (3 - 2 * x), 1.0)
-
-
-def _full_depth(p, v, stiffness, damping, depth):
-    return p - depth
-
-
 def adams_impact(
     stiffness=None, damping=None, depth=None, *, restitution=None, duration=None, speed=None
 ):
     """f = max(0, K p^{3/2} + C s p′): the function IMPACT of Adams.
 
-    The damper grows by the cubic step s from the surface to the depth d. A damper that would pull is
-    left out, and the contact ends at p = 0. Impacts that are much less deep than d lose little.
+    The damper grows by the cubic step s from the surface to the depth d. A damper that would pull
+    is left out, and the contact ends at p = 0. Impacts that are much less deep than d lose little.
 
     Parameters
     ----------
@@ -483,8 +487,21 @@ def adams_impact(
     ----------
     The manuals of SolidWorks Motion and Altair MotionSolve.
     """
-    kind = {"force": _adams, "root": 2, "kinks": (_full_depth, _pulls)}
-    return _stepped(kind, 1.5, stiffness, damping, depth, restitution, duration, speed)
+    law = partial(
+        ForceLaw,
+        _adams,
+        root=2,
+        kinks=(_full_depth, _pulls),
+        units={"stiffness": HERTZ, "damping": DAMPER, "depth": (0, 1, 0)},
+    )
+    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law,
+        values,
+        impact,
+        lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g * v / P, "depth": STEPPED * P},
+    )
 
 
 def adams_impact_linear(
@@ -492,25 +509,28 @@ def adams_impact_linear(
 ):
     """f = max(0, K p + C s p′): the function IMPACT of Adams with the exponent 1.
 
-    The parameters are those of :func:`adams_impact`; d is a tenth of v/√K if an impact is given.
+    The parameters are those of :func:`adams_impact`. If an impact is given, d is a tenth of v/√K.
     """
-    kind = {"force": _linear_adams, "kinks": (_full_depth, _linear_pulls)}
-    return _stepped(kind, 1.0, stiffness, damping, depth, restitution, duration, speed)
+    law = partial(
+        ForceLaw,
+        _linear_adams,
+        kinks=(_full_depth, _linear_pulls),
+        units={"stiffness": SPRING, "damping": DAMPER, "depth": (0, 1, 0)},
+    )
+    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law,
+        values,
+        impact,
+        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
+    )
 
 
-def _pulls(p, v, stiffness, damping, depth):
-    """The force over p^{3/2}, before it is limited to what does not pull."""
+def _step(p, depth):
+    """s(p)."""
     x = p / depth
-    inside = np.sqrt(p) * (3 - 2 * x) / (depth * depth)
-    beyond = 1 / (np.maximum(p, depth) * np.sqrt(np.maximum(p, depth)))
-    return stiffness + damping * np.where(np.real(x) < 1, inside, beyond) * v
-
-
-def _linear_pulls(p, v, stiffness, damping, depth):
-    """The force over p, before it is limited to what does not pull."""
-    x = p / depth
-    inside = x * (3 - 2 * x) / depth
-    return stiffness + damping * np.where(np.real(x) < 1, inside, 1 / np.maximum(p, depth)) * v
+    return np.where(np.real(x) < 1, x * x * (3 - 2 * x), 1.0)
 
 
 def _adams(p, v, stiffness, damping, depth):
@@ -523,51 +543,82 @@ def _linear_adams(p, v, stiffness, damping, depth):
     return np.where(np.real(force) > 0, force, 0.0)
 
 
+def _full_depth(p, v, stiffness, damping, depth):
+    return p - depth
+
+
+def _pulls(p, v, stiffness, damping, depth):
+    """The force over p^{3/2}, where it is not limited."""
+    inside = np.sqrt(p) * (3 - 2 * p / depth) / (depth * depth)
+    deep = np.maximum(p, depth)
+    step = np.where(np.real(p) < np.real(depth), inside, 1 / (deep * np.sqrt(deep)))
+    return stiffness + damping * step * v
+
+
+def _linear_pulls(p, v, stiffness, damping, depth):
+    """The force over p, where it is not limited."""
+    inside = p * (3 - 2 * p / depth) / (depth * depth)
+    step = np.where(np.real(p) < np.real(depth), inside, 1 / np.maximum(p, depth))
+    return stiffness + damping * step * v
+
+
 def simscape_contact(
     stiffness=None, damping=None, depth=None, *, restitution=None, duration=None, speed=None
 ):
     """f = s (K p + C p′): the Spatial Contact Force of Simscape Multibody.
 
-    Spring and damper grow by the cubic step s from the surface to the depth d. The contact ends where
-    the force vanishes, p + κp′ = 0 with κ = C/K. The manual gives no formula of its step; the cubic is
-    the polynomial of the lowest degree with its slopes.
+    Spring and damper grow by the cubic step s from the surface to the depth d, the width of the
+    transition region. The contact ends where the force vanishes, p + κp′ = 0 with κ = C/K. The
+    manual gives no formula of its step; the cubic is the polynomial of the lowest degree with its
+    slopes.
 
     Parameters
     ----------
     stiffness, damping, depth : float or array
-        K > 0, C ≥ 0 and d > 0, the width of the transition region.
+        K > 0, C ≥ 0 and d > 0, the depth of full damping.
     restitution, duration, speed : float or array
         In place of them: r and D of a free impact of a speed. Then d is a tenth of v/√K.
     """
-    kind = {
-        "force": _simscape,
-        "release": "force",
-        "lag": lambda stiffness, damping, depth: damping / stiffness,
-        "kinks": (_full_depth,),
-    }
-    return _stepped(kind, 1.0, stiffness, damping, depth, restitution, duration, speed)
+    law = partial(
+        ForceLaw,
+        _simscape,
+        release="force",
+        lag=_lag_of_force,
+        kinks=(_full_depth,),
+        units={"stiffness": SPRING, "damping": DAMPER, "depth": (0, 1, 0)},
+    )
+    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    return _given(
+        law,
+        values,
+        impact,
+        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
+    )
 
 
 def _simscape(p, v, stiffness, damping, depth):
     return _step(p, depth) * (stiffness * p + damping * v)
 
 
-LAWS = {
-    law.__name__: law
-    for law in (
-        linear,
-        hunt_crossley,
-        hunt_crossley_linear,
-        tsuji,
-        lankarani_nikravesh,
-        flores,
-        kuwabara_kono,
-        elasto_backlash,
-        adams_impact,
-        adams_impact_linear,
-        simscape_contact,
-    )
-}
+def _lag_of_force(stiffness, damping, depth):
+    return damping / stiffness
+
+
+_LAWS = (
+    linear,
+    hunt_crossley,
+    hunt_crossley_linear,
+    tsuji,
+    lankarani_nikravesh,
+    flores,
+    kuwabara_kono,
+    elasto_backlash,
+    adams_impact,
+    adams_impact_linear,
+    simscape_contact,
+)
+LAWS = {law.__name__: law for law in _LAWS}
 """The named laws by their names."""
 
 

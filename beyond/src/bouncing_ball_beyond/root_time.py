@@ -8,56 +8,62 @@ analytic functions of the root q = p^{1/m}. In the *root time* s, with dt = λ d
 
 and the motion is analytic up to both ends of a contact. It is followed from panel to panel. On a
 panel of the length h, F is a polynomial with the values F_j at the Gauss nodes, and Picard's sweeps
-find them: integrals of v give q, those of λ give t, and those of F give v. Each sweep adds two orders in
-ωh, ω being the frequency of the oscillation in s. If the last Legendre coefficients of v are ε, then
-the end of the panel is right to the order of ε². A panel ends where the force has a kink, so that
-the force is analytic on each.
+find them: integrals of v give q, those of λ give t, and those of F give v. Each sweep adds two
+orders in ωh, with the frequency ω of the oscillation in s. If the last Legendre coefficients of v
+are ε, then the end of the panel is right to the order of ε². A panel ends where the force has a
+kink, so that the force is analytic on each.
 
-The derivatives are those of the collocation: one linear system for each panel, for all directions.
+The derivatives are those of the collocation: one linear system for each panel and all directions.
 
-An array of contacts has the shape (rows,), one of values at nodes (nodes, rows). Derivatives are
-(rows, directions).
+An array of contacts has the shape (rows,), and one of values at nodes (nodes, rows). Derivatives
+are (rows, directions).
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import PATIENCE, H
+from bouncing_ball_beyond.balls import H
 
 ORDER = 20
 """Gauss nodes of a panel."""
 
 ROUGH = 1e-7
-"""The largest last Legendre coefficients of v, over its greatest value. The square is a rounding error."""
+"""The largest last Legendre coefficients of v over its greatest value. The square is rounding."""
 
-FALLING, SMOOTH = 0.02, 1e-13
-"""The last coefficients over those in the middle, at most, if they fall as those of an analytic
-function do. After a jump of the slope the quotient is (1/2)² to (1/2)³, and the square of the last ones
-is no measure of the error: they must be as small as SMOOTH."""
+SMOOTH, FALLING = 1e-13, 0.02
+"""The same, if the coefficients do not fall as those of an analytic function do: by this factor
+from the middle to the end. Beyond a kink it is (1/2)² to (1/2)³, and their square is no error."""
 
-SWEEPS, CONVERGED, SETTLED = 20, 1e-13, 1e-12
-"""The largest number of sweeps of a panel. They stop where all panels have changed by less than
-CONVERGED in a sweep, and the panel is right if it has changed by less than SETTLED."""
+SWEEPS = 20
+"""The largest number of sweeps of a panel."""
+
+CONVERGED, SETTLED = 1e-13, 1e-12
+"""Changes of v in a sweep over its greatest value: where the sweeps stop, and what is enough."""
 
 EARLY, WANTED, LONGER = 3, 0.03, 2.0
-"""The change in the sweep EARLY that the next panel should have, and the largest ratio of two lengths.
-They are the ones with the least work in contacts of four laws."""
+"""The change in the sweep EARLY that the next panel should have, and the largest ratio of lengths.
+With these, contacts of four laws took the least number of sweeps."""
 
 NEAR = 1e-12
-"""The last step of Newton's method to an event over the length of its panel."""
+"""The last step of Newton's method to an event, over the length of its panel."""
+
+SAME = 1e-10
+"""Two events are the same if they are nearer, over the length of their panel."""
 
 MOST_PANELS, PATIENT = 4000, 40
 """The largest number of panels of a contact, and the one from which on Newton's method solves them.
-An impact takes about six panels."""
+An impact takes about six."""
 
 CALM = 1e-6
 """The least speed of a ball that lies on the table, over its greatest one, that is resolved."""
 
-STEADY = 1e-9
-"""A motion that has changed by less in a period of the table, relatively, is a permanent contact."""
+STEADY, PERIODS = 1e-9, 100
+"""A contact is permanent if its motion changes relatively by less in a period, or after so many."""
 
 ROWS = 500
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
@@ -69,7 +75,7 @@ LISTED = ("tau", "u", "T")
 
 
 def _gauss(n):
-    """Nodes on [0, 1], weights, integrals from 0 to the nodes, and Legendre coefficients from values."""
+    """Nodes on [0, 1], weights, integrals up to the nodes, and Legendre coefficients, of values."""
     x, weights = legendre.leggauss(n)
     coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
     integrals = legendre.legval(x, legendre.legint(coefficients, lbnd=-1)).T
@@ -78,15 +84,16 @@ def _gauss(n):
 
 _NODES, _WEIGHTS, _INTEGRALS, _COEFFICIENTS = _gauss(ORDER)
 _TWICE = _INTEGRALS @ _INTEGRALS
-_LAST, _MIDDLE = _COEFFICIENTS[-2:], _COEFFICIENTS[ORDER // 2 : ORDER // 2 + 2]
+_LAST = _COEFFICIENTS[-2:]
+_MIDDLE = _COEFFICIENTS[ORDER // 2 : ORDER // 2 + 2]
 
 
 class Rows(NamedTuple):
-    """Numbers and arrays of one shape, real or complex, as rows of contacts and directions of steps.
+    """Numbers and arrays, real or complex, as rows of contacts and directions of steps.
 
-    ``given`` has real numbers, or arrays of the shape (rows,), and ``steps`` the imaginary parts that
-    are not zero, of the shape (rows, directions). Along the first axis of complex arrays are the
-    directions if the real parts are the same along it.
+    ``given`` has real numbers, or arrays of the shape (rows,), and ``steps`` the imaginary parts
+    that are not zero, of the shape (rows, directions). The directions are along the first axis of
+    complex arrays, if the real parts are the same along it.
     """
 
     shape: tuple
@@ -96,7 +103,7 @@ class Rows(NamedTuple):
     directions: int
 
     def joined(self, real, imaginary):
-        """Results (k, rows) and their derivatives (k, rows, directions) in the shape of what is given."""
+        """Results (k, rows) and derivatives (k, rows, directions) in the shape of the values."""
         if not self.directions:
             return real.reshape(-1, *self.shape)
         values = real[:, np.newaxis] + 1j * np.moveaxis(imaginary, 2, 1)
@@ -113,13 +120,13 @@ def rows_of(values):
     inner = shape[1:] if beside and shape else shape
     directions = (shape[0] if beside and shape else 1) if is_complex else 0
     size = int(np.prod(inner))
-    given, steps = {}, {}
+    given = {}
+    steps = {}
     for name, x in arrays.items():
         real = x.real[0] if x.ndim > len(inner) else x.real
         given[name] = np.broadcast_to(real, inner).ravel() if x.ndim or name in LISTED else real[()]
         if np.any(x.imag):
-            every = np.broadcast_to(x.imag, shape).reshape(directions, size)
-            steps[name] = every.T
+            steps[name] = np.broadcast_to(x.imag, shape).reshape(directions, size).T
             given[name] = np.broadcast_to(given[name], size)
     return Rows(shape, given, steps, size, directions)
 
@@ -138,7 +145,8 @@ class Motion(NamedTuple):
     kinks : tuple of callables
         Functions of (q, v, t, given) whose zeros are kinks of the force.
     given : mapping
-        Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity" and what the force needs.
+        Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity" and what the force
+        needs.
     steps : mapping
         Imaginary parts of what is given, arrays of the shape (rows, directions).
     """
@@ -218,8 +226,8 @@ class Panel(NamedTuple):
 class Linearised(NamedTuple):
     """The linearised collocation of panels: δF = F_q δq + F_v δv + F_t δt + what is known.
 
-    ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (rows, nodes, 1), and h has
-    the shape (rows, 1, 1).
+    ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (rows, nodes, 1), and
+    h has the shape (rows, 1, 1).
     """
 
     by_q: np.ndarray
@@ -243,8 +251,11 @@ def linearised(motion, nodes, h):
     """:class:`Linearised` about a motion, by complex steps of the force."""
     q, v, t = (x.T for x in nodes)
     given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in motion.given.items()}
-    m, lever, a = motion.root, motion.lever(q), load(t, given)
-    p, bend = q * lever / m, m * (m - 1) * q ** max(m - 2, 0)
+    m = motion.root
+    lever = motion.lever(q)
+    bend = m * (m - 1) * q ** max(m - 2, 0)
+    p = q * lever / m
+    a = load(t, given)
     along = motion.force(p + 1j * H, v, a, given)
     felt = 1 - motion.force(p, v, a + 1j * H, given).imag / H
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
@@ -257,13 +268,16 @@ def linearised(motion, nodes, h):
 def solve_panel(motion, start, h, event=None, *, newton=False):
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
-    The sweeps are Picard's, or steps of Newton's method, with which the panel of a ball that lies on the table may be
-    as long as many oscillations of its contact, which have died out. In each of them a step of
-    Newton's method also moves the end of a panel towards its event.
+    The sweeps are Picard's, or steps of Newton's method. With these the panel of a ball that lies
+    on the table may be as long as many oscillations of its contact, which have died out. In each
+    sweep a step of Newton's method also moves the end of a panel towards its event.
     """
     q0, v0, t0 = start
-    v, push = np.broadcast_to(v0, (ORDER, v0.size)), 0.0
-    moved, near, early, shortest = 0.0, True, np.zeros(v0.size), h / 10
+    v = np.broadcast_to(v0, (ORDER, v0.size))
+    push = moved = 0.0
+    early = np.zeros(v0.size)
+    near = True
+    shortest = h / 10
     for sweep in range(SWEEPS):
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
@@ -272,7 +286,9 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         if newton:
             missing = (force - push).T[..., np.newaxis]
             force = push + linearised(motion, (q, v, t), h).solved(missing)[..., 0].T
-        push, before, v = force, v, v0 + h * (_INTEGRALS @ force)
+        push = force
+        before = v
+        v = v0 + h * (_INTEGRALS @ push)
         if sweep < EARLY:
             continue
         change = np.abs(v - before).max(0)
@@ -307,7 +323,8 @@ def carried(motion, nodes, by, h):
         q, v, t = (x.T[..., np.newaxis] for x in nodes)
         stepped = motion.stepped().items()
         given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in stepped}
-        lever, a = motion.lever(q), load(t, given)
+        lever = motion.lever(q)
+        a = load(t, given)
         known = known + (lever * (a - motion.force(q * lever / motion.root, v, a, given))).imag
     push = linear.solved(known)
     rate = v0 + linear.h * (_INTEGRALS @ push)
@@ -317,11 +334,12 @@ def carried(motion, nodes, by, h):
 
 
 def _resolved(panel, size):
-    """Whether v is right on panels, and factors for the next lengths; ``size`` is the scale of v."""
+    """Whether v is right on panels, and factors for the next lengths; ``size`` is its scale."""
     v = panel.nodes[1]
     last = np.abs(_LAST @ v).max(0) / size
     falls = last <= FALLING * np.abs(_MIDDLE @ v).max(0) / size
-    good = (last <= ROUGH) & (falls | (last <= SMOOTH)) & (panel.change <= SETTLED * size)
+    smooth = (last <= ROUGH) & falls | (last <= SMOOTH)
+    good = smooth & (panel.change <= SETTLED * size)
     by_tail = (ROUGH / np.maximum(last, TINY)) ** (1 / ORDER)
     by_sweeps = (WANTED * size / np.maximum(panel.early, TINY)) ** (1 / (2 * EARLY + 2))
     factor = 0.9 * np.minimum(by_tail, by_sweeps)
@@ -336,21 +354,24 @@ def _first_event(motion, events, side, start, panel):
     yet, 0, and where a kink was crossed at the end of the last panel, together with another event.
     """
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
-    which, place = np.full(start[0].size, -1), np.full(start[0].size, np.inf)
+    which = np.full(start[0].size, -1)
+    place = np.full(start[0].size, np.inf)
     x = np.concatenate([[0.0], _NODES, [1.0]])
     for k, event in enumerate(events):
         values = event(*states, motion.given)
         if k < len(motion.kinks):
-            crossed = (values[0] * side[k] <= 0) & (values[1] * side[k] <= 0)
-            side[k, crossed] = np.sign(values[1, crossed])
+            late = (values[0] * side[k] <= 0) & (values[1] * side[k] <= 0)
+            side[k, late] = np.sign(values[1, late])
         over = values[1:] * side[k] < 0
         crossed = np.flatnonzero(over.any(0))
         after = 1 + over[:, crossed].argmax(0)
-        low, high = np.abs(values[after - 1, crossed]), np.abs(values[after, crossed])
+        low = np.abs(values[after - 1, crossed])
+        high = np.abs(values[after, crossed])
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
         here = np.maximum(here, x[1] / 2)
-        first = here < place[crossed]
-        place[crossed[first]], which[crossed[first]] = here[first], k
+        earlier = here < place[crossed]
+        place[crossed[earlier]] = here[earlier]
+        which[crossed[earlier]] = k
     return which, place
 
 
@@ -361,11 +382,18 @@ def _shift(motion, event, state, by):
     return -event(*beside, motion.stepped()).imag / slope[:, None]
 
 
+def _pace(motion, state):
+    """Derivatives of (s, q, v, t) with respect to s, beside directions."""
+    return np.array([np.ones_like(state[0]), *rates(motion, state)])[..., np.newaxis]
+
+
 def _next_panel(motion, events, side, start, length, newton):
-    """The next panels, which end at their first events, and these; -1 is none. ``side`` is written."""
+    """The next panels, which end at their first events, and these, -1 if none. Writes ``side``."""
     panel = solve_panel(motion, start, length, newton=newton)
     which, place = _first_event(motion, events, side, start, panel)
-    rows, found, place = np.arange(which.size), which, length * place
+    rows = np.arange(which.size)
+    found = which
+    place = length * place
     for _ in events:
         for k in np.unique(found[found >= 0]):
             at = rows[found == k]
@@ -382,6 +410,13 @@ def _next_panel(motion, events, side, start, length, newton):
         begin = [y[rows] for y in start]
         found, place = _first_event(motion.of(rows), events, others, begin, panel.of(rows))
         place = panel.length[rows] * place
+    kink = np.flatnonzero((which >= 0) & (which < len(motion.kinks)))
+    if kink.size and len(events) > len(motion.kinks):
+        # A kink at the release itself.
+        end = [y[kink] for y in panel.end]
+        value, slope = event_rate(motion.of(kink), motion.release, end)
+        together = np.abs(value / slope) <= SAME * panel.length[kink]
+        which[kink[together]] = len(motion.kinks)
     return panel, which
 
 
@@ -390,18 +425,88 @@ def _turn(q, v, t, given):
     return t - given["turn"]
 
 
+@dataclass
+class _Contacts:
+    """Contacts on their way; most arrays have a value for each of them."""
+
+    motion: Motion
+    events: tuple
+    until: NDArray | None
+    now: NDArray
+    by: NDArray
+    length: NDArray
+    period: NDArray
+    size: NDArray
+    side: NDArray
+    before: NDArray
+    ended: NDArray
+    lost: NDArray
+
+    def advance(self, here, lies):
+        """Move some contacts to the ends of their next panels, or make these shorter."""
+        motion = self.motion.of(here)
+        s, *start = self.now[:, here]
+        length = self.length[here]
+        last = np.zeros(here.size, bool)
+        if self.until is not None:
+            left = self.until[here] - s
+            pieces = np.fmax(np.ceil(left / length - 1e-9), 1)
+            length = left / pieces
+            last = pieces == 1
+        side = self.side[:, here]
+        panel, which = _next_panel(motion, self.events, side, start, length, lies)
+        self.side[:, here] = side
+        greatest = np.abs(panel.nodes[1]).max(0)
+        least = CALM if lies else 1.0
+        good, factor = _resolved(panel, np.fmax(least * self.size[1, here], greatest))
+        self.length[here] = length * np.where(good & (which >= 0), 1.0, factor)
+        self.ended[here] = good & last & (which < 0)
+        kept = here[good]
+        reached = np.array([panel.nodes[0].max(0), greatest])
+        self.size[:, kept] = np.fmax(self.size[:, kept], reached[:, good])
+        self.now[:, kept] = np.array([s + panel.length, *panel.end])[:, good]
+        which = which[good]
+        if self.by.shape[-1]:
+            self.differentiate(kept, which, panel.of(good))
+        self.end_events(kept[which >= 0], which[which >= 0])
+
+    def differentiate(self, here, which, panel):
+        """Move the derivatives to the ends of panels, some of which are at events."""
+        by = self.by[1:, here]
+        self.by[1:, here] = carried(self.motion.of(here), panel.nodes, by, panel.length)
+        for k in np.unique(which[which >= 0]):
+            at = here[which == k]
+            motion = self.motion.of(at)
+            shift = _shift(motion, self.events[k], self.now[1:, at], self.by[1:, at])
+            self.by[:, at] += _pace(motion, self.now[1:, at]) * shift
+
+    def end_events(self, here, which):
+        """Change the sides of kinks, end contacts at their releases, and compare periods."""
+        release = len(self.motion.kinks)
+        self.side[which, here] *= -1
+        self.ended[here] |= which == release
+        turned = here[which > release]
+        state = self.now[1:3, turned]
+        steady = np.abs(state - self.before[:, turned]) <= STEADY * self.size[:, turned]
+        turn = self.motion.given["turn"]
+        self.lost[turned] = steady.all(0) | (turn[turned] > PERIODS * self.period[turned])
+        self.before[:, turned] = state
+        self.side[release + 1 :, turned] = -1.0
+        turn[turned] += self.period[turned]
+
+
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, length, until=None, by_until=0.0):
+def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
     """Contacts from their starts to the first releases, or to root times.
 
-    A contact is permanent if its motion repeats after a period of the table, or if it lasts PATIENCE.
+    A contact is permanent if its motion repeats after a period, or if it lasts for PERIODS.
 
     Parameters
     ----------
     motion : Motion
         The equation of motion.
-    q, v, length : array, shape (rows,)
-        q and v at the start, and the length of the first panel.
+    q, v, length, period : array, shape (rows,)
+        q and v at the start, the length of the first panel, and the period of the table.
     by : array, shape (2, rows, directions)
         Derivatives of q and v.
     until, by_until : array, shapes (rows,) and (rows, directions), optional
@@ -412,62 +517,34 @@ def follow(motion, q, v, by, length, until=None, by_until=0.0):
     ends, derivatives : array, shapes (4, rows) and (4, rows, directions)
         Root time, q, v and the time after the start; NaN for permanent contacts.
     """
-    rows, directions = by.shape[1:]
-    now, by = np.array([0 * v, q, v, 0 * v]), np.array([0 * by[0], *by, 0 * by[0]])
-    length, size, before, turn = length.copy(), np.abs(v), now[1:3].copy(), np.full(rows, 2 * np.pi)
-    motion = motion._replace(given={**motion.given, "turn": turn})
-    release = len(motion.kinks)
+    rows = v.size
+    motion = motion._replace(given={**motion.given, "turn": period.copy()})
     events = motion.kinks if until is not None else (*motion.kinks, motion.release, _turn)
     side = np.zeros((len(events), rows))
-    side[release:] = -1.0
-    ended, lost = np.zeros(rows, bool), ~np.isfinite(now).all(0)
+    side[len(motion.kinks) :] = -1.0
+    now = np.array([0 * v, q, v, 0 * v])
+    contacts = _Contacts(
+        motion=motion,
+        events=events,
+        until=until,
+        now=now,
+        by=np.array([0 * by[0], *by, 0 * by[0]]),
+        length=length.copy(),
+        period=period,
+        size=np.abs(now[1:3]),
+        side=side,
+        before=now[1:3].copy(),
+        ended=np.zeros(rows, bool),
+        lost=~np.isfinite(now.sum(0) + load(0 * v, motion.given)),
+    )
     for attempt in range(MOST_PANELS):
-        # Most balls have left the table after few panels, and the others lie on it.
-        lies = attempt >= PATIENT
-        active = np.flatnonzero(~(ended | lost))
+        active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:
             break
         for here in np.array_split(active, -(-active.size // ROWS)):
-            part, (s, *start), h = motion.of(here), now[:, here], length[here]
-            if until is not None:
-                left = until[here] - s
-                pieces = np.fmax(np.ceil(left / h - 1e-9), 1)
-                h = left / pieces
-            sides = side[:, here]
-            panel, which = _next_panel(part, events, sides, start, h, lies)
-            side[:, here] = sides
-            greatest = np.abs(panel.nodes[1]).max(0)
-            scale = np.fmax((CALM if lies else 1.0) * size[here], greatest)
-            good, factor = _resolved(panel, scale)
-            length[here] = h * np.where(good & (which >= 0), 1.0, factor)
-            if until is not None:
-                ended[here] = good & (pieces == 1) & (which < 0)
-            here, which, part = here[good], which[good], part.of(good)
-            size[here] = np.fmax(size[here], greatest[good])
-            now[:, here] = np.array([s + panel.length, *panel.end])[:, good]
-            if directions:
-                kept = panel.of(good)
-                by[1:, here] = carried(part, kept.nodes, by[1:, here], kept.length)
-                for k in np.unique(which[which >= 0]):
-                    at = np.flatnonzero(which == k)
-                    i, turned = here[at], part.of(at)
-                    shift = _shift(turned, events[k], now[1:, i], by[1:, i])
-                    by[:, i] += _pace(turned, now[1:, i]) * shift
-            crossed, which = here[which >= 0], which[which >= 0]
-            side[which, crossed] *= -1
-            ended[crossed] |= which == release
-            crossed = crossed[which > release]
-            state, scale = now[1:3, crossed], np.array([now[1, crossed], size[crossed]])
-            steady = (np.abs(state - before[:, crossed]) <= STEADY * scale).all(0)
-            lost[crossed] = steady | (turn[crossed] > PATIENCE)
-            before[:, crossed], side[release + 1 :, crossed] = state, -1.0
-            turn[crossed] += 2 * np.pi
-    if until is not None and directions:
-        by += _pace(motion, now[1:]) * (by_until - by[0])
-    now[:, ~ended] = np.nan
-    return now, by
-
-
-def _pace(motion, state):
-    """Derivatives of (s, q, v, t) with respect to s, beside directions."""
-    return np.array([np.ones_like(state[0]), *rates(motion, state)])[..., None]
+            # Most balls have left the table after few panels, and the others lie on it.
+            contacts.advance(here, lies=attempt >= PATIENT)
+    if until is not None and by.shape[-1]:
+        contacts.by += _pace(motion, now[1:]) * (by_until - contacts.by[0])
+    now[:, ~contacts.ended] = np.nan
+    return now, contacts.by

@@ -1,0 +1,463 @@
+"""Force laws by an integrator in plain time, by closed forms, and by the spring and damper."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import gamma
+
+from bouncing_ball_beyond.balls import Corrected, H, SpringDamper
+from bouncing_ball_beyond.laws import ForceLaw
+from bouncing_ball_beyond.named_laws import (
+    LAWS,
+    adams_impact,
+    adams_impact_linear,
+    elasto_backlash,
+    flores,
+    hunt_crossley,
+    hunt_crossley_linear,
+    kuwabara_kono,
+    lankarani_nikravesh,
+    law_of_impact,
+    linear,
+    named_law,
+    simscape_contact,
+    tsuji,
+)
+
+# The integrator and the panels each have errors of some 1e-12 of the speed.
+CLOSE = 1e-11
+
+
+def integrated(law, tau, u, amplitude, gravity=1.0, longest=10.0):
+    """D, p and w of a contact by DOP853 in plain time, from kink to kink."""
+    more = {"start_speed": u} if "start_speed" in law.needs else {}
+
+    def rates(t, state):
+        a = gravity - amplitude * np.sin(tau + t)
+        load = {"load": a} if "load" in law.needs else {}
+        p = max(state[0], 0.0)
+        return [state[1], a - float(law.force(p, state[1], **law.values, **more, **load))]
+
+    def end(t, state):
+        return state[0] + law.kappa * state[1]
+
+    def event_of(kink):
+        return lambda t, state: float(kink(max(state[0], 0.0), state[1], **law.values))
+
+    events = [end, *map(event_of, law.kinks)]
+    for event in events:
+        event.terminal = True
+    end.direction = -1
+    t, state = 0.0, np.array([0.0, u])
+    while t < longest:
+        found = solve_ivp(
+            rates,
+            (t, longest),
+            state,
+            "DOP853",
+            events=events,
+            rtol=3e-14,
+            atol=1e-16,
+            first_step=1e-6,
+            max_step=0.01,
+        )
+        t, state = found.t[-1], found.y[:, -1]
+        if found.t_events[0].size:
+            return t, state[0], -state[1]
+        # Past the kink.
+        state = state + 1e-10 * np.array(rates(t, state))
+        t += 1e-10
+    raise AssertionError("no end")
+
+
+def one_line(error):
+    assert "\n" not in str(error.value)
+
+
+IMPACTS = {name: law(restitution=0.7, duration=0.12, speed=3.0) for name, law in LAWS.items()}
+
+
+class TestByIntegration:
+    @pytest.mark.parametrize("name", LAWS)
+    def test_free_impact(self, name):
+        law = IMPACTS[name]
+        _, _, w = integrated(law, 0.0, 3.0, 0.0, gravity=0.0)
+        impact = law.first_impact(0.0, 3.0, 0.0, gravity=0.0)[1]
+        assert abs(impact.speed - w) < 3 * CLOSE
+        signature = law.signature(3.0)
+        assert abs(signature.restitution - 0.7) < CLOSE
+        assert abs(signature.duration - 0.12) < CLOSE
+
+    @pytest.mark.parametrize("name", LAWS)
+    def test_impact_on_the_table(self, name):
+        law = IMPACTS[name]
+        duration, depth, w = integrated(law, 1.0, 2.5, 0.9)
+        T, impact = law.first_impact(1.0, 2.5, 0.9)
+        assert abs(impact.duration - duration) < CLOSE
+        assert abs(impact.gap + depth) < CLOSE
+        assert abs(impact.speed - w) < 3 * CLOSE
+        again = law.contact(1.0, 2.5, T, 0.9)
+        np.testing.assert_allclose(again, impact, rtol=0, atol=CLOSE)
+        assert law.first_release(1.0, 2.5, 0.9) == T
+
+    def test_force_that_carries_a_share_of_the_load(self):
+        def force(p, v, stiffness, damping, load):
+            return stiffness * p + damping * v + 0.5 * load
+
+        law = ForceLaw(force, {"stiffness": 400.0, "damping": 4.0}, needs=("load",))
+        duration, _, w = integrated(law, 1.0, 2.5, 0.9)
+        impact = law.first_impact(1.0, 2.5, 0.9)[1]
+        np.testing.assert_allclose([impact.duration, impact.speed], [duration, w], rtol=CLOSE)
+
+    def test_release_where_a_nonlinear_force_vanishes(self):
+        def force(p, v, stiffness, damping):
+            return stiffness * p + damping * v * (1 + v * v / 20)
+
+        law = ForceLaw(force, {"stiffness": 400.0, "damping": 4.0}, release="force")
+        impact = law.first_impact(1.0, 2.5, 0.9)[1]
+        assert abs(law.force(-impact.gap, -impact.speed, 400.0, 4.0)) < 1e-10
+        assert impact.gap < -0.01
+
+    def test_centroid_and_loss_by_their_definitions(self):
+        law = hunt_crossley(1000.0, 0.15)
+
+        def rates(t, y):
+            f = float(law.force(max(y[0], 0.0), y[1], **law.values))
+            return [y[1], -f, f, t * f]
+
+        def end(t, y):
+            return y[0]
+
+        end.terminal, end.direction = True, -1
+        found = solve_ivp(
+            rates, (0, 1), [0, 3.0, 0, 0], "DOP853", events=end, rtol=1e-13, atol=1e-16
+        )
+        impulse, moment = found.y[2:, -1]
+        signature = law.signature(3.0)
+        assert abs(signature.centroid - moment / impulse) < CLOSE
+
+        # The impulse at a fixed closing speed v = u + a t* of the instant.
+        def impulse_at(a, v=3.0):
+            u = v
+            for _ in range(8):
+                impact = law.first_impact(0.0, u, 0.0, a)[1]
+                impulse = u + impact.speed + a * impact.duration
+                w = impact.speed
+                D = impact.duration
+                centroid = D - (impact.gap + u * D + a * D**2 / 2) / impulse
+                u = v - a * centroid
+            assert w > 0
+            return impulse
+
+        loss = (impulse_at(1e-3) - impulse_at(-1e-3)) / 2e-3
+        assert abs(signature.loss - loss) < 1e-7 * signature.duration
+
+
+class TestClosedForms:
+    @pytest.mark.parametrize("release", ["displacement", "force"])
+    def test_linear_is_the_spring_and_damper(self, release):
+        law = linear(20.0, 0.13, release=release)
+        ball = SpringDamper(20.0, damping_ratio=0.13, release=release)
+        steps = 1j * H * np.eye(4)[:, :, np.newaxis]
+        tau, u, T, amplitude = np.array([1.0, 4.0]), np.array([3.0, 0.7]), 0.12, 0.9
+        found = law.contact(tau + steps[0], u + steps[1], T + steps[2], amplitude + steps[3])
+        exact = ball.contact(
+            tau + steps[0], u + steps[1], 20 * (T + steps[2]), amplitude + steps[3]
+        )
+        for each, other in zip(found[:3], exact[:3], strict=True):
+            np.testing.assert_allclose(each.real, other.real, rtol=0, atol=1e-13)
+            np.testing.assert_allclose(each.imag / H, other.imag / H, rtol=0, atol=1e-11)
+        for each, other in zip(law.signature(3.0), ball.signature(3.0), strict=True):
+            assert abs(each - other) < CLOSE * max(other, 0.1)
+
+    def test_resumed_contact_of_linear(self):
+        law = linear(20.0, 0.13, release="force")
+        ball = SpringDamper(20.0, damping_ratio=0.13, release="force")
+        u = -0.2 + 1j * H
+        found, exact = law.contact(1.0, u, 0.05, 0.9), ball.contact(1.0, u, 20 * 0.05, 0.9)
+        for each, other in zip(found[:3], exact[:3], strict=True):
+            assert abs(each.real - other.real) < 1e-13
+            assert abs(each.imag - other.imag) < 1e-11 * H
+
+    def test_damper_on_approach_only(self):
+        zeta = 0.3
+        root = np.sqrt(1 - zeta * zeta)
+        restitution = np.exp(-zeta * np.arccos(zeta) / root)
+        signature = linear(20.0, zeta, release="approach").signature(2.0)
+        assert abs(signature.restitution - restitution) < CLOSE
+        assert abs(signature.duration - (np.arccos(zeta) / root + np.pi / 2) / 20) < CLOSE
+
+    def test_duration_of_hertz(self):
+        K, u = 1000.0, 3.0
+        depth = (5 * u * u / (4 * K)) ** 0.4
+        duration = 2 * depth / u * np.sqrt(np.pi) * gamma(1.4) / gamma(0.9)
+        for law in (hunt_crossley(K, 0.0), tsuji(K, 0.0), kuwabara_kono(K, 0.0)):
+            impact = law.signature(u)
+            assert abs(impact.duration - duration) < CLOSE
+            assert abs(impact.restitution - 1) < CLOSE
+
+    def test_tsuji_by_its_linear_equation(self):
+        C = 0.7
+        omega = np.sqrt(5 - C * C)
+        r = tsuji(3000.0, C).signature(np.array([0.01, 1.0, 30.0])).restitution
+        np.testing.assert_allclose(r, np.exp(-C * np.pi / omega), rtol=CLOSE)
+
+    @pytest.mark.parametrize(
+        ("law", "factor"),
+        [
+            (lankarani_nikravesh(2000.0, 0.5), 3 * (1 - 0.25) / 4),
+            (flores(2000.0, 0.5), 8 * 0.5 / 2.5),
+            (hunt_crossley(2000.0, 0.3), 0.3),
+            (hunt_crossley_linear(2000.0, 0.3), 0.3),
+        ],
+    )
+    def test_energy_of_hysteresis_damping(self, law, factor):
+        r = law.signature(1.0).restitution
+        assert abs(factor * (1 + r) - np.log((1 + factor) / (1 - r * factor))) < CLOSE
+
+    def test_same_restitution_at_all_speeds(self):
+        for law in (flores(2000.0, 0.5), elasto_backlash(20.0, 0.2), linear(20.0, 0.2)):
+            r = law.computed_signature(np.array([1e-3, 1.0, 50.0])).restitution
+            np.testing.assert_allclose(r, r[1], rtol=CLOSE)
+
+    @pytest.mark.parametrize(
+        ("law", "power"),
+        [
+            (kuwabara_kono(1000.0, 1e-4), 0.2),
+            (hunt_crossley(1000.0, 1e-4), 1.0),
+            (adams_impact(1000.0, 1e-3, 10.0), 1.4),
+            (adams_impact_linear(1000.0, 1e-3, 10.0), 2.0),
+            (simscape_contact(1000.0, 1e-3, 10.0), 0.5),
+        ],
+    )
+    def test_weak_losses_are_powers_of_the_speed(self, law, power):
+        slow, fast = 1 - law.computed_signature(np.array([0.05, 0.1])).restitution
+        # The next power of the loss, and the next term of the step, are of the order of 1 %.
+        assert abs(np.log2(fast / slow) - power) < 0.01
+
+
+class TestDerivatives:
+    @pytest.mark.parametrize("name", ["tsuji", "kuwabara_kono", "flores", "simscape_contact"])
+    def test_complex_steps_are_differences(self, name):
+        law = IMPACTS[name]
+        T = 0.9 * law.first_release(1.0, 2.5, 0.9)
+        values = {"tau": 1.0, "u": 2.5, "T": T, "amplitude": 0.9}
+        names = [*values, *law.values]
+
+        def state(**changed):
+            ball = law.at(**{each: x for each, x in changed.items() if each in law.values})
+            arguments = values | {each: x for each, x in changed.items() if each in values}
+            end = ball.contact(**arguments)
+            first = ball.first_impact(**{k: x for k, x in arguments.items() if k != "T"})[1]
+            return np.array([end.duration, end.gap, end.speed, end.release, *first[:3]])
+
+        for each in names:
+            at = (values | law.values)[each]
+            step = 1e-4 * at
+            by_step = state(**{each: at + 1j * H}).imag / H
+            sides = [state(**{each: at + k * step}) for k in (-2, -1, 1, 2)]
+            difference = (sides[0] - 8 * sides[1] + 8 * sides[2] - sides[3]) / (12 * step)
+            scale = np.abs(state()) / at
+            assert np.all(np.abs(by_step - difference) < 1e-8 * (1 + scale)), each
+
+    def test_interpolated_signature(self):
+        law = kuwabara_kono(1000.0, 0.01)
+        u = np.array([0.03, 1.0, 2.7, 40.0]) * (1 + 1j * H)
+        for each, other in zip(law.signature(u), law.computed_signature(u), strict=True):
+            # The differences of σ have rounding errors of 1e-12 of the duration.
+            np.testing.assert_allclose(each.real, other.real, rtol=CLOSE, atol=1e-12)
+            np.testing.assert_allclose(each.imag / H, other.imag / H, rtol=1e-9, atol=1e-12)
+
+    def test_signature_of_a_row_of_laws(self):
+        law = tsuji(np.array([500.0, 2000.0]), 0.4)
+        signature = law.signature(np.array([3.0, 2.0]))
+        single = tsuji(2000.0, 0.4).signature(2.0)
+        np.testing.assert_allclose([each[1] for each in signature], single, rtol=1e-10)
+
+
+def bilinear(p, v, soft, hard, depth, damping):
+    stiffness = np.where(np.real(p) < np.real(depth), soft * p, soft * depth + hard * (p - depth))
+    return stiffness + damping * v
+
+
+def at_depth(p, v, soft, hard, depth, damping):
+    return p - depth
+
+
+SOFT_AND_HARD = {"soft": 20.0, "hard": 400.0, "depth": 0.3, "damping": 0.0}
+
+
+class TestKinks:
+    def test_undeclared_kink_is_refused(self):
+        with pytest.raises(ValueError, match=r"kink or a jump near p = 0\.3, v") as error:
+            ForceLaw(bilinear, SOFT_AND_HARD)
+        one_line(error)
+
+    def test_elastic_impact_in_closed_form(self):
+        law = ForceLaw(bilinear, SOFT_AND_HARD, kinks=(at_depth,))
+        u, soft, hard = 3.0, np.sqrt(20.0), np.sqrt(400.0)
+        first = np.arcsin(0.3 * soft / u) / soft
+        inside = np.sqrt(u * u - 20 * 0.3**2)
+        # Beyond the kink p oscillates about a place above it, where hard (p - depth) + 6 = 0.
+        second = (np.pi / 2 - np.arctan2(6 / hard, inside)) / hard
+        signature = law.computed_signature(u)
+        assert abs(signature.duration - 2 * (first + second)) < CLOSE
+        assert abs(signature.restitution - 1) < CLOSE
+        # An impact that does not reach the kink.
+        assert abs(law.computed_signature(1.0).duration - np.pi / soft) < CLOSE
+
+    @pytest.mark.parametrize("u", [1.2, 3.3, 6.0])
+    def test_bounce_speed(self, u):
+        law = ForceLaw(bilinear, SOFT_AND_HARD | {"damping": 1.0}, kinks=(at_depth,))
+        duration, _, w = integrated(law, 1.0, u, 0.9)
+        impact = law.first_impact(1.0, u, 0.9)[1]
+        assert abs(impact.speed - w) < CLOSE
+        assert abs(impact.duration - duration) < CLOSE
+
+    def test_derivatives_pass_through_the_kink(self):
+        law = ForceLaw(bilinear, SOFT_AND_HARD | {"damping": 1.0}, kinks=(at_depth,))
+        for name, step in (("depth", 1e-4), ("hard", 0.1)):
+            at = law.values[name]
+            by_step = law.at(**{name: at + 1j * H}).first_impact(1.0, 3.3, 0.9)[1].speed.imag / H
+            sides = [
+                law.at(**{name: at + k * step}).first_impact(1.0, 3.3, 0.9)[1].speed
+                for k in (-2, -1, 1, 2)
+            ]
+            difference = (sides[0] - 8 * sides[1] + 8 * sides[2] - sides[3]) / (12 * step)
+            assert abs(by_step - difference) < 1e-9
+
+    def test_kinks_that_nearly_coincide(self):
+        # Here the damper reaches its full depth when it begins to pull.
+        law = adams_impact_linear(restitution=0.7, duration=0.1, speed=3.8)
+        duration, _, w = integrated(law, 0.169860250995284, 2.1297017566396343, 1.7)
+        impact = law.first_impact(0.169860250995284, 2.1297017566396343, 1.7)[1]
+        np.testing.assert_allclose([impact.duration, impact.speed], [duration, w], rtol=CLOSE)
+
+    def test_kink_at_the_release(self):
+        signature = elasto_backlash(20.0, 0.0).computed_signature(3.0)
+        assert abs(signature.duration - np.pi / 20) < CLOSE
+
+
+class TestLastingContacts:
+    def test_random_contacts_of_linear(self):
+        rng = np.random.default_rng(7)
+        u = 10 ** rng.uniform(-5, 1, 150)
+        tau, amplitude = rng.uniform(0, 2 * np.pi, 150), rng.uniform(0.1, 3, 150)
+        ball = SpringDamper(20.0, damping_ratio=0.1)
+        exact = ball.first_release(tau, u, amplitude)
+        T, impact = linear(20.0, 0.1).first_impact(tau, u, amplitude)
+        stays = np.isnan(exact)
+        assert 10 < stays.sum() < 140
+        assert np.array_equal(np.isnan(T), stays)
+        np.testing.assert_allclose(T[~stays], exact[~stays] / 20, rtol=0, atol=CLOSE)
+        w = ball.contact(tau, u, exact, amplitude).speed
+        np.testing.assert_allclose(impact.speed[~stays], w[~stays], rtol=0, atol=CLOSE)
+
+    def test_damping_by_the_speed_of_a_slow_start(self):
+        law = flores(2000.0, 0.5)
+        duration, _, w = integrated(law, 1.0, 1e-2, 1.5)
+        impact = law.first_impact(1.0, 1e-2, 1.5)[1]
+        np.testing.assert_allclose([impact.duration, impact.speed], [duration, w], rtol=1e-9)
+
+    def test_ball_without_a_speed(self):
+        law = tsuji(1000.0, 0.3)
+        assert np.isnan(law.first_release(0.0, 0.0, 0.5))
+        # The table leaves the ball where its acceleration is above that of gravity.
+        assert law.first_impact(1.2, 0.0, 1.5)[1].duration < 1e-9
+
+    def test_strong_damping(self):
+        assert np.isnan(tsuji(1000.0, 2.3).free(3.0))
+        assert np.isnan(linear(20.0, 1.1).signature(3.0).restitution)
+        with pytest.raises(ValueError, match="free impacts that end") as error:
+            Corrected(tsuji(1000.0, 2.3))
+        one_line(error)
+
+
+class TestGivenByAnImpact:
+    def test_row_of_laws(self):
+        r, v = np.array([0.5, 0.7]), np.array([3.0, 4.0])
+        law = kuwabara_kono(restitution=r, duration=0.1, speed=v)
+        signature = law.signature(v)
+        np.testing.assert_allclose(signature.restitution, r, rtol=CLOSE)
+        np.testing.assert_allclose(signature.duration, 0.1, rtol=CLOSE)
+
+    def test_own_law(self):
+        def bumper(p, v, stiffness, hardening, damping):
+            return stiffness * p * (1 + hardening * p * p) * (1 + damping * v)
+
+        def law_of(g, P, v):
+            values = {"stiffness": (v / P) ** 2, "hardening": 1 / P**2, "damping": g / v}
+            return ForceLaw(bumper, values)
+
+        signature = law_of_impact(law_of, 0.8, 0.1, 3.5).signature(3.5)
+        assert abs(signature.restitution - 0.8) < CLOSE
+        assert abs(signature.duration - 0.1) < CLOSE
+
+    def test_no_loss(self):
+        assert elasto_backlash(restitution=1, duration=0.1, speed=3.0).values["damping_ratio"] == 0
+
+    @pytest.mark.parametrize(
+        ("make", "reason"),
+        [
+            (lambda: lankarani_nikravesh(restitution=0.5, duration=0.1, speed=3.0), "0.663"),
+            (lambda: tsuji(restitution=0.5, duration=0.1), "not by restitution, duration"),
+            (lambda: tsuji(1000.0), "stiffness and damping"),
+            (lambda: tsuji(-1.0, 0.3), "stiffness = -1"),
+            (lambda: flores(1000.0, 1.5), "nominal_restitution = 1.5"),
+            (lambda: linear(20.0, 0.1, release="never"), "release = 'never'"),
+            (lambda: named_law("newton"), "law = 'newton'"),
+            (lambda: named_law("tsuji", depth=1.0), "depth: no argument of tsuji"),
+        ],
+    )
+    def test_mistakes(self, make, reason):
+        with pytest.raises(ValueError, match=reason) as error:
+            make()
+        one_line(error)
+
+
+class TestUnits:
+    def test_parameters_follow_the_frequency(self):
+        # K = k√g/(mΩ³), and C is a number.
+        assert tsuji(1000.0, 0.3).frequency_powers == {"stiffness": -3.0}
+        assert linear(20.0, 0.1).frequency_powers == {"frequency_ratio": -1}
+
+    def test_in_si(self):
+        mass, g, Omega = 0.02, 9.81, 200.0
+        k, lam = 1e7, 0.4
+        law = hunt_crossley(k * np.sqrt(g) / (mass * Omega**3), lam * g / Omega)
+        si = law.in_si(mass=mass, length=g / Omega**2, time=1 / Omega)
+        np.testing.assert_allclose([si["stiffness"], si["damping"]], [k, lam], rtol=1e-14)
+
+
+class TestRefusedForces:
+    @pytest.mark.parametrize(
+        ("force", "reason"),
+        [
+            (lambda p, v, k: k * p * (1 + 0.1 * np.abs(v)), "not analytic in v"),
+            (lambda p, v, k: k * np.real(p) + 0 * v, "not analytic in p"),
+            (lambda p, v, k: k * p + 3 * np.maximum(v, 0), r"kink or a jump near p = .*, v = 0\.0"),
+            (lambda p, v, k: k * p**1.5, "root=2 would do"),
+            (lambda p, v, k: k * p**1.5 + p**0.25 * v, "root=4 would do"),
+            (lambda p, v, k: k * float(p), "fails for arrays of complex numbers"),
+            (lambda p, v, k: 3.0, "shape of p and v"),
+            (lambda p, v, k: -k * p, "stops no ball"),
+        ],
+    )
+    def test_reason(self, force, reason):
+        with pytest.raises(ValueError, match=reason) as error:
+            ForceLaw(force, {"k": 1000.0})
+        one_line(error)
+
+    def test_analytic_forces_are_accepted(self):
+        ForceLaw(lambda p, v, k: k * np.expm1(5 * p) * (1 + 0.3 * np.tanh(v)), {"k": 100.0})
+        ForceLaw(lambda p, v, k: k * p ** (4 / 3), {"k": 100.0}, root=6)
+
+    def test_other_arguments(self):
+        for more in ({"root": 3}, {"release": "never"}):
+            with pytest.raises(ValueError, match=next(iter(more))) as error:
+                ForceLaw(lambda p, v, k: k * p, {"k": 1.0}, **more)
+            one_line(error)
+        with pytest.raises(ValueError, match="tau: is no name"):
+            ForceLaw(lambda p, v, tau: tau * p, {"tau": 1.0})
+        with pytest.raises(ValueError, match="depth: no parameter"):
+            tsuji(1000.0, 0.3).at(depth=1.0)

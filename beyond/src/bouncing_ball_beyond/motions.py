@@ -13,8 +13,7 @@ finite duration sticks if it lasts longer than two free impacts. What neither re
 called chaotic if neighbouring motions separate exponentially, and undecided otherwise.
 """
 
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import stdtrit
@@ -95,7 +94,7 @@ def tangent_maps(balls, record, lifts):
     Parameters
     ----------
     balls : Balls
-    record : ndarray, shape (impacts, 7, balls)
+    record : ndarray, shape (impacts, 8, balls)
         As of :func:`.simulation.follow`.
     lifts : ndarray of bool, shape (impacts, balls)
         As of :func:`lift_offs`.
@@ -106,7 +105,7 @@ def tangent_maps(balls, record, lifts):
         Zero where a ball leaves by the lift-off after a rest, because it forgets its past there.
     """
     ball, amplitude = balls.ball, balls.amplitude
-    _, tau, u, T, duration, w, time = np.moveaxis(record, 1, 0)
+    _, tau, u, T, duration, _, w, time = np.moveaxis(record, 1, 0)
     if has_closed_form(ball):
         slopes = slopes_of_oscillator(balls, tau, u, duration, w)
     else:
@@ -160,7 +159,7 @@ def slopes_of_oscillator(balls, tau, u, duration, w):
 
 def lift_offs(balls, record):
     """Where balls leave by the lift-off after a rest, shape (impacts, balls)."""
-    _, tau, _, _, duration, w, _ = np.moveaxis(record, 1, 0)
+    _, tau, _, _, duration, _, w, _ = np.moveaxis(record, 1, 0)
     if balls.ball.lasts:
         return np.zeros(tau.shape, bool)
     rests = (duration > 0) & (w == 0)
@@ -176,114 +175,78 @@ def product(maps):
     return maps[:, :, 0]
 
 
-@dataclass(frozen=True)
-class Tracked:
-    """Balls that are followed, with a deviation of each.
-
-    ``lane`` is the index of a ball among all, ``vector`` its deviation of length 1, ``climb`` the
-    logarithm of its growth above the least one since the last lift-off, and ``most`` the greatest
-    climb since then. ``lifted`` and ``lifted_at`` are the number of the impact before the last
-    lift-off, -1 if there was none, and its time. ``sections`` has the growth, the time and the
-    logarithm of the contraction of areas in each section.
-    """
-
-    balls: Balls
-    lane: np.ndarray
-    vector: np.ndarray
-    climb: np.ndarray
-    most: np.ndarray
-    lifted: np.ndarray
-    lifted_at: np.ndarray
-    marginal: np.ndarray
-    sections: np.ndarray
-
-    @classmethod
-    def of(cls, balls):
-        """Balls before their first impacts."""
-        m = balls.phase.size
-        return cls(
-            balls=balls,
-            lane=np.arange(m),
-            vector=np.tile([[1.0], [0.0]], m),
-            climb=np.zeros(m),
-            most=np.zeros(m),
-            lifted=np.full(m, -1),
-            lifted_at=np.zeros(m),
-            marginal=np.zeros(m, bool),
-            sections=np.zeros((0, 3, m)),
-        )
-
-    def take(self, which):
-        """Some of the balls."""
-        rows = {name: each[..., which] for name, each in vars(self).items() if name != "balls"}
-        return Tracked(balls=self.balls.take(which), **rows)
-
-
-@dataclass(frozen=True)
-class Ends:
-    """The motions on which a row of balls ends; a field for each of the variables of
-    :func:`motion_of`.
-    """
-
-    kind: np.ndarray
-    impacts: np.ndarray
-    periods: np.ndarray
-    lyapunov_exponent: np.ndarray
-    lyapunov_error: np.ndarray
-    exponent_sum: np.ndarray
-    reason: np.ndarray
-    followed: np.ndarray
-    end_phase: np.ndarray
-    end_speed: np.ndarray
-
-    @classmethod
-    def unknown(cls, m):
-        """Those of balls whose motions are not known."""
-        counts = {name: np.zeros(m, int) for name in ("impacts", "periods", "followed")}
-        texts = {name: np.full(m, "", object) for name in ("kind", "reason")}
-        numbers = [name for name in cls.__annotations__ if name not in counts | texts]
-        return cls(**counts, **texts, **{name: np.full(m, np.nan) for name in numbers})
-
-    def store(self, which, **values):
-        """Store values of the balls with these indices."""
-        for name, value in values.items():
-            getattr(self, name)[which] = value
-
-
 def ends_of(balls, impacts):
-    """The motions on which balls end that are followed for a number of impacts, or some more."""
-    blocks = range(0, balls.phase.size, BLOCK)
-    parts = [_ends_of(balls.take(slice(first, first + BLOCK)), impacts) for first in blocks]
-    columns = zip(*(vars(part).values() for part in parts), strict=True)
-    return Ends(*(np.concatenate(column) for column in columns))
+    """The motions on which balls end that are followed for a number of impacts, or some more.
+
+    Returns
+    -------
+    dict of ndarray
+        The variables of :func:`motion_of`, each over the balls, with ``end_speed``, a closing
+        speed.
+    """
+    numbers = ("lyapunov_exponent", "lyapunov_error", "exponent_sum", "end_phase", "end_speed")
+    found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
+    found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
+    found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
+    section = max(SECTION, -(-impacts // SECTIONS))
+    for first in range(0, balls.phase.size, BLOCK):
+        lane = np.arange(first, min(first + BLOCK, balls.phase.size))
+        _follow_to_end(found, balls.take(lane), lane, impacts, section)
+    return found
+
+
+def _store(found, which, **values):
+    """Store values of the balls with these indices."""
+    for name, value in values.items():
+        found[name][which] = value
+
+
+def _take(track, which):
+    """Some of the balls that are followed."""
+    return {name: each[..., which] for name, each in track.items()}
 
 
 @np.errstate(all="ignore")
-def _ends_of(balls, impacts):
-    """The same for one block. Deviations of long motions overflow, and vanish at a lift-off."""
-    found = Ends.unknown(balls.phase.size)
-    section = max(SECTION, -(-impacts // SECTIONS))
-    tracked = Tracked.of(balls)
+def _follow_to_end(found, balls, lane, impacts, section):
+    """Follow balls until the motion of each is known, and store it. Deviations of long motions
+    overflow, and vanish at a lift-off.
+
+    ``track`` has the indices ``lane`` of the balls; ``vector``, a deviation of length 1; ``climb``,
+    the logarithm of its growth above the least one since the last lift-off, and ``most``, the
+    greatest climb since then; ``lifted`` and ``lifted_at``, the number of the impact before the
+    last lift-off, -1 if there was none, and its time; ``marginal``, whether the neighbours of a
+    ball that returns come closer too slowly; and ``sections``, the growth, the time and the
+    logarithm of the contraction of areas in each section.
+    """
+    zeros = np.zeros(lane.size)
+    track = {
+        "lane": lane,
+        "vector": np.array([zeros + 1, zeros]),
+        "climb": zeros,
+        "most": zeros,
+        "lifted": zeros - 1,
+        "lifted_at": zeros,
+        "marginal": zeros > 0,
+        "sections": np.zeros((0, 3, lane.size)),
+    }
     seen = 0
-    while tracked.lane.size and seen < impacts:
+    while track["lane"].size and seen < impacts:
         count = min(max(seen // section, 1), -(-(impacts - seen) // section))
-        count = min(count, max(ROWS // tracked.lane.size // section, 1))
-        record, going, after = follow(tracked.balls, count * section)
-        resting = np.delete(np.arange(tracked.lane.size), going)
-        _store_resting(found, tracked.lane[resting], record[:, :, resting], seen)
-        tracked = tracked.take(going)
-        record = record[:, :, going]
-        lifts = lift_offs(tracked.balls, record)
-        maps = tangent_maps(tracked.balls, record, lifts)
-        again = recurrence(tracked.balls, record, after, maps)
-        tracked, lap = stretched(tracked, record, after, maps, lifts, section)
+        count = min(count, max(ROWS // track["lane"].size // section, 1))
+        record, going, after = follow(balls, count * section)
+        _store_resting(found, track["lane"], record, going, seen)
+        balls, track, record = balls.take(going), _take(track, going), record[:, :, going]
+        lifts = lift_offs(balls, record)
+        maps = tangent_maps(balls, record, lifts)
+        again = recurrence(balls, record, after, maps)
+        lap = stretch(track, record, after, maps, lifts, section)
+        track["marginal"] = again["marginal"]
+        _store_periodic(found, track["lane"], record, after, again, seen)
+        locked = _store_locked(found, track, record, after, lifts, lap, seen)
         seen += len(record)
-        _store_periodic(found, tracked, record, again, seen)
-        tracked, locked = _store_locked(found, tracked, record, lifts, lap, seen - len(record))
-        tracked = replace(tracked, marginal=again.marginal)
-        tracked = tracked.take(~locked & ~again.found)
-    _store_others(found, tracked, seen)
-    return found
+        (left,) = (~locked & ~again["repeats"]).nonzero()
+        balls, track = after.take(left), _take(track, left)
+    _store_others(found, balls, track, seen)
 
 
 def running_products(maps):
@@ -302,74 +265,64 @@ def running_products(maps):
     return products, logarithms
 
 
-def stretched(tracked, record, after, maps, lifts, section):
-    """The balls after some more impacts, with their deviations, and the greatest climb between the
+def stretch(track, record, after, maps, lifts, section):
+    """Carry the deviations of balls over some more impacts; return the greatest climb between the
     last two lift-offs.
     """
     # A deviation starts again at a lift-off, in a direction that does not matter.
     smooth = np.where(lifts | ~np.isfinite(maps).all(axis=(0, 1)), RESTART, maps)
     products, logarithms = running_products(smooth)
-    vectors = np.einsum("ijnb,jb->inb", products, tracked.vector)
+    vectors = np.einsum("ijnb,jb->inb", products, track["vector"])
     length = np.hypot(*vectors)
     growth = np.diff(logarithms + np.log(length), axis=0, prepend=0.0)
     growth = np.where(lifts, 0.0, growth)
     # Behind each lift-off the sum of the growth is far below all sums before.
     number = lifts.cumsum(axis=0)
     sums = growth.cumsum(axis=0) - FAR_BELOW * number
-    lowest = np.minimum(np.minimum.accumulate(sums, axis=0), -tracked.climb)
-    climb = sums - lowest
-    since = number == number[-1]
-    lap = np.where(number == number[-1] - 1, climb, 0.0).max(axis=0)
-    most = np.where(since, climb, 0.0).max(axis=0)
-    lap = np.where(number[-1] == 1, np.maximum(lap, tracked.most), lap)
-    most = np.where(number[-1] == 0, np.maximum(most, tracked.most), most)
-    starts = TURN * np.vstack([record[:, 0], after.turns])
-    starts += np.vstack([record[:, 1], after.phase])
+    climb = sums - np.minimum(np.minimum.accumulate(sums, axis=0), -track["climb"])
+    most, lap = (np.where(number == number[-1] - k, climb, 0.0).max(axis=0) for k in (0, 1))
+    lap = np.where(number[-1] == 1, np.maximum(lap, track["most"]), lap)
     areas = contraction(maps)
-    sums = np.stack([growth, np.diff(starts, axis=0), np.where(np.isfinite(areas), areas, 0.0)])
-    sums = sums.reshape(3, len(record) // section, section, growth.shape[1]).sum(axis=2)
-    later = replace(
-        tracked,
-        balls=after,
-        vector=vectors[:, -1] / length[-1],
-        climb=climb[-1],
-        most=most,
-        sections=np.concatenate([tracked.sections, np.moveaxis(sums, 0, 1)]),
+    sums = np.stack(
+        [growth, np.diff(times(record, after), axis=0), np.nan_to_num(areas, neginf=0.0)]
     )
-    return later, lap
+    sums = sums.reshape(3, len(record) // section, section, lifts.shape[1]).sum(axis=2)
+    track["vector"] = vectors[:, -1] / length[-1]
+    track["most"] = np.where(number[-1] == 0, np.maximum(most, track["most"]), most)
+    track["climb"] = climb[-1]
+    track["sections"] = np.concatenate([track["sections"], np.moveaxis(sums, 0, 1)])
+    return lap
 
 
-class Recurrence(NamedTuple):
-    """Returns of balls after ``impacts`` in ``periods``, with the moduli of the larger multipliers
-    and the logarithms of the contraction of areas; ``found`` are those that repeat, and
-    ``marginal`` those whose neighbours come closer too slowly.
-    """
-
-    found: np.ndarray
-    marginal: np.ndarray
-    impacts: np.ndarray
-    periods: np.ndarray
-    radius: np.ndarray
-    areas: np.ndarray
+def times(record, after):
+    """The times of all impacts of a record and of the one after it."""
+    turns = np.vstack([record[:, 0], after.turns])
+    return TURN * turns + np.vstack([record[:, 1], after.phase])
 
 
 def recurrence(balls, record, after, maps):
-    """The first recurrence of each ball, seen from the impact after those recorded."""
+    """The first recurrence of each ball, seen from the impact after those recorded.
+
+    Returns
+    -------
+    dict of ndarray
+        ``impacts`` and ``periods`` until a ball returns, the modulus ``radius`` of the larger
+        multiplier, the logarithm ``areas`` of the contraction of areas, and whether the motion
+        ``repeats``, or its neighbours come closer too slowly (``marginal``).
+    """
     n, _, m = record.shape
     half = n // 2
-    turns = np.vstack([record[:, 0], after.turns])
     phase = np.vstack([record[:, 1], after.phase])
     speed = np.vstack([record[:, 2], after.speed]) / (1 + balls.amplitude)
-    distance = apart(phase[n] - phase[n - half : n], speed[n] - speed[n - half : n])
-    near = distance[::-1] < NEAR_BEFORE
+    near = apart(phase[n] - phase[n - half : n], speed[n] - speed[n - half : n])[::-1] < NEAR_BEFORE
     near &= near.cumsum(axis=0) <= CANDIDATES
-    known = np.zeros(m, bool)
     distance = np.full(m, np.inf)
     lag = np.zeros(m, int)
     radius = np.zeros(m)
     areas = np.zeros(m)
     for k in near.any(axis=1).nonzero()[0] + 1:
-        (some,) = (near[k - 1] & ~known).nonzero()
+        # Several turns have the same fixed point: the shortest one counts.
+        (some,) = (near[k - 1] & (distance > NEAR_BEFORE)).nonzero()
         last = phase[:, some], speed[:, some]
         turn = apart(*(each[n + 1 - k :] - each[n + 1 - 2 * k : n + 1 - k] for each in last))
         some = some[turn.max(axis=0) < NEAR_BEFORE]
@@ -386,14 +339,16 @@ def recurrence(balls, record, after, maps):
         distance[some] = apart(to_phase, to_speed / scale)
         radius[some] = largest_multiplier(a + d, a * d - b * c)
         areas[some] = contraction(lap).sum(axis=0)
-        # Several turns have the same fixed point: the shortest one counts.
-        known[some] = distance[some] < NEAR_BEFORE
-    found = (distance < NEAR) & (radius < 1 - MARGIN)
-    marginal = np.abs(radius - 1) < MARGIN
-    row = np.arange(m)
-    passed = TURN * (turns[n] - turns[n - lag, row]) + (phase[n] - phase[n - lag, row])
-    periods = np.round(passed / TURN).astype(int)
-    return Recurrence(found, marginal, lag, periods, radius, areas)
+    passed = times(record, after)
+    passed = passed[n] - passed[n - lag, np.arange(m)]
+    return {
+        "repeats": (distance < NEAR) & (radius < 1 - MARGIN),
+        "marginal": (lag > 0) & (np.abs(radius - 1) < MARGIN),
+        "impacts": lag,
+        "periods": np.round(passed / TURN).astype(int),
+        "radius": radius,
+        "areas": areas,
+    }
 
 
 def apart(angle, speed):
@@ -412,97 +367,103 @@ def contraction(maps):
     return np.log(np.abs(maps[0, 0] * maps[1, 1] - maps[0, 1] * maps[1, 0]))
 
 
-def _store_resting(found, lane, record, seen):
+def _store_resting(found, lane, record, going, seen):
     """Store the balls that stay on the table."""
-    count = np.isfinite(record[:, 0]).sum(axis=0)
-    duration = record[count - 1, 4, np.arange(lane.size)]
-    found.store(lane, kind=PERMANENT, periods=1, lyapunov_error=0.0, followed=seen + count)
-    found.store(lane[np.isnan(duration)], kind=UNDECIDED, periods=0, reason=RESUMES)
+    resting = np.delete(np.arange(lane.size), going)
+    count = np.isfinite(record[:, 0, resting]).sum(axis=0)
+    stays = np.isinf(record[count - 1, 4, resting])
+    _store(found, lane[resting], kind=np.where(stays, PERMANENT, UNDECIDED), periods=stays)
+    _store(found, lane[resting], reason=np.where(stays, "", RESUMES), followed=seen + count)
 
 
-def _store_locked(found, tracked, record, lifts, lap, seen):
-    """Store the balls that stick for the second time. Returns all balls, and which stick."""
-    row = np.arange(tracked.lane.size)
-    last = len(lifts) - 1 - lifts[::-1].argmax(axis=0)
-    times = TURN * record[:, 0] + record[:, 1] + record[:, 4]
-    earlier = lifts & (np.arange(len(lifts))[:, np.newaxis] < last)
-    before = len(lifts) - 1 - earlier[::-1].argmax(axis=0)
+def _store_end(found, lane, after, which, **values):
+    """Store the motions of balls that go on bouncing."""
+    _store(found, lane, end_phase=after.phase[which], end_speed=after.speed[which], **values)
+
+
+def _store_periodic(found, lane, record, after, again, seen):
+    """Store the balls that repeat; contacts stick that last longer than two free impacts."""
+    (some,) = again["repeats"].nonzero()
+    again = _take(again, some)
+    sticks = np.zeros((len(record), some.size), bool)
+    if after.ball.lasts:
+        ball = some_of(after.ball, some)
+        sticks = ~(record[:, 3, some] <= 2 * ball.free(np.abs(record[:, 2, some])))
+    of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
+    _store_end(
+        found,
+        lane[some],
+        after,
+        some,
+        kind=np.where((sticks & of_lap).any(axis=0), LOCKED, PERIODIC),
+        impacts=again["impacts"],
+        periods=again["periods"],
+        lyapunov_exponent=np.log(again["radius"]) / again["periods"],
+        lyapunov_error=0.0,
+        exponent_sum=again["areas"] / again["periods"],
+        followed=seen + len(record),
+    )
+
+
+def _store_locked(found, track, record, after, lifts, lap, seen):
+    """Store the balls that stick for the second time, and remember the others that stick."""
+    row = np.arange(lap.size)
+    n = len(lifts)
+    last = n - 1 - lifts[::-1].argmax(axis=0)
+    at = TURN * record[:, 0] + record[:, 1] + record[:, 4]
+    earlier = lifts & (np.arange(n)[:, np.newaxis] < last)
+    before = n - 1 - earlier[::-1].argmax(axis=0)
     twice = earlier.any(axis=0)
-    number = np.where(twice, seen + before, tracked.lifted)
-    time = np.where(twice, times[before, row], tracked.lifted_at)
+    number = np.where(twice, seen + before, track["lifted"])
+    time = np.where(twice, at[before, row], track["lifted_at"])
     lifted = lifts.any(axis=0)
-    again = lifted & (number >= 0)
-    known = lap[again] < FORGOTTEN
-    found.store(
-        tracked.lane[again],
+    track["lifted"] = np.where(lifted, seen + last, track["lifted"])
+    track["lifted_at"] = np.where(lifted, at[last, row], track["lifted_at"])
+    locked = lifted & (number >= 0)
+    known = lap[locked] < FORGOTTEN
+    _store_end(
+        found,
+        track["lane"][locked],
+        after,
+        locked,
         kind=LOCKED,
-        impacts=np.where(known, (seen + last - number)[again], 0),
-        periods=np.where(known, np.round((times[last, row] - time)[again] / TURN), 0),
+        impacts=np.where(known, (track["lifted"] - number)[locked], 0),
+        periods=np.where(known, np.round((track["lifted_at"] - time)[locked] / TURN), 0),
         reason=np.where(known, "", ROUNDING),
         lyapunov_exponent=-np.inf,
         lyapunov_error=0.0,
         exponent_sum=-np.inf,
-        followed=seen + last[again] + 1,
-        end_phase=tracked.balls.phase[again],
-        end_speed=tracked.balls.speed[again],
+        followed=track["lifted"][locked] + 1,
     )
-    tracked = replace(
-        tracked,
-        lifted=np.where(lifted, seen + last, tracked.lifted),
-        lifted_at=np.where(lifted, times[last, row], tracked.lifted_at),
-    )
-    return tracked, again
+    return locked
 
 
-def _store_periodic(found, tracked, record, again, seen):
-    """Store the balls that repeat; contacts stick that last longer than two free impacts."""
-    some = again.found.nonzero()[0]
-    ball = some_of(tracked.balls.ball, some)
-    kind = np.full(some.size, PERIODIC, object)
-    if ball.lasts:
-        u, own_time = record[:, 2, some], record[:, 3, some]
-        sticks = ~(own_time <= 2 * ball.free(np.abs(u)))
-        of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again.impacts[some]
-        kind[(sticks & of_lap).any(axis=0)] = LOCKED
-    found.store(
-        tracked.lane[some],
-        kind=kind,
-        impacts=again.impacts[some],
-        periods=again.periods[some],
-        lyapunov_exponent=np.log(again.radius[some]) / again.periods[some],
-        lyapunov_error=0.0,
-        exponent_sum=again.areas[some] / again.periods[some],
-        followed=seen,
-        end_phase=tracked.balls.phase[some],
-        end_speed=tracked.balls.speed[some],
-    )
-
-
-def _store_others(found, tracked, seen):
+def _store_others(found, balls, track, seen):
     """Store the balls that have neither repeated nor come to rest: chaotic ones, if their
     neighbours separate exponentially.
     """
-    for j, lane in enumerate(tracked.lane):
-        growth, time, areas = tracked.sections[:, :, j].T
+    for j, lane in enumerate(track["lane"]):
+        growth, time, areas = track["sections"][:, :, j].T
         rate, scatter, error = exponent(growth, time, areas)
-        if tracked.marginal[j]:
+        if track["marginal"][j]:
             reason = MARGINAL
         elif rate > ERRORS * scatter and growth.sum() > FORGOTTEN:
             reason = ""
-        elif rate < -ERRORS * scatter and tracked.most[j] > FORGOTTEN:
+        elif rate < -ERRORS * scatter and track["most"][j] > FORGOTTEN:
             reason = ROUNDING
         else:
             reason = NO_RECURRENCE
-        found.store(
+        _store_end(
+            found,
             lane,
+            balls,
+            j,
             kind=UNDECIDED if reason else CHAOTIC,
             reason=reason,
             lyapunov_exponent=TURN * rate,
             lyapunov_error=TURN * error,
             exponent_sum=TURN * areas.sum() / time.sum(),
             followed=seen,
-            end_phase=tracked.balls.phase[j],
-            end_speed=tracked.balls.speed[j],
         )
 
 
@@ -576,7 +537,7 @@ def motion_of(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=
     -------
     xarray.Dataset
         The ``kind``: "periodic"; "locked", if the ball also sticks to the table in each repetition;
-        "permanent contact"; "chaotic"; or "undecided", for the ``reason`` given. The ``impacts`` and
+        "permanent contact"; "chaotic"; or "undecided", for the ``reason`` given. ``impacts`` and
         the ``periods`` of the table until the motion repeats; a locked motion has 0 if rounding
         decides on them, as the ``reason`` says. ``lyapunov_exponent`` per period of the table with
         ``lyapunov_error``, 0 for motions that repeat, and ``exponent_sum``, that of both exponents.
@@ -601,14 +562,11 @@ def motion_of(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=
 
 def dataset_of(grid, amplitude, ends):
     """The dataset of motions over a grid."""
-    found = vars(ends).copy()
-    speed = found.pop("end_speed")
-    found["end_velocity"] = amplitude * np.cos(ends.end_phase) - speed
-    found["in_words"] = np.array(
-        [in_words(*each) for each in zip(ends.kind, ends.followed, ends.reason, strict=True)]
-    )
-    found["kind"] = ends.kind.astype(str)
-    found["reason"] = ends.reason.astype(str)
+    found = ends.copy()
+    found["end_velocity"] = amplitude * np.cos(ends["end_phase"]) - found.pop("end_speed")
+    words = zip(ends["kind"], ends["followed"], ends["reason"], strict=True)
+    found["in_words"] = np.array([in_words(*each) for each in words])
+    found |= {name: ends[name].astype(str) for name in ("kind", "reason")}
     return dataset(grid, found, OF_MOTIONS)
 
 
@@ -620,14 +578,12 @@ def in_words(kind, followed, reason):
     >>> in_words("periodic", 50, "")
     'periodic, found within 50 impacts'
     """
-    why = f": {reason}" if reason else ""
     if kind == CHAOTIC:
         return f"{kind} in all {followed} impacts followed; more may show a long transient"
     if kind == UNDECIDED:
-        return f"{kind} after {followed} impacts{why}"
-    return f"{kind}, found within {followed} impacts" + (
-        f"; its period is not known{why}" if why else ""
-    )
+        return f"{kind} after {followed} impacts: {reason}"
+    unknown = f"; its period is not known: {reason}" if reason else ""
+    return f"{kind}, found within {followed} impacts{unknown}"
 
 
 def lyapunov(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000):
@@ -656,21 +612,20 @@ def lyapunov(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=N
 
     >>> from bouncing_ball_beyond import Rigid
     >>> found = lyapunov(Rigid(0.85), amplitude=1.0, phase=1.1)
-    >>> round(float(found.lyapunov_exponent - np.log(0.85)), 6)
-    0.0
+    >>> round(float(np.exp(found.lyapunov_exponent)), 6)
+    0.85
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
     ends = ends_of(balls, impacts)
-    (chaotic,) = (ends.kind == CHAOTIC).nonzero()
+    (chaotic,) = (ends["kind"] == CHAOTIC).nonzero()
     beside = np.repeat(chaotic, NEIGHBOURS)
     shift = NEAR * np.tile(np.arange(1, NEIGHBOURS + 1), chaotic.size)
-    neighbours = replace(
-        balls.take(beside), phase=ends.end_phase[beside], speed=ends.end_speed[beside] + shift
-    )
-    kinds = ends_of(neighbours, impacts).kind.reshape(-1, NEIGHBOURS)
-    leaves = np.isin(kinds, [CHAOTIC, UNDECIDED], invert=True).any(axis=1)
-    unknown = {"lyapunov_exponent": np.nan, "lyapunov_error": np.nan}
-    ends.store(chaotic[leaves], kind=UNDECIDED, reason=TRANSIENT, **unknown)
+    states = {"phase": ends["end_phase"][beside], "speed": ends["end_speed"][beside] + shift}
+    neighbours = ends_of(replace(balls.take(beside), **states), impacts)
+    kinds = neighbours["kind"].reshape(-1, NEIGHBOURS)
+    leaves = chaotic[np.isin(kinds, [CHAOTIC, UNDECIDED], invert=True).any(axis=1)]
+    _store(ends, leaves, kind=UNDECIDED, reason=TRANSIENT)
+    _store(ends, leaves, lyapunov_exponent=np.nan, lyapunov_error=np.nan)
     return dataset_of(grid, balls.amplitude, ends)
 
 
@@ -729,7 +684,8 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     if grid.shape != (starts, starts):
         raise ValueError("amplitude, ball: basins are those of a single ball on one table")
     ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u), impacts)
-    names = {"kind": ends.kind.astype(str), "impacts": ends.impacts, "periods": ends.periods}
+    names = {name: ends[name] for name in ("kind", "impacts", "periods")}
+    names["kind"] = names["kind"].astype(str)
     keys = np.rec.fromarrays(list(names.values()), names=list(names))
     motions, which, count = np.unique(keys, return_inverse=True, return_counts=True)
     share = count / which.size
@@ -769,8 +725,8 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = orbit_diagram(Rigid(0.5), amplitude=[1.5, 1.6], starts=2, impacts=200)
-    >>> found.impacts.max("start").values.tolist()
+    >>> found = orbit_diagram(Rigid(0.5), amplitude=[1.5, 1.6], starts=4, impacts=200)
+    >>> found.impacts.isel(start=2).values.tolist()
     [1, 2]
     """
     grid, ball, (amplitude,) = grid_of(ball, amplitude=amplitude)
@@ -780,29 +736,27 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
     phase = TURN * (EVEN[0] * (start + 1) % 1)
     speed = fastest(ball, amplitude[value]) * (EVEN[1] * (start + 1) % 1)
     balls = Balls(some_of(ball, value), amplitude[value], 0 * phase, phase, speed)
-    first = ends_of(balls, impacts)
-    passes = [first]
+    passes = [ends_of(balls, impacts)]
     for step in (1, -1):
         beside = np.clip(value + step, 0, grid.size - 1) * starts + start
-        moves = np.isfinite(first.end_phase[beside])
-        phase = np.where(moves, first.end_phase[beside], balls.phase)
-        speed = np.where(moves, first.end_speed[beside], balls.speed)
+        phase, speed = (passes[0][name][beside] for name in ("end_phase", "end_speed"))
+        moves = np.isfinite(phase)
+        phase = np.where(moves, phase, balls.phase)
+        speed = np.where(moves, speed, balls.speed)
         passes.append(ends_of(replace(balls, phase=phase, speed=speed), impacts))
     shape = grid.size, starts
-    columns = zip(*(vars(each).values() for each in passes), strict=True)
-    ends = Ends(*(np.hstack([x.reshape(shape) for x in column]).ravel() for column in columns))
+    ends = {
+        name: np.hstack([each[name].reshape(shape) for each in passes]).ravel()
+        for name in passes[0]
+    }
     value = np.repeat(np.arange(grid.size), len(passes) * starts)
-    balls = Balls(
-        some_of(ball, value), amplitude[value], 0 * ends.end_phase, ends.end_phase, ends.end_speed
-    )
-    (moving,) = np.isfinite(ends.end_phase).nonzero()
-    impact_phase = np.full((value.size, samples), np.nan)
-    impact_speed = np.full((value.size, samples), np.nan)
-    record, _, _ = follow(balls.take(moving), samples)
-    impact_phase[moving] = record[:, 1].T
-    impact_speed[moving] = record[:, 2].T
+    state = np.zeros(value.size), ends["end_phase"], ends["end_speed"]
+    balls = Balls(some_of(ball, value), amplitude[value], *state)
+    (moving,) = np.isfinite(balls.phase).nonzero()
+    recorded = np.full((2, value.size, samples), np.nan)
+    recorded[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)
+    recorded = dict(zip(("impact_phase", "impact_speed"), recorded, strict=True))
     grid = grid.expand_dims(start=np.arange(len(passes) * starts), axis=1)
-    recorded = {"impact_phase": impact_phase, "impact_speed": impact_speed}
     recorded = dataset(grid, recorded, OF_MOTIONS, impact=np.arange(samples))
     return dataset_of(grid, balls.amplitude, ends).merge(recorded)
 
@@ -839,15 +793,14 @@ def orbit_of_motion(
     if grid.ndim:
         raise ValueError("the orbit of a motion is that of a single ball from one start")
     ends = ends_of(balls, impacts)
-    words = in_words(ends.kind[0], ends.followed[0], ends.reason[0])
-    if not ends.impacts[0]:
+    words = in_words(*(ends[name][0] for name in ("kind", "followed", "reason")))
+    k, m = int(ends["impacts"][0]), int(ends["periods"][0])
+    if not k:
         raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
-    if ends.kind[0] == LOCKED and not ball.lasts:
+    if ends["kind"][0] == LOCKED and not ball.lasts:
         raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
-    on_orbit = Balls(ball, balls.amplitude, np.zeros(1), ends.end_phase, ends.end_speed)
-    record, _, _ = follow(on_orbit, int(ends.impacts[0]))
-    turns, tau, u, T = record[:, :4, 0].T
+    on_orbit = Balls(ball, balls.amplitude, np.zeros(1), ends["end_phase"], ends["end_speed"])
+    turns, tau, u, T = follow(on_orbit, k)[0][:, :4, 0].T
     columns = [TURN * turns + tau, u, T] if ball.lasts else [TURN * turns + tau, u]
     z = np.append(np.stack(columns, axis=1).ravel(), balls.amplitude)
-    equations = OrbitEquations(ball, int(ends.impacts[0]), int(ends.periods[0]))
-    return solved(equations, z, "the orbit on which the ball ends")
+    return solved(OrbitEquations(ball, k, m), z, "the orbit on which the ball ends")

@@ -38,10 +38,19 @@ STEPS = 20_000
 """Steps after which a search ends as undecided. Each of them is a considerable part of the shortest
 time scale, so that these are hundreds of oscillations."""
 ROUNDING = 2.0**-52
-COLUMNS = ("turns", "phase", "speed", "own_time", "duration", "bounce_speed", "flight_time")
+COLUMNS = (
+    "turns",
+    "phase",
+    "speed",
+    "own_time",
+    "duration",
+    "gap",
+    "bounce_speed",
+    "flight_time",
+)
 """What is recorded of each impact: the number of turns of the table and its phase τ as the impact
-starts, the closing speed u, T, the duration D, the relative speed w as it ends, and the time of
-flight that follows."""
+starts, the closing speed u, T, the duration D, δ and δ′ as it ends, and the time of the flight that
+follows. T and δ′ are NaN, and D is infinite, for a ball that stays on the table."""
 
 
 @compiled
@@ -134,16 +143,15 @@ def emergence(start, gap, w, x, y, amplitude):
 
 @compiled
 def earliest(w, x, y, amplitude):
-    """A time before which a ball that leaves the level of the table has certainly not landed.
+    """A time before which a ball that leaves at the level of the table has certainly not landed.
 
     It is the time of flight against the greatest gravity, 1 + Λ. Where the table falls away, with Y
     ≥ 1, it is the zero of δ ≥ w s + (Y - 1) s²/2 + X s³/6 - Λ s⁴/24 without its first term.
     """
+    start = 2 * max(w, 0.0) / (1 + amplitude)
     if y < 1:
-        return 2 * w / (1 + amplitude)
-    fall = y - 1
-    left = (2 * x + math.sqrt(4 * x * x + 12 * amplitude * fall)) / amplitude
-    return max(2 * w / (1 + amplitude), left)
+        return start
+    return max(start, (2 * x + math.sqrt(4 * x * x + 12 * amplitude * (y - 1))) / amplitude)
 
 
 @compiled
@@ -210,8 +218,8 @@ def contact(s, gap, u, x, y, ratio, zeta):
 
 @compiled
 def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
-    r"""The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero;
-    infinity if it lasts.
+    r"""The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero, and δ′
+    there; infinity if it lasts.
 
     What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² = F′² +
     ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
@@ -236,28 +244,20 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
         f = -position - kappa * rate
         slope = -rate - kappa * second
         if s > 0 and f <= 0:
-            return s
+            return s, rate
         free = f + a * push + b * shove - 1 / stiffness
         free_rate = slope + a * shove - b * push
         energy = math.sqrt(free_rate * free_rate + stiffness * free * free)
         if energy / ratio + steady <= 1 / stiffness:
-            return math.inf
+            break
         bend = ratio * growth * energy
         jerk = ratio * math.sqrt(1 + growth * growth) * bend + steady
         f = max(f, 0.0)
         step, last = safe_step(s, f, slope, -second - kappa * third, bend + steady, jerk)
         s += step
         if last:
-            return s
-    return math.inf
-
-
-@compiled
-def slowest(amplitude):
-    """A speed above which no bounces are summed up, because T₀ > 2w/g and g ≤ 1 + Λ; above it
-    :func:`settling` need not be called.
-    """
-    return CHATTER * (1 + amplitude) * (1 + amplitude)
+            return s, rate + step * (second + step * third / 2)
+    return math.inf, math.nan
 
 
 @compiled
@@ -295,34 +295,27 @@ def until_lift_off(phase, amplitude):
 
 
 @compiled
-def rest(w, restitution, phase, amplitude):
-    """How long a ball rests on the table after an instantaneous impact and the bounces that end
-    there; -1 if it leaves.
+def rest(gap, w, restitution, phase, amplitude, left):
+    """How long a ball rests on the table after an instantaneous impact with the gap δ and the speed
+    w, and the phase at which it leaves; a negative time if it does not rest.
+
+    It rests if the bounces after an impact at the level of the table end there. After an instant
+    that stands for a contact, which would go on for the time ``left``, it rests if it does not rise
+    at the end of the contact, or not through the level.
     """
     x = amplitude * math.cos(phase)
     y = amplitude * math.sin(phase)
-    settled = settling(w, restitution, x, y, amplitude)
-    if settled < 0:
-        return -1.0
-    return settled + until_lift_off(phase + settled, amplitude)
-
-
-@compiled
-def rest_after_contact(gap, w, phase, amplitude, left):
-    """The same for a ball that would be in contact for the time ``left`` after the instant that
-    stands for this contact, and the phase at which the ball leaves.
-
-    It rests if it does not rise at the end of the contact, or not through the level of the table.
-    """
-    x = amplitude * math.cos(phase)
-    y = amplitude * math.sin(phase)
-    if emergence(left, gap, w, x, y, amplitude) < math.inf:
-        return -1.0, phase
-    end = phase + left
-    if amplitude * math.sin(end) > 1:
-        return left, end
+    if gap == 0:
+        settled = settling(w, restitution, x, y, amplitude)
+    elif emergence(left, gap, w, x, y, amplitude) < math.inf:
+        settled = -1.0
+    else:
+        settled = left
+    end = phase + settled
+    if settled < 0 or amplitude * math.sin(end) > 1:
+        return settled, end
     lift_off = math.asin(1 / max(amplitude, 1.0))
-    return left + until_lift_off(end, amplitude), lift_off
+    return settled + until_lift_off(end, amplitude), lift_off
 
 
 @compiled
@@ -333,68 +326,65 @@ def reduced(phase):
 
 
 @compiled
-def bounce(turns, phase, u, amplitude, restitution, out):
-    """Impacts of a ball with a restitution coefficient into the rows of ``out``: what the ball does
-    after them, and the turns, the phase and the closing speed of the impact that follows.
+def fly(gap, w, x, y, amplitude, kappa):
+    """The time of the flight up to the next impact, and its closing speed, which is negative where
+    the contact resumes.
     """
-    slow = slowest(amplitude)
-    for i in range(len(out)):
-        x = amplitude * math.cos(phase)
-        y = amplitude * math.sin(phase)
-        w = restitution * u
-        stay = -1.0
-        if w <= slow:
-            stay = rest(w, restitution, phase, amplitude)
-        if stay >= 0:
-            w = 0.0
-        out[i] = turns, phase, u, 0.0, max(stay, 0.0), w, math.nan
-        if stay == math.inf:
-            return True, turns, phase, u
-        if stay >= 0:
-            passed, phase = reduced(phase + stay)
-            turns += passed
-            # The state at the lift-off is the same each time, so that later motions are too.
-            phase = math.asin(1 / amplitude)
-            x = math.sqrt((amplitude - 1) * (amplitude + 1))
-            y = 1.0
-        fly, u = landing(earliest(w, x, y, amplitude), 0.0, w, x, y, amplitude)
-        out[i, 6] = fly
-        passed, phase = reduced(phase + fly)
-        turns += passed
-    return False, turns, phase, u
+    if gap == 0:
+        return landing(earliest(w, x, y, amplitude), gap, w, x, y, amplitude)
+    resumes, start = rise(gap, w, x, y, amplitude, kappa)
+    if resumes:
+        return start, -flight(start, gap, w, x, y)[1]
+    return landing(start, gap, w, x, y, amplitude)
 
 
 @compiled
-def press(turns, phase, u, amplitude, ratio, zeta, kappa, out):
-    """The same for a spring and a damper with ζ < 1; where a contact resumes, u is negative."""
+def impacts(turns, phase, u, amplitude, restitution, ratio, zeta, kappa, out):
+    """Impacts of a ball into the rows of ``out``.
+
+    They are instants with a restitution coefficient if ϖ is 0, and otherwise contacts with a spring
+    and a damper, ζ < 1.
+
+    Returns
+    -------
+    stays : bool
+        Whether the ball stays on the table.
+    turns, phase, u : float
+        Those of the impact after the last one.
+    """
     for i in range(len(out)):
         x = amplitude * math.cos(phase)
         y = amplitude * math.sin(phase)
-        gap = kappa * min(u, 0.0)
-        duration = release(gap, u, x, y, amplitude, ratio, zeta, kappa)
+        rests = False
+        if ratio == 0:
+            w = restitution * u
+            gap = 0.0
+            duration = 0.0
+            if w <= CHATTER * (1 + amplitude) * (1 + amplitude):
+                stay, leaves = rest(gap, w, restitution, phase, amplitude, 0.0)
+                rests = stay >= 0
+            if rests:
+                w = 0.0
+                duration = stay
+        else:
+            start = kappa * min(u, 0.0)
+            duration, w = release(start, u, x, y, amplitude, ratio, zeta, kappa)
+            gap = -kappa * w
+        out[i] = turns, phase, u, ratio * duration, duration, gap, w, math.nan
         if duration == math.inf:
-            out[i] = turns, phase, u, math.nan, duration, math.nan, math.nan
+            out[i, 3] = math.nan
             return True, turns, phase, u
-        gap, w, _ = contact(duration, gap, u, x, y, ratio, zeta)
-        out[i] = turns, phase, u, duration * ratio, duration, w, math.nan
         passed, phase = reduced(phase + duration)
         turns += passed
+        if rests:
+            # The state at a lift-off is the same each time, so that later motions are too.
+            phase = leaves
         x = amplitude * math.cos(phase)
         y = amplitude * math.sin(phase)
-        resumes = False
-        if kappa > 0:
-            gap = -kappa * w
-            resumes, start = rise(gap, w, x, y, amplitude, kappa)
-        else:
-            gap = 0.0
-            w = max(w, 0.0)
-            start = earliest(w, x, y, amplitude)
-        if resumes:
-            fly = start
-            u = -flight(fly, gap, w, x, y)[1]
-        else:
-            fly, u = landing(start, gap, w, x, y, amplitude)
-        out[i, 6] = fly
-        passed, phase = reduced(phase + fly)
+        if rests:
+            y = max(y, 1.0)
+        flown, u = fly(gap, w, x, y, amplitude, kappa)
+        out[i, 7] = flown
+        passed, phase = reduced(phase + flown)
         turns += passed
     return False, turns, phase, u

@@ -20,7 +20,7 @@ from bouncing_ball_beyond.one_ball import COLUMNS, PATIENCE, REACH, ROUNDING, ST
 FEW = 40
 """Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
 scalar ones."""
-AT_ONCE = 256
+AT_ONCE = 32
 MOST_IMPACTS = 1_000_000
 """The number of impacts of a ball that :func:`history` follows, and of those after which it looks
 at the time."""
@@ -30,13 +30,6 @@ UNDERDAMPED = 0.99
 DELICATE = 0.25
 """Contacts whose |ϖ² - 1 + 2iζϖ| is below this are followed on arrays: terms of their closed form
 cancel."""
-
-
-class Landings(NamedTuple):
-    """The time of flight up to first landings and the closing speeds there."""
-
-    time: np.ndarray
-    speed: np.ndarray
 
 
 class Leaving(NamedTuple):
@@ -150,7 +143,7 @@ def landings(start, gap, w, x, y, amplitude):
             rows = rows.take(going, axis=1)
     for i in left:
         time[i], speed[i] = one_ball.landing(*(each[i] for each in given))
-    return Landings(time, speed)
+    return time, speed
 
 
 def instants(ball, landed, gap, w, x, y, amplitude):
@@ -174,7 +167,7 @@ def instants(ball, landed, gap, w, x, y, amplitude):
         if not np.any(step > 4 * ROUNDING * t):
             break
         t += step
-    return Landings(t, speed)
+    return t, speed
 
 
 def contacts(s, gap, u, x, y, ratio, zeta):
@@ -253,9 +246,8 @@ def releases(ball, phase, u, amplitude):
     for i in left:
         gap, u, x, y, amplitude = (each[i] for each in given)
         ratio, zeta, kappa = (each[i] for each in parameters)
-        duration[i] = one_ball.release(gap, u, x, y, amplitude, ratio, zeta, kappa)
-        if duration[i] < np.inf:
-            speed[i] = one_ball.contact(duration[i], gap, u, x, y, ratio, zeta)[1]
+        found = one_ball.release(gap, u, x, y, amplitude, ratio, zeta, kappa)
+        duration[i], speed[i] = found
     return duration, speed
 
 
@@ -271,93 +263,60 @@ def has_closed_form(ball):
 
 def leave(balls):
     """How balls leave the table after their impacts."""
-    ball, amplitude, u = balls.ball, balls.amplitude, balls.speed
+    ball, u = balls.ball, balls.speed
     if has_closed_form(ball):
-        duration, w = releases(ball, balls.phase, u, amplitude)
+        duration, w = releases(ball, balls.phase, u, balls.amplitude)
         own_time = np.where(duration < np.inf, duration * ball.frequency_ratio, np.nan)
     else:
-        own_time, (duration, gap, w, _) = ball.first_impact(balls.phase, u, amplitude)
+        own_time, (duration, gap, w, _) = ball.first_impact(balls.phase, u, balls.amplitude)
         duration = np.where(np.isnan(own_time), np.inf, duration)
-    if isinstance(ball, Corrected):
-        return rest_after_contacts(balls, gap, w)
     if not ball.lasts:
-        return rest(balls, w)
+        return rest(balls, gap, w)
     if isinstance(ball, SpringDamper) or np.any(ball.kappa):
         # The release is a zero of δ + κδ′, but for rounding.
         gap = -ball.kappa * w
     turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
-    leaving = Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
-    if not np.any(ball.kappa):
-        duration[sinking(leaving, amplitude)] = np.nan
-    return leaving
-
-
-def sinking(leaving, amplitude):
-    """The indices of balls that were released below the level of the table and do not rise to it.
-
-    Their contacts resume. It is not known where if the force does not vanish where δ + κδ′ = 0.
-    """
-    gap, w = leaving.gap, leaving.speed
-    x, y = table_at(leaving.phase, amplitude)
-    rising = np.zeros(w.shape)
-    for i in may_sink(gap, w, amplitude, 0.0).nonzero()[0]:
-        rising[i] = one_ball.emergence(0.0, gap[i], w[i], x[i], y[i], amplitude[i])
-    return np.isinf(rising).nonzero()[0]
-
-
-def rest(balls, w):
-    """How balls leave after instantaneous impacts, some of them after a rest on the table."""
-    amplitude, phase = balls.amplitude, balls.phase
-    stay = np.full(w.shape, -1.0)
-    restitution = w / np.maximum(balls.speed, TINY)
-    (slow,) = (w <= one_ball.slowest(amplitude)).nonzero()
-    # Slightly above the limit of :func:`.one_ball.settling`, so that rounding does not decide here.
-    gravity = 1 - amplitude[slow] * np.sin(phase[slow])
-    limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution[slow])
-    limit /= np.maximum(amplitude[slow], 1.0)
-    for i in slow[(w[slow] <= limit) | (w[slow] == 0)]:
-        stay[i] = one_ball.rest(w[i], restitution[i], phase[i], amplitude[i])
-    lift_off = np.arcsin(1 / np.maximum(amplitude, 1.0))
-    return after_rest(balls, stay, np.where(stay < 0, phase, lift_off), 0 * w, w)
-
-
-def rest_after_contacts(balls, gap, w):
-    """The same for instants that stand for contacts (:func:`.one_ball.rest_after_contact`)."""
-    amplitude, phase = balls.amplitude, balls.phase
-    left = left_of_contacts(balls)
-    stay, leaves = np.full(w.shape, -1.0), phase.copy()
-    for i in may_sink(gap, w, amplitude, left).nonzero()[0]:
-        given = gap[i], w[i], phase[i], amplitude[i], left[i]
-        stay[i], leaves[i] = one_ball.rest_after_contact(*given)
-    return after_rest(balls, stay, leaves, gap, w)
+    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
 
 
 def left_of_contacts(balls):
-    """How long the contacts would last for which instants stand, after these; 0 for other balls."""
+    """How long contacts would last after the instants that stand for them; 0 for other balls."""
     if not isinstance(balls.ball, Corrected):
-        return 0.0
+        return np.zeros(balls.speed.shape)
     signature = balls.ball.signature(balls.speed)
     return signature.duration - signature.centroid
 
 
+def rest(balls, gap, w):
+    """How balls leave after instantaneous impacts, some of them after :func:`.one_ball.rest`."""
+    amplitude, phase = balls.amplitude, balls.phase
+    left = left_of_contacts(balls)
+    restitution = w / np.maximum(balls.speed, TINY)
+    # The limit of :func:`.one_ball.settling`, moved so that rounding does not decide here.
+    gravity = 1 - table_at(phase, amplitude)[1]
+    limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution)
+    settles = (gap == 0) & (w * np.maximum(amplitude, 1.0) <= limit)
+    stay = np.full(w.shape, -1.0)
+    leaves = phase.copy()
+    for i in (settles | may_sink(gap, w, amplitude, left)).nonzero()[0]:
+        given = gap[i], w[i], restitution[i], phase[i], amplitude[i], left[i]
+        stay[i], leaves[i] = one_ball.rest(*given)
+    rests = stay >= 0
+    duration = np.maximum(stay, 0.0)
+    leaves = np.where(rests, leaves, phase)
+    ends = phase + np.where(duration < np.inf, duration, 0.0)
+    turns = balls.turns + np.round((ends - leaves) / TURN)
+    gap, w = (np.where(rests, 0.0, each) for each in (gap, w))
+    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w)
+
+
 def may_sink(gap, w, amplitude, left):
-    """Which balls may not rise when their contacts end, or not through the level of the table.
+    """Which balls may not rise after the time ``left``, or not through the level of the table.
 
     The others do against the strongest relative gravity, 1 + Λ.
     """
     strongest = 1 + amplitude
     return (gap < 0) & ((w <= strongest * left) | (w * w + 2 * strongest * gap <= 0))
-
-
-def after_rest(balls, stay, phase, gap, w):
-    """How balls leave after a rest of the length ``stay`` at a phase; without one if it is
-    negative.
-    """
-    duration = np.maximum(stay, 0.0)
-    ends = balls.phase + np.where(duration < np.inf, duration, 0.0)
-    turns = balls.turns + np.round((ends - phase) / TURN)
-    gap, w = (np.where(stay < 0, each, 0.0) for each in (gap, w))
-    return Leaving(np.zeros(w.shape), duration, turns, phase, gap, w)
 
 
 def reduced(phase):
@@ -368,35 +327,39 @@ def reduced(phase):
 
 @np.errstate(divide="ignore", invalid="ignore")
 def fly(balls, leaving):
-    """The flights of balls up to their next impacts."""
+    """The time of the flights of balls up to their next impacts, and their closing speeds.
+
+    Where a contact resumes, the speed is negative. The time is NaN where it does so for a law whose
+    force does not vanish where δ + κδ′ = 0.
+    """
     ball, amplitude, gap, w = balls.ball, balls.amplitude, leaving.gap, leaving.speed
     x, y = table_at(leaving.phase, amplitude)
     # A ball without a speed leaves because the table falls away: Y ≥ 1, but for rounding.
     y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)
     strongest = 1 + amplitude
-    at_level = np.sqrt(np.maximum(w * w + 2 * strongest * gap, 0.0))
-    start = (w + at_level) / strongest
-    fall = np.maximum(y - 1, 0.0)
-    left_behind = (2 * x + np.sqrt(4 * x * x + 12 * amplitude * fall)) / amplitude
+    start = (w + np.sqrt(np.maximum(w * w + 2 * strongest * gap, 0.0))) / strongest
+    left_behind = (2 * x + np.sqrt(4 * x * x + 12 * amplitude * np.maximum(y - 1, 0.0))) / amplitude
     start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
+    kappa = np.broadcast_to(ball.kappa, w.shape)
+    left = left_of_contacts(balls)
     resumes = np.zeros(w.shape, bool)
-    if np.any(ball.kappa):
-        kappa = np.broadcast_to(ball.kappa, w.shape)
-        slow = (gap < 0) & ((w < 0) | (at_level <= kappa * strongest))
-        for i in slow.nonzero()[0]:
-            given = gap[i], w[i], x[i], y[i], amplitude[i], kappa[i]
-            resumes[i], start[i] = one_ball.rise(*given)
-    else:
-        left = np.broadcast_to(left_of_contacts(balls), w.shape)
-        for i in may_sink(gap, w, amplitude, left).nonzero()[0]:
-            start[i] = one_ball.emergence(left[i], gap[i], w[i], x[i], y[i], amplitude[i])
-    landed, speed = landings(start, gap, w, x, y, amplitude)
-    if resumes.any():
-        landed[resumes] = start[resumes]
-        speed[resumes] = -flights(*(each[resumes] for each in (start, gap, w, x, y)))[1]
+    # A ball with w ≥ (1 + √2) κ (1 + Λ) has κ (1 + Λ) at the level, and δ + κδ′ rises up to there.
+    late = np.maximum(left, (1 + np.sqrt(2)) * kappa)
+    for i in may_sink(gap, w, amplitude, late).nonzero()[0]:
+        given = gap[i], w[i], x[i], y[i], amplitude[i]
+        if kappa[i] > 0:
+            resumes[i], start[i] = one_ball.rise(*given, kappa[i])
+        else:
+            start[i] = one_ball.emergence(left[i], *given)
+    time, speed = np.full((2, *w.shape), np.nan)
+    given = np.array([start, gap, w, x, y, amplitude])
+    (lands,) = (~resumes & (start < np.inf)).nonzero()
+    time[lands], speed[lands] = landings(*given[:, lands])
     if isinstance(ball, Corrected):
-        return instants(ball, landed, gap, w, x, y, amplitude)
-    return Landings(landed, speed)
+        return instants(ball, time, gap, w, x, y, amplitude)
+    time[resumes] = start[resumes]
+    speed[resumes] = -flights(*given[:5, resumes])[1]
+    return time, speed
 
 
 def step(balls):
@@ -404,7 +367,7 @@ def step(balls):
 
     Returns
     -------
-    record : ndarray, shape (7, balls)
+    record : ndarray, shape (8, balls)
         The columns of :data:`.one_ball.COLUMNS`.
     going : ndarray of int
         The indices of the balls that leave the table.
@@ -412,42 +375,34 @@ def step(balls):
         These, before their next impacts.
     """
     leaving = leave(balls)
-    (going,) = (leaving.duration < np.inf).nonzero()
-    before = (
-        balls.turns,
-        balls.phase,
-        balls.speed,
-        leaving.own_time,
-        leaving.duration,
-        leaving.speed,
-    )
     record = np.full((len(COLUMNS), balls.phase.size), np.nan)
-    record[:-1] = before
-    if going.size < balls.phase.size:
-        balls = balls.take(going)
-        leaving = Leaving(*(each[going] for each in leaving))
-    landed = fly(balls, leaving)
-    record[-1, going] = landed.time
-    turns, phase = reduced(leaving.phase + landed.time)
-    after = replace(balls, turns=leaving.turns + turns, phase=phase, speed=landed.speed)
-    return record, going, after
+    record[:3] = balls.turns, balls.phase, balls.speed
+    record[3:7] = leaving.own_time, leaving.duration, leaving.gap, leaving.speed
+    (going,) = (leaving.duration < np.inf).nonzero()
+    balls = balls.take(going)
+    leaving = Leaving(*(each[going] for each in leaving))
+    time, speed = fly(balls, leaving)
+    record[7, going] = time
+    turns, phase = reduced(leaving.phase + time)
+    after = replace(balls, turns=leaving.turns + turns, phase=phase, speed=speed)
+    lands = np.isfinite(time)
+    return record, going[lands], after if lands.all() else after.take(lands)
 
 
-def follow_each(balls, run, parameters, impacts):
-    """:func:`follow` for some balls, one after the other, by a scalar loop with these parameters of
-    the ball.
-    """
-    state = balls.turns, balls.phase, balls.speed, balls.amplitude, *parameters
+def follow_each(balls, impacts):
+    """:func:`follow` for balls that have a scalar loop, one after the other."""
+    ball = balls.ball
+    given = (0.0, ball.frequency_ratio, ball.zeta) if ball.lasts else (ball.restitution, 0.0, 0.0)
+    state = balls.turns, balls.phase, balls.speed, balls.amplitude, *given, ball.kappa
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
-    ends = []
-    for j, given in enumerate(zip(*np.broadcast_arrays(*state), strict=True)):
-        out = np.full((impacts, len(COLUMNS)), np.nan)
-        ends.append(run(*map(float, given), out))
+    ends = np.empty((4, balls.phase.size))
+    for j, numbers in enumerate(zip(*np.broadcast_arrays(*state), strict=True)):
+        out = np.full(record.shape[:2], np.nan)
+        ends[:, j] = one_ball.impacts(*map(float, numbers), out)
         record[:, :, j] = out
-    stays, turns, phase, speed = (np.array(each) for each in zip(*ends, strict=True))
-    (going,) = (~stays).nonzero()
-    after = replace(balls, turns=turns, phase=phase, speed=speed)
-    return record, going, after.take(going)
+    stays, turns, phase, speed = ends
+    (going,) = (stays == 0).nonzero()
+    return record, going, replace(balls, turns=turns, phase=phase, speed=speed).take(going)
 
 
 def follow(balls, impacts):
@@ -455,57 +410,43 @@ def follow(balls, impacts):
 
     Returns
     -------
-    record : ndarray, shape (impacts, 7, balls)
-        The columns of :data:`.one_ball.COLUMNS`, NaN after the last impact of a ball that stays on
-        the table.
+    record : ndarray, shape (impacts, 8, balls)
+        The columns of :data:`.one_ball.COLUMNS`, NaN after the last impact of a ball.
     going : ndarray of int
-        The indices of the balls that do not stay.
+        The indices of the balls that do not stay on the table.
     after : Balls
         These, before their next impacts.
     """
     ball = balls.ball
-    if balls.phase.size < FEW:
-        if isinstance(ball, Rigid) and not callable(ball.restitution):
-            return follow_each(balls, one_ball.bounce, (ball.restitution,), impacts)
-        if has_closed_form(ball):
-            given = ball.frequency_ratio, ball.zeta, ball.kappa
-            return follow_each(balls, one_ball.press, given, impacts)
+    constant = isinstance(ball, Rigid) and not callable(ball.restitution)
+    if balls.phase.size < FEW and (constant or has_closed_form(ball)):
+        return follow_each(balls, impacts)
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     left = np.arange(balls.phase.size)
     for impact in record:
         if not left.size:
             break
-        rows, going, balls = step(balls)
-        impact[:, left] = rows
+        impact[:, left], going, balls = step(balls)
         left = left[going]
     return record, left, balls
 
 
-def axis(name, value):
+def axis(name, value, dim=None):
     """An argument as a labelled array: a list is an axis with the name of the argument."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     value = np.asarray(value, float)
-    if value.ndim > 1:
-        raise ValueError(f"{name}: must be a number, a list of numbers or an xarray.DataArray")
-    if not np.isfinite(value).all():
-        raise ValueError(f"{name} = {value[~np.isfinite(value)].flat[0]}: must be finite")
-    return xr.DataArray(value, {name: value} if value.ndim else {}, [name] * value.ndim)
-
-
-def axes_of_ball(ball):
-    """The array parameters of a ball, which vary together along one axis: named after the
-    parameter, or "ball" if there are several.
-    """
-    arrays = {name: each for name, each in ball.parameters.items() if np.ndim(each)}
-    if len(arrays) == 1:
-        return {name: axis(name, value) for name, value in arrays.items()}
-    coordinates = {name: ("ball", value) for name, value in arrays.items()}
-    return {name: xr.DataArray(value, coordinates, ["ball"]) for name, value in arrays.items()}
+    if value.ndim > 1 or not np.isfinite(value).all():
+        raise ValueError(f"{name}: must be a finite number, a list of them or an xarray.DataArray")
+    dims = [dim or name] * value.ndim
+    return xr.DataArray(value, {name: (dims, value)} if dims else {}, dims)
 
 
 def grid_of(ball, **values):
     """The grid that arguments and array parameters of a ball span.
+
+    Parameters of a ball vary together: along an axis with the name of the parameter, or "ball" if
+    several are arrays.
 
     Returns
     -------
@@ -516,31 +457,36 @@ def grid_of(ball, **values):
     rows : list of ndarray
         The values at each point, in one row.
     """
-    of_ball = axes_of_ball(ball)
+    rows = {name: value for name, value in ball.parameters.items() if np.ndim(value)}
+    dim = "ball" if len(rows) > 1 else None
     arrays = [axis(name, value) for name, value in values.items()]
-    every = xr.broadcast(*arrays, *of_ball.values())
-    rows = [each.values.ravel() for each in every]
-    parameters = dict(zip(of_ball, rows[len(arrays) :], strict=True))
-    return every[0], ball.at(**parameters) if parameters else ball, rows[: len(arrays)]
+    arrays += [axis(name, value, dim) for name, value in rows.items()]
+    every = xr.broadcast(*arrays)
+    flat = [each.values.ravel() for each in every]
+    if rows:
+        ball = ball.at(**dict(zip(rows, flat[len(values) :], strict=True)))
+    return every[0], ball, flat[: len(values)]
 
 
 def first_impacts(ball, amplitude, phase, velocity, relative_velocity):
     """The grid of first impacts and the balls before them; the arguments are those of
     :func:`simulate`.
     """
-    name = "velocity" if relative_velocity is None else "relative_velocity"
-    value = velocity if relative_velocity is None else relative_velocity
-    given = {"amplitude": amplitude, "phase": phase, name: value}
+    absolute = relative_velocity is None
+    name = "velocity" if absolute else "relative_velocity"
+    given = {
+        "amplitude": amplitude,
+        "phase": phase,
+        name: velocity if absolute else relative_velocity,
+    }
     grid, ball, (amplitude, phase, value) = grid_of(ball, **given)
     if (amplitude < 0).any():
         raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
-    table = amplitude * np.cos(phase) if relative_velocity is None else 0.0
-    speed = table - value
+    speed = amplitude * np.cos(phase) * absolute - value
     if (speed < 0).any():
-        i = np.argmin(speed)
         raise ValueError(
-            f"{name} = {value[i]:g}: the ball rises from the table, whose velocity is"
-            f" {amplitude[i] * np.cos(phase[i]):g}"
+            f"{name} = {value[np.argmin(speed)]:g}: the ball rises from the table, by a relative"
+            f" velocity of {-speed.min():g}"
         )
     return grid, Balls(ball, amplitude, *reduced(phase), speed)
 
@@ -640,7 +586,7 @@ def simulate(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=N
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
     record, going, _ = follow(balls, int(impacts))
-    turns, start, u, _, duration, w, flight_time = np.moveaxis(record, 1, 0)
+    turns, start, u, _, duration, _, w, flight_time = np.moveaxis(record, 1, 0)
     before = balls.amplitude * np.cos(start)
     after = balls.amplitude * np.cos(start + np.where(duration < np.inf, duration, np.nan))
     status = np.full(balls.phase.shape, "permanent contact")
@@ -692,8 +638,8 @@ def history(
         As :func:`simulate`, or if a ball has more than a million impacts in this time.
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
-    times = np.linspace(0, TURN * periods, round(periods * samples) + 1)
-    return over_time(grid, times, balls)
+    nothing = np.zeros((0, len(COLUMNS), balls.phase.size))
+    return over_time(grid, balls, nothing, periods, samples)
 
 
 def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
@@ -728,103 +674,69 @@ def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
     gap = height - amplitude * np.sin(phase)
     if (gap < 0).any():
         raise ValueError(f"height = {height[np.argmin(gap)]:g}: is below the table")
-    turns, phase = reduced(phase)
-    nothing = np.zeros_like(gap)
+    nothing = np.zeros(gap.shape)
     w = -amplitude * np.cos(phase)
-    balls = Balls(ball, amplitude, turns, phase, nothing)
-    falling = Leaving(nothing, nothing, turns, phase, gap, w)
-    landed = fly(balls, falling)
-    passed, later = reduced(phase + landed.time)
-    first = replace(balls, turns=turns + passed, phase=later, speed=landed.speed)
+    balls = Balls(ball, amplitude, nothing, phase, nothing)
+    time, speed = fly(balls, Leaving(nothing, nothing, nothing, phase, gap, w))
+    turns, lands = reduced(phase + time)
+    fall = np.array([nothing, phase, nothing, nothing, nothing, gap, w, time])
+    first = replace(balls, turns=turns, phase=lands, speed=speed)
+    return over_time(grid, first, fall[np.newaxis], periods, samples)
+
+
+def over_time(grid, balls, fall, periods, samples):
+    """The dataset of balls over time, from their first impacts or from rows that record falls."""
     times = np.linspace(0, TURN * periods, round(periods * samples) + 1)
-    return over_time(grid, times, first, falling)
-
-
-def over_time(grid, times, balls, falling=None):
-    """The dataset of balls over time, from their first impacts, or from falls before them."""
     shape = balls.phase.size, times.size
     found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
     found["contact"] = np.empty(shape, bool)
-    for j in range(balls.phase.size):
+    for j, amplitude in enumerate(balls.amplitude):
         one = balls.take([j])
-        fall = falling and Leaving(*(each[[j]] for each in falling))
-        start = balls.phase[j] if falling is None else falling.phase[j]
-        gap, rate, found["contact"][j] = states_at(pieces_of(one, times[-1], fall), one, times)
-        found["table"][j] = balls.amplitude[j] * np.sin(start + times)
+        record = fall[:, :, j]
+        origin = TURN * one.turns[0] + one.phase[0] - record[:, 7].sum()
+        while one.phase.size and TURN * one.turns[0] + one.phase[0] - origin < times[-1]:
+            more, _, one = follow(one, AT_ONCE)
+            record = np.concatenate([record, more[:, :, 0]])
+            if len(record) > MOST_IMPACTS:
+                raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
+        record = record[np.isfinite(record[:, 0])]
+        one = some_of(balls.ball, [j])
+        gap, rate, found["contact"][j] = states_at(record, origin, one, amplitude, times)
+        found["table"][j] = amplitude * np.sin(origin + times)
         found["ball"][j] = gap + found["table"][j]
-        found["ball_velocity"][j] = rate + balls.amplitude[j] * np.cos(start + times)
+        found["ball_velocity"][j] = rate + amplitude * np.cos(origin + times)
     return dataset(grid, found, DESCRIPTIONS, time=times)
 
 
-class Pieces(NamedTuple):
-    """Impacts of a ball, each with the flight after it: when it begins, how it begins and how it
-    ends.
-    """
-
-    begin: np.ndarray
-    phase: np.ndarray
-    speed: np.ndarray
-    own_time: np.ndarray
-    duration: np.ndarray
-    gap: np.ndarray
-    bounce_speed: np.ndarray
-
-
-def pieces_of(balls, end, fall):
-    """Those of one ball up to a time; the first is a fall, if there is one."""
-    ball, amplitude = balls.ball, balls.amplitude
-    first = balls if fall is None else fall
-    start = TURN * first.turns + first.phase
-    parts = []
-    while balls.phase.size and (not parts or (TURN * balls.turns + balls.phase - start < end)):
-        record, _, balls = follow(balls, AT_ONCE)
-        parts.append(record[:, :, 0])
-        if len(parts) * AT_ONCE > MOST_IMPACTS:
-            raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
-    record = np.concatenate(parts)
-    turns, phase, u, own_time, duration, w, _ = record[np.isfinite(record[:, 0])].T
-    gap = ball.contact(phase, u, own_time, amplitude).gap
-    if not ball.lasts:
-        gap = np.where(duration > 0, 0.0, gap)
-    pieces = Pieces(TURN * turns + phase - start, phase, u, own_time, duration, gap, w)
-    if fall is None:
-        return pieces
-    falls = np.zeros(1), fall.phase, np.zeros(1), np.zeros(1), np.zeros(1), fall.gap, fall.speed
-    return Pieces(*(np.concatenate(each) for each in zip(falls, pieces, strict=True)))
-
-
-def states_at(pieces, balls, times):
-    """δ, δ′ and whether the ball is in contact, of one ball at some times."""
-    ball, amplitude = balls.ball, balls.amplitude
-    piece = np.searchsorted(pieces.begin, times, side="right") - 1
-    here = Pieces(*(each[piece] for each in pieces))
-    since = times - here.begin
-    contact = since < here.duration
-    gap, rate = np.zeros(times.shape), np.zeros(times.shape)
-    flying = Pieces(*(each[~contact] for each in here))
-    leaves = flying.phase + flying.duration
+def states_at(record, origin, ball, amplitude, times):
+    """δ, δ′ and whether the ball is in contact at times after the phase ``origin`` of the table."""
+    begin = TURN * record[:, 0] + record[:, 1] - origin
+    number = np.searchsorted(begin, times, side="right") - 1
+    _, phase, u, own_time, duration, gap, w, _ = record[number].T
+    since = times - begin[number]
+    contact = since < duration
+    leaves = np.where(contact, 0.0, phase + duration)
     table = table_at(leaves, amplitude)
-    passed = since[~contact] - flying.duration
-    gap[~contact], rate[~contact], _ = flights(passed, flying.gap, flying.bounce_speed, *table)
+    gap, rate, _ = flights(np.where(contact, 0.0, since - duration), gap, w, *table)
+    gap[contact] = 0.0
+    rate[contact] = 0.0
     if ball.lasts and contact.any():
-        touching = Pieces(*(each[contact] for each in here))
-        own_time = own_times(ball, amplitude, touching, since[contact])
-        _, gap[contact], rate[contact], _ = ball.contact(
-            touching.phase, touching.speed, own_time, amplitude
-        )
+        given = phase[contact], u[contact], since[contact]
+        own_time = own_times(ball, amplitude, own_time[contact], *given)
+        _, gap[contact], rate[contact], _ = ball.contact(*given[:2], own_time, amplitude)
     return gap, rate, contact
 
 
-def own_times(ball, amplitude, pieces, since):
-    """T after the times ``since`` the starts of contacts, by a bracket of the duration as a
-    function of T.
+def own_times(ball, amplitude, above, *given):
+    """T at times after the starts of contacts, from T above them or NaN, by a bracket.
+
+    ``given`` are the phases and speeds at the starts, and the times since then.
     """
 
     def late(T, phase, speed, since):
         return ball.contact(phase, speed, T, amplitude).duration - since
 
-    given = pieces.phase, pieces.speed, since
-    above = np.where(np.isfinite(pieces.own_time), pieces.own_time, 1.0)
+    above = np.where(np.isfinite(above), above, 1.0)
     while np.any(late(above, *given) < 0):
         above = np.where(late(above, *given) < 0, 2 * above, above)
     return elementwise.find_root(late, (np.zeros_like(above), above), args=given).x

@@ -17,10 +17,12 @@ from bouncing_ball.drawing import (
     DASHES,
     GUIDE,
     TABLE,
+    WHOLE_WIDTH,
     Look,
     along_ratio,
     label,
     legend_below,
+    name_at_right,
     panels,
     sample,
     style,
@@ -62,30 +64,42 @@ def ext_impact(data: xr.Dataset) -> Figure:
     body: Look = {"facecolor": "0.9", "edgecolor": TABLE, "hatch": "////", "linewidth": 0}
     force.axhline(0, **GUIDE)
     force.plot(data.time, load, color=COLOURS[0])
-    force.fill_between(data.time, pulls, label="the table pulls", **body)
+    force.fill_between(data.time, pulls, **body)
     # The displacement release is at the end of the curve, and the force release at its zero.
     heights = {"displacement": float(load[-1]), "force": 0.0}
     places: dict[str, Look] = {
-        "displacement": {"xytext": (-7, 0), "ha": "right", "va": "center"},
+        "displacement": {"xytext": (4, -6), "ha": "right", "va": "top"},
         "force": {"xytext": (2, 6), "ha": "left", "va": "bottom"},
     }
     for release, look in RELEASES.items():
         one = data.sel(release=release)
-        restitution.plot(data.damping_ratio, one.restitution, label=f"{release} release", **look)
+        restitution.plot(data.damping_ratio, one.restitution, **look)
         duration.plot(data.damping_ratio, one.contact_duration / np.pi, **look)
         end = float(one.contact_end), heights[release]
         force.plot(*end, "o", color=look["color"], markersize=4, zorder=5)
-        text = f"$r={float(one.end_restitution):.2f}$"
+        text = f"$\\omega D={end[0]:.2f}$\n$r={float(one.end_restitution):.2f}$"
         note: Look = places[release] | {"textcoords": "offset points", "color": look["color"]}
         force.annotate(text, end, **note)
     force.set(xlabel=r"time $\omega t$,  $\omega = \sqrt{k/m}$", ylabel=r"force $/\,(m\omega v)$")
     force.set_xticks(np.pi * np.arange(3) / 2, ["0", r"$\pi/2$", r"$\pi$"])
     force.set_title("one contact")
-    force.margins(y=0.12)
+    force.margins(y=0.3)
     damping = r"damping ratio $\zeta = c\,/\,(2\sqrt{km})$"
     restitution.set(xlabel=damping, ylabel="$r$", title="restitution coefficient", ylim=(0, 1.05))
-    duration.set(xlabel=damping, ylabel=r"$\omega D/\pi$", title="duration", ylim=(0, 1.3))
-    legend_below(figure, columns=3)
+    duration.set(xlabel=damping, ylabel=r"$\omega D/\pi$", title="duration $D$", ylim=(0, 1.3))
+    # Above the upper and below the lower line.
+    middle = data.isel(damping_ratio=2 * data.sizes["damping_ratio"] // 5)
+    sides: dict[str, Look] = {
+        "displacement": {"xytext": (0, 16), "ha": "center", "va": "bottom"},
+        "force": {"xytext": (0, -8), "ha": "center", "va": "top"},
+    }
+    for release, side in sides.items():
+        place = float(middle.damping_ratio), float(middle.contact_duration.sel(release=release))
+        name: Look = side | {"textcoords": "offset points", "color": RELEASES[release]["color"]}
+        duration.annotate(f"{release} release", (place[0], place[1] / np.pi), **name)
+    left: Look = {"xytext": (-4, 0), "textcoords": "offset points", "ha": "right", "va": "center"}
+    starts = float(data.contact_end.sel(release="force"))
+    force.annotate("the table pulls", (starts, heights["displacement"] / 2), **left)
     return figure
 
 
@@ -256,7 +270,7 @@ ON_LINE: Look = {
 TOO_HIGH = {200.0: 0.2, 1000.0: 0.13}
 """The r at which lines of too large heights are named, which are near to each other."""
 
-ROOM = 0.025
+ROOM = 0.012
 """The least place of a line with a name, half the height of the name."""
 
 NOT_BY_RULE = "0.92"
@@ -411,40 +425,112 @@ LAWS: Mapping[str, Look] = {
 }
 
 
+SHORT_TITLES = {
+    "max_height": "height",
+    "bounce_velocity": "velocity",
+    "phase": "phase",
+    "saddle_node": "saddle-node",
+}
+"""The quantities whose errors on other contacts are near to those on the linear one."""
+
+QUANTITIES: Mapping[str, Look] = {
+    "max_height": {"color": COLOURS[0], "linestyle": DASHES[0]},
+    "bounce_velocity": {"color": COLOURS[1], "linestyle": DASHES[1]},
+    "phase": {"color": COLOURS[2], "linestyle": DASHES[2]},
+    "saddle_node": {"color": COLOURS[3], "linestyle": DASHES[3]},
+}
+THIN: Look = {"linewidth": 1.1}
+
+
 def ext_laws(data: xr.Dataset) -> Figure:
-    """Errors of both models on contacts of five laws, over D + κ as a share of the cycle."""
-    figure, found = panels_by_quantity(data, 4.8)
+    """Errors of both models on contacts of five laws, over D + κ as a share of the cycle.
+
+    Above they are divided by those on the linear contact. Below are those themselves, for the
+    period doubling on all contacts, and for the other quantities on the linear one.
+    """
+    figure = Figure(figsize=(WHOLE_WIDTH, 6.0))
+    rows = [[f"{model} {name}" for name in SHORT_TITLES] for model in MODELS]
+    slots = figure.subplot_mosaic([*rows, ["doubling"] * 2 + ["linear"] * 2])
     given = parameters(data)
-    ratio = data.centroid_ratio.values
-    per_cycle = 2 * given["n"]
-    share = 1 / (per_cycle * ratio)
-    for quantity, axes in found.items():
-        for law, model in np.ndindex(data.sizes["law"], data.sizes["model"]):
-            one = data.isel(law=law, model=model).sel(quantity=quantity)
-            known = one.relative_error.notnull().values
-            size = one.relative_error.values[known]
-            place, error = with_zero(ratio[known], size, float(one.law_error_zero))
-            axes.plot(1 / (per_cycle * place), error, linewidth=1.0, **LAWS[str(one.law.values)])
-        for slope in (1, 2):
-            axes.plot(share, share**slope, **GUIDE)
-        axes.set(xscale="log", xlabel=r"share of the cycle, $(D+\kappa)/(2\pi n)$")
-        axes.label_outer()
-    # The line of an error leaves the panels at its zero.
-    least = float(data.relative_error.min())
-    figure.axes[0].set_ylim(0.3 * least, max(1.0, float(data.relative_error.max())))
-    spare = figure.axes[len(found)]
-    spare.axis("off")
-    # The panel above it has the numbers and the name of the axis.
-    figure.axes[2].xaxis.set_tick_params(labelbottom=True)
-    figure.axes[2].set_xlabel(figure.axes[3].get_xlabel())
-    lines = [sample(linewidth=1.0, **LAWS[law]) for law in data["law"].values]
-    names = [LAW_NAMES[law] for law in data["law"].values]
-    about = (
-        "upper five: restitution model\nlower five: corrected model\ndotted: slopes 1 and 2\n"
-        + title(data, "n", "restitution", "amplitude")
-    )
-    spare.legend(lines, names, loc="center left", title=about, alignment="left")
+    share = 1 / (2 * given["n"] * data.centroid_ratio)
+    quotients = data.relative_error / data.relative_error.sel(law="linear")
+    for model in MODELS:
+        first = slots[f"{model} max_height"]
+        for quantity, words in SHORT_TITLES.items():
+            axes = slots[f"{model} {quantity}"]
+            for law, look in LAWS.items():
+                line = quotients.sel(model=model, law=law, quantity=quantity)
+                axes.plot(share, line, **THIN | look)
+            if axes is not first:
+                axes.sharey(first)
+                axes.tick_params(labelleft=False)
+            axes.set_title(words if model == "restitution" else "")
+        first.set_ylabel(f"{model} model:\nerror / that on the\nlinear contact")
+    draw_doubling(slots["doubling"], data, share)
+    ends = draw_linear(slots["linear"], data, share)
+    for axes in slots.values():
+        axes.set(xscale="log", xlim=(share.min(), share.max()))
+    for name in ("doubling", "linear"):
+        slots[name].set_xlabel(r"share of the cycle, $(D+\kappa)/(2\pi n)$")
+    slots["linear"].sharey(slots["doubling"])
+    slots["linear"].tick_params(labelleft=False)
+    figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")
+    # The places of names depend on the layout.
+    figure.draw_without_rendering()
+    name_at_right(slots["linear"], ends)
+    for model in MODELS:
+        last = quotients.sel(model=model, quantity="saddle_node").isel(centroid_ratio=0)
+        names = [
+            (LAW_NAMES[law], float(last.sel(law=law)), str(look["color"]))
+            for law, look in LAWS.items()
+        ]
+        name_at_right(slots[f"{model} saddle_node"], names)
     return figure
+
+
+def draw_doubling(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> None:
+    """The errors of the period doubling on all contacts, which leave the panel at their zeros."""
+    per_cycle = float(share[0] * data.centroid_ratio[0])
+    part = data.sel(quantity="period_doubling")
+    for law, model in np.ndindex(data.sizes["law"], data.sizes["model"]):
+        one = part.isel(law=law, model=model)
+        known = one.relative_error.notnull().values
+        ratio = data.centroid_ratio.values[known]
+        place, error = with_zero(ratio, one.relative_error.values[known], float(one.law_error_zero))
+        axes.plot(per_cycle / place, error, **THIN | LAWS[str(one.law.values)])
+    axes.set(yscale="log", ylabel="relative error", title=TITLES["period_doubling"])
+    axes.set_ylim(0.3 * float(data.relative_error.min()), 1)
+    beside: Look = {"textcoords": "offset points", "fontsize": 7}
+    stiffest = part.relative_error.isel(centroid_ratio=-1)
+    for law in ("hunt-crossley", "kuwabara-kono"):
+        place = float(share[-1]), float(stiffest.sel(model="restitution", law=law))
+        colour = str(LAWS[law]["color"])
+        axes.annotate(LAW_NAMES[law], place, (3, 1.5), color=colour, va="bottom", **beside)
+    for model, names in (("restitution", "linear and Tsuji"), ("corrected", "corrected model")):
+        place = float(share[-1]), float(stiffest.sel(model=model, law="linear"))
+        axes.annotate(names, place, (16, 0), va="top", **beside)
+
+
+def draw_linear(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> list[tuple[str, float, str]]:
+    """Errors on the linear contact, with slopes 1 and 2 above; names of the lines at the right."""
+    ends = []
+    for quantity, look in QUANTITIES.items():
+        for model in MODELS:
+            error = data.relative_error.sel(model=model, law="linear", quantity=quantity)
+            axes.plot(share, error, **THIN | look)
+            ends.append((SHORT_TITLES[quantity], float(error[0]), str(look["color"])))
+    for slope in (1, 2):
+        axes.plot(share, 6 * share**slope, **GUIDE)
+    axes.set(yscale="log", title="linear contact")
+    middle = data.sizes["centroid_ratio"] // 2
+    for model, offset in zip(MODELS, ((-4, 6), (4, -10)), strict=True):
+        some = data.relative_error.sel(model=model, law="linear", quantity=[*SHORT_TITLES])
+        least, most = (float(each[middle]) for each in (some.min("quantity"), some.max("quantity")))
+        above = model == "restitution"
+        place = float(share[middle]), most if above else least
+        look = {"ha": "right" if above else "left", "fontsize": 7}
+        axes.annotate(f"{model} model", place, offset, textcoords="offset points", **look)
+    return ends
 
 
 # What a phase tells

@@ -20,6 +20,7 @@ function definitionOf({physical, tolerance}, exact, simple) {
     + (Number.isFinite(other) ? `; ${physical ? own : contact}, that of the restitution model is ${signed(other, tolerance)}.` : ".");
 }
 
+// Whether the restitution model is good enough, the verdict in words, and which errors it is by.
 function verdictOf(found, question) {
   const {n, physical, tolerance} = question;
   const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
@@ -40,19 +41,20 @@ function verdictOf(found, question) {
   if (exact.exists && !exact.is_stable)
     return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
   if (!wrong && Math.abs(error) <= tolerance)
-    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}. ${definition}`];
+    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}.`, definition];
   return [false, `The restitution model is not good enough: `
     + `${wrong || `${predicted}, beyond ${percent(tolerance)}`}`
     + (same && Math.abs(found.corrected.max_height) <= tolerance
-      ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height, tolerance)}. `
-      : "; nor is the corrected one: simulate the contact. ") + definition];
+      ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height, tolerance)}.`
+      : "; nor is the corrected one: simulate the contact."), definition];
 }
 
-function drawBranch(found, {n, amplitude}) {
+function drawBranch(found, {n, amplitude, physical: scales}) {
   const [contact, simple, corrected] = found.models;
   const top = 1.15 * Math.max(amplitude, 1.2,
     ...found.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
-  const plot = new Plot("branch", [0, top], [-0.5, 0.5], "excitation amplitude Λ", "phase φ/π",
+  const {name, factor} = phaseAxis(scales), quarter = factor * Math.PI / 2;
+  const plot = new Plot("branch", [0, top], [-quarter, quarter], amplitudeName(scales), name,
     `Branches of ${n}-T orbits: phase against amplitude. The contact's saddle-node is at `
     + `${shown(found.limits[0].saddle_node)}, its period doubling at `
     + `${shown(found.limits[0].period_doubling)}.`);
@@ -62,44 +64,49 @@ function drawBranch(found, {n, amplitude}) {
       for (let k = 0; k <= 160; k++) {
         const lam = start + (top - start) * (k / 160) ** 2, at = model.orbit(n, lam, side);
         for (const stable of [true, false])
-          turned[stable].push(at.is_stable === stable ? [lam, at.phase / Math.PI] : [NaN, NaN]);
+          turned[stable].push(at.is_stable === stable ? [lam, factor * at.phase] : [NaN, NaN]);
       }
       plot.line(turned[true], `curve ${kind}`);
       plot.line(turned[false], `curve unstable ${kind}`);
     }
-  const points = contact.drawn(n), place = at => [at.amplitude, at.phase / Math.PI];
+  const points = contact.drawn(n), place = at => [at.amplitude, factor * at.phase];
   for (const stable of [true, false])
     plot.line(points.map(at => isStable(at.trace, at.determinant) === stable ? place(at) : [NaN, NaN]),
       `curve ${stable ? "" : "unstable "}spring-damper`);
   contact.bifurcations(n).forEach((at, k) => plot.mark(["circle", "square"][k], ...place(at), "bifurcation"));
-  found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, orbit.phase / Math.PI, `dot ${NAMES[k]}`, SIZES[k]));
+  found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, factor * orbit.phase, `dot ${NAMES[k]}`, SIZES[k]));
 }
 
-let motion = null;
-function drawMotion(found, {n, amplitude}) {
+// The curves' animation: the time it started at, and the time τ that it shows.
+let motion = null, started = null, clock = 0;
+function drawMotion(found, {n, amplitude, physical: scales}) {
   const end = 2 * Math.PI * (n + 0.25), times = Array.from({length: 601}, (_, k) => k * end / 600);
   const curves = found.orbits.map(orbit => orbit.exists
     ? times.map(t => heightAt(orbit, t - orbit.phase)) : null);
   const heights = [amplitude, -amplitude, ...curves.flatMap(c => c ?? [])];
   const low = Math.min(...heights), high = Math.max(...heights), room = 0.05 * (high - low || 1);
-  const plot = new Plot("motion", [0, end], [low - room, high + room], "time τ = Ωt", "height Ω²z/g",
+  const clockAxis = scales ? physicalAxis("time", scales.time, "s", end) : {name: "time τ = Ωt", factor: 1};
+  const height = heightAxis("height", "Ω²z/g", scales, high - low);
+  const across = t => clockAxis.factor * t, up = z => height.factor * z;
+  const plot = new Plot("motion", [0, across(end)], [up(low - room), up(high + room)], clockAxis.name, height.name,
     `Height of the ball over one cycle in the models, and of the table. Greatest heights: `
-    + NAMES.map((name, k) => `${name} ${shown(found.orbits[k].max_height, 4)}`).join(", ") + ".");
-  plot.line(times.map(t => [t, amplitude * Math.sin(t)]), "curve table");
-  curves.forEach((curve, k) => curve && plot.line(times.map((t, i) => [t, curve[i]]), `curve ${NAMES[k]}`));
+    + NAMES.map((name, k) => `${name} ${shown(up(found.orbits[k].max_height), 4)}`).join(", ") + ".");
+  plot.line(times.map(t => [across(t), up(amplitude * Math.sin(t))]), "curve table");
+  curves.forEach((curve, k) => curve
+    && plot.line(times.map((t, i) => [across(t), up(curve[i])]), `curve ${NAMES[k]}`));
   const movers = found.orbits.map((orbit, k) => orbit.exists
     ? plot.add("circle", {class: `dot ${NAMES[k]}`, r: SIZES[k], cx: -20, cy: -20}) : null);
   const table = plot.add("rect", {class: "dot table", width: 18, height: 3, x: -40, y: -40});
   motion = {place(t) {
-    table.setAttribute("x", plot.x(t) - 9);
-    table.setAttribute("y", plot.y(amplitude * Math.sin(t)));
+    table.setAttribute("x", plot.x(across(t)) - 9);
+    table.setAttribute("y", plot.y(up(amplitude * Math.sin(t))));
     found.orbits.forEach((orbit, k) => {
       if (!orbit.exists) return;
-      movers[k].setAttribute("cx", plot.x(t));
-      movers[k].setAttribute("cy", plot.y(heightAt(orbit, t - orbit.phase)));
+      movers[k].setAttribute("cx", plot.x(across(t)));
+      movers[k].setAttribute("cy", plot.y(up(heightAt(orbit, t - orbit.phase))));
     });
   }, end};
-  motion.place(0);
+  motion.place(clock);
 }
 
 function drawMultipliers(found) {
@@ -132,12 +139,25 @@ const ORBIT_ROWS = {
   impact_velocity: "velocity before, z′_i", bounce_velocity: "bouncing-off velocity z′_b",
   apparent_restitution: "apparent restitution r_a", max_height: "greatest height max z",
 };
+// The same quantities in the units of the physical tab.
+const IN_UNITS = {
+  phase: x => Number.isFinite(x) ? `${shown(x * 180 / Math.PI)}°` : "none",
+  contact_duration: (x, {time}) => prefixed(x * time, "s", 6),
+  impact_velocity: (x, {time}) => prefixed(x * GRAVITY * time, "m/s", 6),
+  bounce_velocity: (x, {time}) => prefixed(x * GRAVITY * time, "m/s", 6),
+  apparent_restitution: x => shown(x),
+  max_height: (x, {length}) => prefixed(x * length, "m", 6),
+};
 
 function fillTables(found, question) {
   const cells = read => NAMES.map((name, k) => {
     const [text, value, key] = read(found.orbits[k], found.limits[k], k);
     return [text, value, key && `${name} ${key}`];
   });
+  const scales = question.physical;
+  const written = (key, x) => scales ? IN_UNITS[key](x, scales) : shown(x);
+  $("orbit-units").textContent = scales ? "Λ is the acceleration of the table over g"
+    : "Times Ωt, lengths Ω²z/g, velocities Ωż/g";
   const yes = (orbit, value) => !orbit.exists ? "no orbit" : value ? "yes" : "no";
   $("orbit-rows").replaceChildren(
     row("exists", cells(o => [o.exists ? "yes" : "no", o.exists, "exists"])),
@@ -145,7 +165,7 @@ function fillTables(found, question) {
     row("admissible (sampled only)", cells(o => [yes(o, sampledAdmissible(o))])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
-    ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [shown(o[key]), o[key], key]))),
+    ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [written(key, o[key]), o[key], key]))),
     row("multipliers", cells(o => [o.exists ? o.multipliers.map(
       ([re, im]) => im ? `${shown(re, 4)} ${im < 0 ? "−" : "+"} ${shown(Math.abs(im), 4)}i` : shown(re, 4))
       .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
@@ -210,8 +230,7 @@ function notesOf(found, {n}) {
         + "without force"] : []];
 }
 
-// ---- The animation: it waits until it is asked, and for those who want no motion stays so.
-let started = null, clock = 0;
+// ---- The animation: it starts by its button alone.
 function frame(now) {
   if (started === null) return;
   clock = (now - started) / 1000 * 2 % motion.end;

@@ -6,7 +6,9 @@
 const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
-const SELECTS = ["model", "pace", "view"];
+const SELECTS = ["model", "pace", "view", "units"];
+// Values whose sliders are logarithmic.
+const LOGARITHMIC = ["w", "k"];
 let current = DEFAULTS;
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
@@ -14,13 +16,21 @@ function refuse(text) {
   count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "starts", "command"]) $(id).textContent = "";
+  for (const id of ["verdict", "definition", "starts", "command"]) $(id).textContent = "";
   play(false);
 }
 
 // The balls with other starts are followed a moment, in ms, after the rest is shown.
 const PATIENCE = 200;
 let counting = 0, count = () => {};
+
+// The verdict; what is before its colon stands out.
+function say([good, text]) {
+  const [headline, ...rest] = text.split(/(?=: )/), strong = document.createElement("strong");
+  strong.textContent = headline;
+  $("verdict").dataset.good = good;
+  $("verdict").replaceChildren(strong, rest.join(""));
+}
 
 function show(hash, kept = DEFAULTS) {
   clearTimeout(counting);
@@ -35,30 +45,33 @@ function show(hash, kept = DEFAULTS) {
     $(`panel-${tab}`).hidden = !on;
   }
   const onStage = state.tab === "stage";
-  $("starts").hidden = onStage;
+  for (const id of ["starts", "definition"]) $(id).hidden = onStage;
   $("sides").hidden = state.tab === "design";
   $("design-answer").hidden = state.tab !== "design";
-  for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
-  $("slice-views").hidden = !onStage;
+  for (const id of ["contact-choice", "motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
+  for (const id of ["stage-views", "slice-views"]) $(id).hidden = !onStage;
   $("command-name").textContent = "The same in the shell:";
   if (why) return refuse(why);
   $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
   document.body.toggleAttribute("data-refused", false);
   $("command").textContent = commandOf(state);
   if (onStage) {
-    const same = scene => hashOf({...DEFAULTS, tab: "stage", ...scene.state}) === hashOf(state);
+    const {units, f} = state;
+    const same = scene => hashOf({...DEFAULTS, tab: "stage", ...scene.state, units, f}) === hashOf(state);
     $("look").textContent = Object.values(SCENES).find(same)?.look ?? "Balls on one table.";
     return showStage(state);
   }
   play(false);
   stage = null;
-  const question = asked(state), found = answer(question), verdict = verdictOf(found, question);
-  [$("verdict").dataset.good, $("verdict").textContent] = verdict;
+  const question = questionOf(state), found = answer(question), verdict = verdictOf(found, question);
+  say(verdict);
+  $("definition").textContent = verdict[2] ?? "";
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
     const ends = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
-    [$("verdict").dataset.good, $("verdict").textContent, $("starts").textContent] =
-      withStarts(verdict, ends, question.n);
+    const known = withStarts(verdict, ends, question.n);
+    say(known);
+    $("starts").textContent = known[2];
     $("starts").dataset.share = ends.share;
     count = () => {};
   };
@@ -74,10 +87,26 @@ function show(hash, kept = DEFAULTS) {
       return item;
     }));
   }
-  drawBranch(found, question);
-  drawMotion(found, question);
-  drawMultipliers(found);
+  const moves = question.physical && question.amplitude * question.physical.length;
+  $("table-moves").textContent = question.physical
+    ? `The table moves by ${prefixed(moves, "m", 3, axisPower(moves))} up and down.` : "";
+  drawOrbit = () => {
+    drawBranch(found, question);
+    drawMotion(found, question);
+    drawMultipliers(found);
+  };
+  drawOrbit();
 }
+
+// A drawing is as wide as the page: when that changes, it is drawn again.
+let drawOrbit = () => {}, width = document.body.clientWidth;
+addEventListener("resize", () => {
+  if (document.body.clientWidth === width) return;
+  width = document.body.clientWidth;
+  if (document.body.hasAttribute("data-refused")) return;
+  if (current.tab === "stage") drawAround();
+  else drawOrbit();
+});
 
 function setControl(name, value) {
   if (SELECTS.includes(name)) {
@@ -94,8 +123,8 @@ function setControl(name, value) {
     typed.removeAttribute("aria-invalid");
   });
   document.querySelectorAll(`input[type=range][data-name=${name}]`).forEach(slider => {
-    slider.value = name === "w" ? Math.log10(value) : value;
-    slider.setAttribute("aria-valuetext", `${name === "w" ? "ϖ = " : ""}${shown(value)}`);
+    slider.value = LOGARITHMIC.includes(name) ? Math.log10(value) : value;
+    slider.setAttribute("aria-valuetext", shown(value));
   });
 }
 
@@ -117,7 +146,7 @@ document.querySelectorAll("input[type=number]").forEach(typed => typed.addEventL
 }));
 document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {
   const {name} = slider.dataset, value = Number(slider.value);
-  change(name, name === "w" ? nearest(10 ** value, 4) : value);
+  change(name, LOGARITHMIC.includes(name) ? nearest(10 ** value, 4) : value);
 }));
 for (const name of SELECTS) $(name).addEventListener("change", () => change(name, $(name).value));
 document.querySelectorAll("input[type=radio]").forEach(choice => choice.addEventListener("change",
@@ -140,13 +169,17 @@ function check() {
   const parts = [compareRows(orbits, orbitAgain), compareRows(balls, ballAgain)];
   const {worst, where} = parts.reduce((one, other) => other.worst <= one.worst ? one : other);
   const good = worst <= BOUND;
+  const says = `${parts[0].count} orbits and ${parts[1].count} balls of the Python package, computed again here: `
+    + `largest difference ${worst.toExponential(1)} (${where}), ${good ? "within" : "above"} ${BOUND.toExponential(0)}.`;
   $("badge").className = good ? "good" : "bad";
-  $("badge").textContent = `${good ? "Checked" : "WRONG"}: ${parts[0].count} orbits and ${parts[1].count} balls of the `
-    + `Python package, computed again here: largest `
-    + `difference ${worst.toExponential(1)} (${where}), ${good ? "within" : "above"} ${BOUND.toExponential(0)}.`;
+  $("badge").firstElementChild.textContent = `Self-check ${good ? "passed" : "FAILED"}`;
+  $("checked").textContent = says;
+  // Numbers that are wrong are not only said at the end of the page.
+  $("warning").hidden = good;
+  $("warning").textContent = good ? "" : `WRONG: ${says}`;
   $("badge").dataset.worst = String(worst);
 }
 
 window.explorer = Object.freeze({show, parse, answer, check, count: () => count(), scenes: SCENES, stage: () => stage, place});
-show(location.hash);
 check();
+show(location.hash);

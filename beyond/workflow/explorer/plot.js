@@ -40,13 +40,27 @@ function inPlaceOf(predicted, exact, unit) {
 
 const prefixPower = x => x === 0 ? 0
   : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(nearest(x, 4))) / 3)));
+const PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n"};
 function prefixed(x, unit, digits = 4, power = prefixPower(x)) {
   if (!Number.isFinite(x)) return "none";
-  const prefixes = {9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n"};
-  return `${shown(x / 10 ** power, digits)} ${prefixes[power]}${unit}`;
+  return `${shown(x / 10 ** power, digits)} ${PREFIXES[power]}${unit}`;
 }
 
-// ---- Axes, lines and marks.
+// ---- Axes: the name with its unit, and the factor of the numbers.
+// A length or a time whose unit in SI is `scale`. It is in mm or ms as long as those have few digits.
+const axisPower = size => size >= 1e-5 && size < 1 ? -3 : prefixPower(size);
+function physicalAxis(name, scale, unit, largest) {
+  const power = axisPower(scale * largest);
+  return {name: `${name} [${PREFIXES[power]}${unit}]`, factor: scale / 10 ** power};
+}
+// Axes of a height, a time and a phase: in SI units if there are scales, else dimensionless.
+const heightAxis = (name, symbol, scales, largest) =>
+  scales ? physicalAxis(name, scales.length, "m", largest) : {name: `${name} ${symbol}`, factor: 1};
+const phaseAxis = scales =>
+  scales ? {name: "phase of impact [°]", factor: 180 / Math.PI} : {name: "phase of impact φ/π", factor: 1 / Math.PI};
+const amplitudeName = scales => scales ? "acceleration of the table Λ [g]" : "excitation amplitude Λ";
+
+// ---- Lines and marks.
 const SVG = "http://www.w3.org/2000/svg";
 function element(name, attributes, text) {
   const made = document.createElementNS(SVG, name);
@@ -55,12 +69,14 @@ function element(name, attributes, text) {
   return made;
 }
 
+// A drawing whose units are CSS pixels, so that its letters do not shrink with it.
 class Plot {
   constructor(id, [x0, x1], [y0, y1], xName, yName, label, lines = true) {
     this.svg = $(id);
     this.svg.replaceChildren(element("title", {}, label));
-    const [, , width, height] = this.svg.getAttribute("viewBox").split(" ").map(Number);
-    this.box = {left: 60, right: width - 10, top: 10, bottom: height - 38};
+    const {width, height} = this.svg.getBoundingClientRect();
+    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.box = {left: 70, right: width - 12, top: 10, bottom: height - (lines || xName ? 42 : 10)};
     const {left, right, top, bottom} = this.box;
     this.x = v => left + (v - x0) / (x1 - x0) * (right - left);
     this.y = v => bottom - (v - y0) / (y1 - y0) * (bottom - top);
@@ -71,16 +87,16 @@ class Plot {
     const {left, right, top, bottom} = this.box, [x0, x1, y0, y1] = this.limits;
     for (const v of lines ? ticks(x0, x1) : []) {
       this.add("line", {class: "grid", x1: this.x(v), x2: this.x(v), y1: top, y2: bottom});
-      this.add("text", {class: "tick", x: this.x(v), y: bottom + 14, "text-anchor": "middle"}, shown(v, 4));
+      this.add("text", {class: "tick", x: this.x(v), y: bottom + 16, "text-anchor": "middle"}, shown(v, 4));
     }
     for (const v of ticks(y0, y1)) {
       this.add("line", {class: "grid", x1: left, x2: right, y1: this.y(v), y2: this.y(v)});
-      this.add("text", {class: "tick", x: left - 5, y: this.y(v) + 4, "text-anchor": "end"}, shown(v, 4));
+      this.add("text", {class: "tick", x: left - 11, y: this.y(v) + 5, "text-anchor": "end"}, shown(v, 4));
     }
-    this.add("text", {class: "name", x: (left + right) / 2, y: bottom + 32, "text-anchor": "middle"}, xName);
+    this.add("text", {class: "name", x: (left + right) / 2, y: bottom + 36, "text-anchor": "middle"}, xName);
     const middle = (top + bottom) / 2;
-    this.add("text", {class: "name", x: 13, y: middle, "text-anchor": "middle",
-      transform: `rotate(-90 13 ${middle})`}, yName);
+    this.add("text", {class: "name", x: 14, y: middle, "text-anchor": "middle",
+      transform: `rotate(-90 14 ${middle})`}, yName);
   }
   add(name, attributes, text) {
     return this.svg.appendChild(element(name, attributes, text));

@@ -61,21 +61,36 @@ function showStage(state) {
   const performers = ends.flatMap(({name, model}) =>
     Array.from({length: balls}, (_, k) => new Performer(name, model, state, k)));
   const first = Math.max(...performers.map(({offset}) => offset)), begin = first + state.from * TURN;
-  stage = {state, performers, first, begin, now: begin, fastest: 1e-9, draw: null};
+  stage = {state, ends, performers, first, begin, now: begin, fastest: 1e-9, draw: null};
+  drawAround();
+}
+
+// All drawings of the stage as it is, in the size that they have now.
+function drawAround() {
+  const {state, ends, now} = stage, {a} = state;
   const top = Math.max(a, ...ends.map(end => end.top), 0.5), low = -Math.max(a, 0.08 * top);
   stage.draw = drawStage(stage, [low - 0.06 * (top - low), 1.08 * top]);
-  place(begin);
+  place(now);
   drawDiagram(ends, state);
 }
 
+// The scales of the stage in SI units, if it is drawn in them.
+const scalesOfStage = ({units, f}) => units === "physical" ? scalesOf(f) : null;
+
 function drawStage({performers, state}, heights) {
-  const count = performers.length, {a} = state;
-  const scene = new Plot("scene", [0.5, count + 0.5], heights,
-    state.model === "both" ? "restitution on the left, spring-damper on the right" : "", "height Ω²z/g",
+  const count = performers.length, {a} = state, scales = scalesOfStage(state);
+  const size = ([low, high]) => Math.max(Math.abs(low), high);
+  const tall = heightAxis("height", "Ω²z/g", scales, size(heights));
+  const scene = new Plot("scene", [0.5, count + 0.5], heights.map(z => tall.factor * z),
+    state.model === "both" ? "left: restitution, right: spring-damper" : "", tall.name,
     `${many(count, "ball")} on the table`, false);
   const gaps = state.view === "gap", level = gaps ? () => 0 : time => a * Math.sin(time);
-  const trace = new Plot("trace", [-SHOWN, 0], gaps ? gapsOf(state) : heights,
-    "time before now, in periods of the table", gaps ? "gap Ω²δ/g" : "height Ω²z/g",
+  const range = gaps ? gapsOf(state) : heights;
+  const rise = gaps ? heightAxis("gap", "Ω²δ/g", scales, size(range)) : tall;
+  // The time before now counts in periods of the table, or in SI units.
+  const past = scales ? physicalAxis("time before now", TURN * scales.time, "s", SHOWN)
+    : {name: "time before now, in periods of the table", factor: 1};
+  const trace = new Plot("trace", [-SHOWN * past.factor, 0], range.map(z => rise.factor * z), past.name, rise.name,
     `${gaps ? "Gaps between balls and" : "Heights of the balls and of the"} table over the last periods`);
   const table = scene.add("rect", {class: "dot table", x: scene.box.left, height: 4,
     width: scene.box.right - scene.box.left});
@@ -85,15 +100,15 @@ function drawStage({performers, state}, heights) {
   const ground = trace.add("path", {class: "curve table"});
   const curves = performers.map(({name}) => trace.add("path", {class: `curve thin ${name}`}));
   const path = (times, values, now) => times.map((t, k) => Number.isNaN(values[k]) ? ""
-    : `${k && !Number.isNaN(values[k - 1]) ? "L" : "M"}${trace.x((t - now) / TURN).toFixed(1)} `
-      + trace.y(values[k]).toFixed(1)).join("");
+    : `${k && !Number.isNaN(values[k - 1]) ? "L" : "M"}${trace.x(past.factor * (t - now) / TURN).toFixed(1)} `
+      + trace.y(rise.factor * values[k]).toFixed(1)).join("");
   return now => {
     const times = Array.from({length: POINTS + 1}, (_, k) => now - SHOWN * TURN * (1 - k / POINTS));
-    table.setAttribute("y", scene.y(a * Math.sin(now)));
+    table.setAttribute("y", scene.y(tall.factor * a * Math.sin(now)));
     ground.setAttribute("d", path(times, times.map(level), now));
     performers.forEach((ball, k) => {
       const values = ball.path(times);
-      dots[k].setAttribute("cy", scene.y(values.at(-1)) - radius);
+      dots[k].setAttribute("cy", scene.y(tall.factor * values.at(-1)) - radius);
       curves[k].setAttribute("d", path(times, values.map((z, i) =>
         z - (gaps ? a * Math.sin(times[i]) : 0)), now));
     });
@@ -124,25 +139,31 @@ function place(now, loud = false) {
   });
   stage.now = now;
   stage.draw(now);
-  $("stage-time").textContent = `time: ${((now - stage.first) / TURN).toFixed(2)} periods of the table since the first impact`;
+  const passed = (now - stage.first) / TURN, scales = scalesOfStage(state);
+  $("stage-time").textContent = scales
+    ? `time since the first impact: ${(passed / state.f).toPrecision(3)} s, ${passed.toFixed(2)} periods; `
+      + `${shown(SECONDS * state.f * Number(state.pace), 3)} times slower than on the table`
+    : `time: ${passed.toFixed(2)} periods of the table since the first impact`;
 }
 
 // ---- The orbit diagram around the stage's Λ, from the start of the first ball, and its slice there.
 let diagram = 0;
-function drawDiagram(ends, {a, phi, v}) {
+function drawDiagram(ends, state) {
+  const {a, phi, v} = state, scales = scalesOfStage(state), {name: phaseName, factor} = phaseAxis(scales);
   const half = 0.3 * Math.max(a, 0.5), low = Math.max(0, a - half);
-  const plot = new Plot("slice", [low, a + half], [-1, 1], "excitation amplitude Λ", "phase of impact φ/π",
+  const plot = new Plot("slice", [low, a + half], [-factor * Math.PI, factor * Math.PI],
+    amplitudeName(scales), phaseName,
     "Orbit diagram around the amplitude of the stage: phases of the impacts in the long run");
-  plot.line([[a, -1], [a, 1]], "curve table");
+  plot.line([[a, -factor * Math.PI], [a, factor * Math.PI]], "curve table");
   const mark = ++diagram, dots = (phases, lam) =>
-    phases.map(phase => `M${plot.x(lam).toFixed(1)} ${plot.y(phase / Math.PI).toFixed(1)}h0`).join("");
+    phases.map(phase => `M${plot.x(lam).toFixed(1)} ${plot.y(factor * phase).toFixed(1)}h0`).join("");
   for (const {name, impacts, kind, seen} of ends) {
     const phases = kind === "stays" ? [] : seen.slice(-(impacts || 300));
     plot.add("path", {class: `points slice ${name}`, d: dots(phases, a)});
   }
   const last = new Map(stage.performers.map(ball =>
     [ball, plot.add("circle", {class: `struck ${ball.name}`, r: 5, cx: plot.x(a), cy: -20})]));
-  stage.lights = (ball, {at}) => last.get(ball).setAttribute("cy", plot.y(reduced(at) / Math.PI));
+  stage.lights = (ball, {at}) => last.get(ball).setAttribute("cy", plot.y(factor * reduced(at)));
   $("slice-says").textContent = `Small dots: impacts of the first ball from number ${LEFT_OUT} on, at other `
     + "amplitudes. On the line: its impacts at this one. Rings: the last impact of each ball.";
   let k = 0;

@@ -6,9 +6,10 @@ const $ = id => document.getElementById(id);
 // The stage's: phase and velocity of the first impact, number of balls, by how much each of them
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
-  tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
-  m: 20, f: 50, acc: 0.8, k: 1e7, t: 1,
+  tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
+  m: 20, f: 20, acc: 0.8, k: 1e5, t: 1,
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
+  units: "physical",
 };
 const RANGES = {
   r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
@@ -22,8 +23,9 @@ const REFERENCES = Object.fromEntries(["references", "quantities", "scenes"].map
   name => [name, JSON.parse($(name).textContent)]));
 const {quantities: QUANTITIES, scenes: SCENES} = REFERENCES;
 const CHOICES = {
-  tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
+  tab: ["design", "orbit", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
   model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
+  units: ["physical", "dimensionless"],
 };
 const GRAVITY = 9.80665;
 
@@ -33,10 +35,13 @@ const modelsOf = ({model, r, w}) => Object.fromEntries(
     .filter(([name]) => model === "both" || model === name));
 
 // The state of a hash, and what in it was no value: that has its default. Names that are not in the
-// hash have the values of `kept`. A scene is a state of the stage by its name.
+// hash have the values of `kept`. A scene is a state of the stage by its name. A hash with values and
+// without a tab is a dimensionless case.
 function parse(hash, kept = DEFAULTS) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
-  const state = {...kept, ...(scene && {tab: "stage", ...scene.state})}, refused = [];
+  const state = {...kept, ...scene?.state}, refused = [];
+  if (scene) state.tab = "stage";
+  else if (![...given].every(([name]) => name === "scene")) state.tab = "orbit";
   const tab = given.get("tab") ?? state.tab;
   if (given.has("scene") && !scene)
     refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
@@ -69,10 +74,16 @@ function onTab(state, tab) {
   return {...state, tab};
 }
 
+// The units of time, 1/Ω in s, and of length, g/Ω² in m, of a table of f Hz.
+function scalesOf(f) {
+  const time = 1 / (2 * Math.PI * f);
+  return {time, length: GRAVITY * time ** 2};
+}
+
 // The contact of the physical tab in SI units, and its dimensionless groups.
 function caseOf(state) {
-  const {release, r, m, k, f} = state;
-  const mass = m / 1000, time = 1 / (2 * Math.PI * f), length = GRAVITY * time ** 2;
+  const {release, r, m, k, f} = state, {time, length} = scalesOf(f);
+  const mass = m / 1000;
   const contact = contactOf(r, frequencyRatioOf(state), release);
   return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact};
 }
@@ -100,16 +111,16 @@ function impossible(state) {
 }
 
 const TABS = {
-  orbit: ({t}) => ["r", "w", "a", "n", "release", "side", ...(t === DEFAULTS.t ? [] : ["t"])],
+  orbit: ({t}) => ["tab", "r", "w", "a", "n", "release", "side", ...(t === DEFAULTS.t ? [] : ["t"])],
   design: ({t}) => ["tab", "m", "f", "acc", "k", "r", "n", "release", ...(t === DEFAULTS.t ? [] : ["t"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
-    "v", "balls", "dv", "dphi", "from", "pace", "view"],
+    "v", "balls", "dv", "dphi", "from", "pace", "view", "units", "f"],
 };
 const hashOf = state => "#" + TABS[state.tab](state).map(
   name => `${name}=${encodeURIComponent(state[name])}`).join("&");
 
-// What the model is asked: of the physical tab, its dimensionless groups.
-function asked(state) {
+// The arguments of the models: of the physical tab, its dimensionless groups.
+function questionOf(state) {
   const {r, n, release, side} = state;
   // The tolerance is given in percent.
   if (state.tab === "orbit")

@@ -1,0 +1,154 @@
+"""The explorer: one file with its scenes, and what a browser shows of it.
+
+Another page, made here, shows the explorer in frames of the size of a desk's and a telephone's
+screen and writes down what the browser made of it.
+"""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.datasets import read
+from studies.explorer import BOUND, page
+
+BEYOND = Path(__file__).resolve().parents[1]
+SCENES = json.loads((BEYOND / "workflow/explorer/scenes.json").read_text(encoding="utf-8"))
+BROWSERS = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
+BROWSER = next(filter(None, BROWSERS), None)
+
+SCREENS = {"desk": (1280, 900), "telephone": (390, 844)}
+"""Width and height in CSS pixels."""
+
+PICTURES = {"": "motion", "#r=0.65&w=6&a=1": "motion", "#scene=contact": "scene"}
+"""The first picture by the address at which the page is opened."""
+
+SMALLEST = 12
+"""The smallest letters in a drawing, in CSS pixels: those of the tables are not smaller."""
+
+OBSERVER = """<!doctype html>
+<meta charset="utf-8">
+FRAMES
+<pre id="seen"></pre>
+<script>
+function look(frame) {
+  const page = frame.contentDocument, view = frame.contentWindow, root = page.documentElement;
+  const drawings = [...page.querySelectorAll("svg[id]")].filter(svg => svg.clientWidth);
+  const letters = drawings.flatMap(svg => [...svg.querySelectorAll("text")]);
+  const inside = text => {
+    const [one, all] = [text, text.ownerSVGElement].map(part => part.getBoundingClientRect());
+    return one.left >= all.left - 1 && one.right <= all.right + 1
+      && one.top >= all.top - 1 && one.bottom <= all.bottom + 1;
+  };
+  const picture = page.getElementById(frame.dataset.picture);
+  return {
+    top: picture.getBoundingClientRect().top,
+    curves: picture.querySelectorAll("path, circle").length,
+    axes: [...picture.querySelectorAll(".name")].map(text => text.textContent),
+    scrolled: view.scrollY, wide: root.scrollWidth,
+    letters: Math.min(...letters.map(text => parseFloat(view.getComputedStyle(text).fontSize)
+      * text.ownerSVGElement.getScreenCTM().a)),
+    outside: letters.map(text => inside(text) ? "" : text.textContent).filter(Boolean),
+    badge: page.getElementById("badge").className,
+    worst: Number(page.getElementById("badge").dataset.worst),
+    warned: !page.getElementById("warning").hidden,
+    tab: page.querySelector("[role=tab][aria-selected=true]").textContent,
+  };
+}
+addEventListener("load", () => {
+  const seen = {};
+  for (const frame of document.querySelectorAll("iframe")) seen[frame.id] = look(frame);
+  document.getElementById("seen").textContent = JSON.stringify(seen);
+});
+</script>
+"""
+
+
+@pytest.fixture(scope="module")
+def made():
+    """The page with the reference orbits of the repository."""
+    return page(read(BEYOND / "figures/explorer.nc"))
+
+
+@pytest.fixture(scope="module")
+def seen(made, tmp_path_factory):
+    """What one run of the browser shows, by the screen and the address."""
+    if BROWSER is None:
+        pytest.skip("no browser")
+    folder = tmp_path_factory.mktemp("explorer")
+    (folder / "right.html").write_text(made, encoding="utf-8")
+    wrong = made.replace('"max_height", "trace"', '"trace", "max_height"', 1)
+    (folder / "wrong.html").write_text(wrong, encoding="utf-8")
+    frames = [
+        f'<iframe id="{screen} {address}" data-picture="{picture}" width="{width}" '
+        f'height="{height}" style="border: 0" src="right.html{html.escape(address)}"></iframe>'
+        for screen, (width, height) in SCREENS.items()
+        for address, picture in PICTURES.items()
+    ]
+    frames.append('<iframe id="wrong" data-picture="motion" src="wrong.html"></iframe>')
+    observer = folder / "observer.html"
+    observer.write_text(OBSERVER.replace("FRAMES", "\n".join(frames)), encoding="utf-8")
+    command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
+    command += ["--allow-file-access-from-files", f"--user-data-dir={folder / 'profile'}"]
+    command += ["--virtual-time-budget=1000", "--dump-dom", observer.as_uri()]
+    run = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=100)
+    found = re.search(r'<pre id="seen">(\{.*)</pre>', run.stdout, re.DOTALL)
+    assert found, run.stderr
+    return json.loads(html.unescape(found[1]))
+
+
+CASES = [f"{screen} {address}" for screen in SCREENS for address in PICTURES]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_picture_comes_first_and_its_letters_are_read(seen, case):
+    found = seen[case]
+    width, height = SCREENS[case.split()[0]]
+    assert found["curves"] >= 2
+    assert found["scrolled"] == 0
+    assert 0 < found["top"] < height / 3
+    assert found["wide"] <= width
+    assert found["letters"] >= SMALLEST
+    assert found["outside"] == []
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+def test_the_page_opens_in_units_of_the_laboratory(seen, screen):
+    opened = seen[f"{screen} "]
+    assert opened["tab"] == "Physical units"
+    assert opened["axes"] == ["time [ms]", "height [mm]"]
+    # An address without a tab is a dimensionless case, as it always was.
+    cited = seen[f"{screen} #r=0.65&w=6&a=1"]
+    assert cited["tab"] == "Dimensionless"
+    assert cited["axes"] == ["time τ = Ωt", "height Ω²z/g"]
+
+
+def test_the_self_check_passes(seen):
+    for case in CASES:
+        assert seen[case]["badge"] == "good"
+        assert seen[case]["worst"] <= BOUND
+        assert not seen[case]["warned"]
+
+
+def test_a_wrong_number_is_reported_at_the_top(seen):
+    assert seen["wrong"]["badge"] == "bad"
+    assert seen["wrong"]["warned"]
+
+
+def test_the_page_is_one_file_without_network(made):
+    assert "default-src 'none'; script-src 'sha256-" in made
+    assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", made)
+    assert not re.search(r"<link\b|<img\b|<script[^>]*\bsrc=|@import|url\(", made)
+    assert set(re.findall(r'\bhref="([^"]*)"', made)) == {f"#scene={name}" for name in SCENES}
+
+
+def test_the_scenes_of_the_lesson_are_on_the_page(made):
+    lesson = (BEYOND / "docs/first-hour.md").read_text(encoding="utf-8")
+    linked = set(re.findall(r"explorer\.html#scene=(\w+)", lesson))
+    assert linked == set(SCENES)
+    stored = re.search(r'id="scenes">\s*(\{.*?)\s*</script>', made, re.DOTALL)
+    assert json.loads(stored[1]) == SCENES

@@ -76,7 +76,7 @@ class Plot {
     this.svg.replaceChildren(element("title", {}, label));
     const {width, height} = this.svg.getBoundingClientRect();
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.box = {left: 70, right: width - 12, top: 10, bottom: height - (lines || xName ? 42 : 10)};
+    this.box = {left: 80, right: width - 12, top: 10, bottom: height - (lines || xName ? 42 : 10)};
     const {left, right, top, bottom} = this.box;
     this.x = v => left + (v - x0) / (x1 - x0) * (right - left);
     this.y = v => bottom - (v - y0) / (y1 - y0) * (bottom - top);

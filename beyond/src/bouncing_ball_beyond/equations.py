@@ -187,7 +187,7 @@ class OrbitEquations:
         """Derivatives of each next (τ, u) by τ and u of an impact, shape (rows, k, 2, 2)."""
         by_impact = linear.derivatives[..., :2]
         by_others = linear.derivatives[..., 2 : self.unknowns + 2]
-        return -np.linalg.solve(by_others, by_impact)[..., -2:, :]
+        return -solved_or_nan(by_others, by_impact)[..., -2:, :]
 
     def trace_and_determinant(self, linear: Linear) -> tuple[NDArray, NDArray]:
         """Those of the derivative of the return map, each of the shape (rows,).
@@ -224,7 +224,7 @@ class OrbitEquations:
         return Flights(leaves, impact.gap, impact.speed, time, amplitude)
 
     def clearance(self, z) -> NDArray:
-        """How far the ball is above the table where a flight turns back from it: the least of all."""
+        """How far balls are above the table where flights turn back from it: the least of all."""
         flights = self.ends(z)
         return turns_back(
             lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight
@@ -410,6 +410,17 @@ def dense(derivatives: NDArray) -> NDArray:
     return matrix
 
 
+def solved_or_nan(matrix, values) -> NDArray:
+    """Solutions of linear equations, NaN where a matrix is singular."""
+    try:
+        return np.linalg.solve(matrix, values)
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        return np.linalg.solve(
+            np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix), values
+        )
+
+
 def solve_bordered(derivatives, right, border, border_right) -> NDArray:
     """Solve the linear equations of the legs together with p further ones.
 
@@ -429,13 +440,14 @@ def solve_bordered(derivatives, right, border, border_right) -> NDArray:
     Returns
     -------
     ndarray, shape (rows, N, m)
+        NaN for singular equations.
     """
     rows, k, q, columns = derivatives.shape
     m = right.shape[-1]
     if k <= DENSE:
         matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)
         values = np.concatenate([right.reshape(rows, k * q, m), border_right], axis=1)
-        return np.linalg.solve(matrix, values)
+        return solved_or_nan(matrix, values)
     p = columns - q - 2
     pairs = k // 2
     first = derivatives[:, 0 : 2 * pairs : 2]
@@ -452,7 +464,7 @@ def solve_bordered(derivatives, right, border, border_right) -> NDArray:
     others[:, :, q:, columns:] = right[:, 1 : 2 * pairs : 2]
     orthogonal, triangle = np.linalg.qr(between, mode="complete")
     others = orthogonal.swapaxes(-1, -2) @ others
-    eliminated = np.linalg.solve(triangle[..., :q, :], others[..., :q, :])
+    eliminated = solved_or_nan(triangle[..., :q, :], others[..., :q, :])
     legs = np.concatenate([others[..., q:, :columns], derivatives[:, 2 * pairs :]], axis=1)
     legs_right = np.concatenate([others[..., q:, columns:], right[:, 2 * pairs :]], axis=1)
     # What the impacts between the pairs add to the border.
@@ -526,7 +538,7 @@ def newton(
         linear = equations.linear(z)
         right = np.zeros((*linear.legs.shape, 2))
         right[..., 0] = -linear.legs
-        solution = _solve(linear, right, border, border_right)
+        solution = solve_bordered(linear.derivatives, right, border, border_right)
         step = solution[..., 0]
         z = z + step
         size = np.abs(z).max(axis=1)
@@ -539,19 +551,3 @@ def newton(
     # Far away, where times have no digits left, steps are small as well.
     found &= defect < 1e-7
     return Solution(z, found, solution[..., 1], linear)
-
-
-def _solve(linear: Linear, right, border, border_right) -> NDArray:
-    """`solve_bordered`, with NaN for rows whose matrix is singular or not finite."""
-    try:
-        return solve_bordered(linear.derivatives, right, border, border_right)
-    except np.linalg.LinAlgError:
-        if len(right) == 1:
-            return np.full((1, border.shape[-1], right.shape[-1]), np.nan)
-    # Bisect the rows to isolate those that are singular.
-    half = len(right) // 2
-    parts = []
-    for part in (slice(half), slice(half, None)):
-        some = Linear(*(each[part] for each in linear))
-        parts.append(_solve(some, right[part], border[part], border_right[part]))
-    return np.concatenate(parts)

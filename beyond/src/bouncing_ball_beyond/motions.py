@@ -734,8 +734,9 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
     value, start = np.mgrid[: grid.size, :starts].reshape(2, -1)
     phase = TURN * (EVEN[0] * (start + 1) % 1)
-    speed = fastest(ball, amplitude[value]) * (EVEN[1] * (start + 1) % 1)
-    balls = Balls(some_of(ball, value), amplitude[value], 0 * phase, phase, speed)
+    several = some_of(ball, value)
+    speed = fastest(several, amplitude[value]) * (EVEN[1] * (start + 1) % 1)
+    balls = Balls(several, amplitude[value], 0 * phase, phase, speed)
     passes = [ends_of(balls, impacts)]
     for step in (1, -1):
         beside = np.clip(value + step, 0, grid.size - 1) * starts + start

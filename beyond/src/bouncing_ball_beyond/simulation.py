@@ -465,7 +465,8 @@ def grid_of(ball, **values):
     flat = [each.values.ravel() for each in every]
     if rows:
         ball = ball.at(**dict(zip(rows, flat[len(values) :], strict=True)))
-    return every[0], ball, flat[: len(values)]
+    grid = every[0].assign_coords(xr.merge(each.coords for each in arrays).coords)
+    return grid, ball, flat[: len(values)]
 
 
 def first_impacts(ball, amplitude, phase, velocity, relative_velocity):

@@ -1,0 +1,271 @@
+"""The motions on which balls end, by orbits, finite differences and balls that are followed on."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import bouncing_ball_beyond as bb
+from bouncing_ball_beyond import motions, simulation
+from bouncing_ball_beyond.one_ball import TURN
+
+
+def test_the_kinds_of_motions():
+    ball = bb.Rigid(0.5)
+    found = bb.motion_of(ball, amplitude=[0.5, 1.2, 1.6, 2.5])
+    assert found.kind.values.tolist() == ["permanent contact", "periodic", "periodic", "locked"]
+    assert found.impacts.values[:3].tolist() == [0, 1, 2]
+    assert found.periods.values[:3].tolist() == [1, 1, 2]
+    assert found.in_words[1] == f"periodic, found within {int(found.followed[1])} impacts"
+    assert (found.reason == "").all()
+
+
+def test_two_impacts_in_two_periods_between_the_first_two_doublings():
+    """At ϖ = 20 and r = 0.65 the 1-T orbit doubles its period at 1.23 and loses it before 1.35."""
+    ball = bb.SpringDamper(20.0, restitution=0.65)
+    found = bb.motion_of(ball, amplitude=1.25)
+    assert (found.kind, found.impacts, found.periods) == ("periodic", 2, 2)
+    assert bb.motion_of(ball, amplitude=1.2, phase=0.8).impacts == 1
+    orbit = bb.orbit_of_motion(ball, amplitude=1.25)
+    assert orbit.stable and orbit.admissible
+    assert orbit.defect < 1e-12
+    exponent = np.log(np.abs(orbit.multipliers).max()) / 2
+    assert abs(found.lyapunov_exponent - exponent) < 1e-6
+    end = np.abs(np.angle(np.exp(1j * (orbit.phase - float(found.end_phase)))))
+    assert end.min() < 1e-6
+
+
+@pytest.mark.parametrize(
+    "ball",
+    [
+        bb.Rigid(0.85),
+        bb.SpringDamper(8.0, restitution=0.7),
+        bb.SpringDamper(8.0, restitution=0.7, release="force"),
+        bb.Corrected(bb.SpringDamper(8.0, restitution=0.7)),
+    ],
+)
+def test_exponents_of_stable_orbits_are_those_of_their_multipliers(ball):
+    """The exponent is ln|μ|/m, and the sum of both ln(det)/m."""
+    orbit = bb.orbit(ball, amplitude=1.0)
+    start = {"phase": orbit.phase + 0.01, "relative_velocity": orbit.relative_impact_velocity}
+    found = bb.lyapunov(ball, amplitude=1.0, **start)
+    multipliers = np.abs(orbit.multipliers)
+    assert found.kind == "periodic"
+    assert abs(found.lyapunov_exponent - np.log(multipliers.max())) < 1e-6
+    assert abs(found.exponent_sum - np.log(multipliers.prod())) < 1e-6
+    assert found.lyapunov_error == 0
+
+
+def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
+    """The growth of a distance of 10⁻⁹ over 12 impacts, averaged over a chaotic motion."""
+    ball = bb.SpringDamper(20.0, restitution=0.85)
+    found = bb.lyapunov(ball, amplitude=2.0, impacts=20_000)
+    assert found.kind == "chaotic"
+    _, balls = simulation.first_impacts(ball, 2.0, 0.0, -3.0, None)
+    record, _, _ = simulation.follow(balls, 20_000)
+    tau, u = record[1000::4, 1, 0], record[1000::4, 2, 0]
+    many = np.full(tau.size, 2.0)
+    rates = []
+    for impacts in (4, 12):
+        ends = []
+        for shift in (0.0, 1e-9):
+            row = simulation.Balls(ball, many, 0 * tau, tau + 0.8 * shift, u + 0.6 * shift)
+            ends.append(simulation.follow(row, impacts)[2])
+        angle = TURN * (ends[1].turns - ends[0].turns) + (ends[1].phase - ends[0].phase)
+        distance = np.hypot(angle, ends[1].speed - ends[0].speed)
+        rates.append([np.log(distance).mean(), (TURN * ends[0].turns + ends[0].phase - tau).mean()])
+    # The direction of a deviation settles in the first impacts.
+    growth, time = np.diff(rates, axis=0)[0]
+    assert abs(TURN * growth / time / found.lyapunov_exponent - 1) < 0.05
+
+
+def test_the_error_of_an_exponent_covers_its_scatter():
+    """Thirty pieces of one chaotic motion: their exponents scatter by their errors."""
+    ball = bb.SpringDamper(20.0, restitution=0.85)
+    whole = bb.motion_of(ball, amplitude=2.0, impacts=100_000)
+    start = xr.DataArray(np.linspace(0.1, 3, 30), dims="start")
+    pieces = bb.motion_of(ball, amplitude=2.0, phase=start, impacts=2000)
+    chaotic = pieces.kind == "chaotic"
+    assert chaotic.sum() > 20
+    away = (pieces.lyapunov_exponent - whole.lyapunov_exponent) / pieces.lyapunov_error
+    assert 0.3 < float(np.sqrt((away**2).where(chaotic).mean())) < 2.0
+    assert whole.lyapunov_error < 0.3 * pieces.lyapunov_error.where(chaotic).mean()
+
+
+def test_exponents_of_sections_with_a_known_scatter():
+    """Independent growths have the standard error σ/√n; pairs of equal ones √2 times it."""
+    rng = np.random.default_rng(5)
+    growth = 1.0 + 0.3 * rng.standard_normal(1024)
+    ones = np.ones(1024)
+    rate, scatter, error = motions.exponent(growth, ones, -ones)
+    assert abs(scatter - 0.3 / np.sqrt(768)) < 0.05 * scatter
+    assert abs(rate - 1) < 4 * scatter
+    twice = np.repeat(growth[:512], 2)
+    _, scatter, error = motions.exponent(twice, ones, -ones)
+    assert error > 1.2 * scatter
+    assert np.isnan(motions.exponent(growth, ones, -1e-3 * ones)[2])
+
+
+@pytest.mark.parametrize(
+    "ball",
+    [
+        bb.Rigid(0.6),
+        bb.Rigid(lambda u: 0.8 - 0.05 * u),
+        bb.SpringDamper(7.0, restitution=0.6),
+        bb.SpringDamper(7.0, restitution=0.6, release="force"),
+        bb.SpringDamper(1.01, damping_ratio=0.02),
+        bb.Corrected(bb.SpringDamper(7.0, restitution=0.6)),
+        bb.tsuji(stiffness=500.0, damping=0.3),
+    ],
+)
+def test_tangent_maps_are_differences_of_simulated_impacts(ball):
+    _, balls = simulation.first_impacts(ball, [1.2, 2.5], 1.0, -3.0, None)
+    record, _, _ = simulation.follow(balls, 4)
+    maps = motions.tangent_maps(balls, record, motions.lift_offs(balls, record))
+    step = 1e-6
+    for j, (angle, speed) in enumerate(((step, 0.0), (0.0, step))):
+        for i in range(4):
+            ends = []
+            for sign in (1, -1):
+                state = record[i, 1] + sign * angle, record[i, 2] + sign * speed
+                start = simulation.Balls(ball, balls.amplitude, np.zeros(2), *state)
+                after = simulation.follow(start, 1)[2]
+                ends.append(np.array([TURN * after.turns + after.phase, after.speed]))
+            slope = (ends[0] - ends[1]) / (2 * step)
+            assert np.abs(slope - maps[:, j, i]).max() < 1e-6 * (1 + np.abs(slope).max())
+
+
+def test_products_of_maps():
+    rng = np.random.default_rng(1)
+    maps = rng.standard_normal((2, 2, 13, 3))
+    products, logarithms = motions.running_products(maps)
+    for ball in range(3):
+        whole = np.eye(2)
+        for i in range(13):
+            whole = maps[:, :, i, ball] @ whole
+            scaled = products[:, :, i, ball] * np.exp(logarithms[i, ball])
+            assert np.abs(scaled - whole).max() < 1e-12 * np.abs(whole).max()
+        assert np.allclose(motions.product(maps)[..., ball], whole, rtol=1e-12, atol=1e-12)
+
+
+def test_a_locked_ball_repeats_from_lift_off_to_lift_off():
+    """Followed on, the ball sticks again after as many impacts and periods as were found."""
+    ball = bb.Rigid(0.6)
+    found = bb.motion_of(ball, amplitude=3.0)
+    assert (found.kind, found.lyapunov_exponent) == ("locked", -np.inf)
+    impacts = bb.simulate(ball, amplitude=3.0, impacts=int(found.followed) + 200)
+    (rests,) = (impacts.contact_duration.values > 0).nonzero()
+    assert np.diff(rests)[1:].tolist() == [int(found.impacts)] * (rests.size - 2)
+    time = (impacts.time + impacts.contact_duration).values[rests]
+    assert np.abs(np.diff(time)[1:] - TURN * int(found.periods)).max() < 1e-9
+
+
+def test_a_compliant_contact_that_lasts_longer_than_two_free_ones_is_locked():
+    ball = bb.SpringDamper(2.0, restitution=0.85)
+    last = max(
+        bb.orbits(ball, impacts=1, periods=1, amplitude=0.9), key=lambda o: o.contact_duration
+    )
+    start = {"phase": last.phase, "velocity": last.impact_velocity}
+    found = bb.motion_of(ball, amplitude=0.9, **start)
+    assert (found.kind, found.periods, found.impacts) == ("locked", 1, 1)
+
+
+def test_balls_with_a_contact_and_with_instants_lock_after_other_periods():
+    start = {"amplitude": 3.0, "phase": -1.5, "velocity": 0.0}
+    contact = bb.motion_of(bb.SpringDamper(80.0, restitution=0.6), **start)
+    instants = bb.motion_of(bb.Rigid(0.6), **start)
+    assert (contact.periods, instants.periods) == (8, 13)
+
+
+def test_what_is_not_known_has_a_reason():
+    slow = bb.motion_of(bb.Rigid(0.9999), amplitude=1.0, phase=1.1, impacts=200)
+    assert slow.kind == "undecided"
+    assert slow.reason.item() in (motions.MARGINAL, motions.NO_RECURRENCE)
+    lost = bb.motion_of(bb.Rigid(0.5), amplitude=5.0)
+    assert (lost.kind, lost.reason) == ("locked", motions.ROUNDING)
+    assert lost.impacts == 0
+
+
+def test_chaos_that_ends_is_a_transient():
+    """A ball that sticks once in some thousand impacts looks chaotic in two thousand."""
+    found = bb.lyapunov(bb.Rigid(0.7), amplitude=1.85, phase=1.0, impacts=400)
+    if found.kind == "undecided":
+        assert found.reason == motions.TRANSIENT
+        assert np.isnan(found.lyapunov_exponent)
+    above = bb.lyapunov(bb.Rigid(0.7), amplitude=1.345, phase=1.0)
+    assert above.kind == "chaotic"
+    assert 0.13 < above.lyapunov_exponent < 0.16
+    assert above.lyapunov_error < 0.02
+
+
+@pytest.mark.parametrize("ball", [bb.Rigid(0.65), bb.SpringDamper(10.0, restitution=0.65)])
+def test_basins_are_the_motions_of_balls_one_by_one(ball):
+    found = bb.basins(ball, amplitude=1.1, starts=7)
+    assert abs(float(found.share.sum()) - 1) < 1e-12
+    for i in range(7):
+        for j in range(0, 7, 3):
+            u, tau = float(found.speed[i]), float(found.phase[j])
+            alone = bb.motion_of(ball, amplitude=1.1, phase=tau, relative_velocity=-u)
+            motion = found.isel(motion=int(found.destination[i, j]))
+            assert (motion.kind, motion.impacts) == (alone.kind, alone.impacts)
+    counts = np.bincount(found.destination.values.ravel()) / 49
+    assert np.allclose(counts, found.share)
+
+
+def test_no_ball_leaves_the_speeds_of_a_basin():
+    """Above the fastest speed of :func:`fastest` every impact slows a ball."""
+    fast = motions.fastest(bb.Rigid(0.5), 2.0)
+    assert fast == 6.0
+    found = bb.simulate(bb.Rigid(0.5), amplitude=2.0, velocity=-5.0, phase=0.1, impacts=2000)
+    assert found.bounce_velocity.max() < fast
+
+
+def test_an_orbit_diagram_doubles_where_the_orbit_does():
+    ball = bb.Rigid(0.5)
+    doubling = 1.526824
+    found = bb.orbit_diagram(ball, amplitude=doubling + np.array([-0.05, 0.05]), impacts=1000)
+    assert found.impact_phase.dims == ("amplitude", "start", "impact")
+    one, two = (found.isel(amplitude=i) for i in (0, 1))
+    orbit = bb.orbit(ball, amplitude=doubling - 0.05)
+    on_orbit = (one.impacts == 1) & (one.periods == 1)
+    assert on_orbit.any()
+    assert np.abs(one.impact_phase.where(on_orbit) - orbit.phase).max() < 1e-6
+    assert (two.impacts == 2).any() and not ((two.impacts == 1) & (two.periods == 1)).any()
+    # Balls that start from the ends at the other amplitude follow the orbit across the doubling.
+    assert (two.impacts.isel(start=slice(6, 12)) == 2).sum() >= (one.impacts[:6] == 1).sum()
+    along = bb.orbit_diagram(bb.Rigid([0.5, 0.6]), amplitude=1.2, starts=2, samples=3)
+    assert along.impact_speed.dims == ("restitution", "start", "impact")
+
+
+def test_the_orbit_of_a_motion_is_that_of_newtons_method():
+    ball = bb.Rigid(0.5)
+    two = bb.orbit_of_motion(ball, amplitude=1.6)
+    assert (two.impacts, two.periods) == (2, 2)
+    assert np.abs(np.sort(two.phase) - [0.403915, 1.194355]).max() < 1e-5
+    branch = bb.follow(bb.orbit(ball, amplitude=1.4), to=1.6)
+    doubled = bb.follow(branch.first("period doubling"), to=1.6)
+    last = doubled.orbits[-1]
+    assert np.abs(np.sort(last.phase) - np.sort(two.phase)).max() < 1e-9
+    with pytest.raises(bb.OrbitNotFound, match="permanent contact, found within"):
+        bb.orbit_of_motion(ball, amplitude=0.5)
+    with pytest.raises(bb.OrbitNotFound, match="rests on the table"):
+        bb.orbit_of_motion(ball, amplitude=2.5)
+    with pytest.raises(ValueError, match="single ball"):
+        bb.orbit_of_motion(ball, amplitude=[1.0, 1.1])
+
+
+def test_a_summary_of_many_impacts_needs_no_history():
+    """The greatest number of impacts that are kept at a time does not grow with those followed."""
+    most = []
+    follow = motions.follow
+
+    def watched(balls, impacts):
+        most.append(impacts * balls.phase.size)
+        return follow(balls, impacts)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(motions, "follow", watched)
+        found = bb.motion_of(
+            bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=200_000
+        )
+    assert found.followed >= 200_000
+    assert max(most) <= motions.ROWS

@@ -1,0 +1,403 @@
+"""Simulated balls, by integrators with events, closed forms and other ways of following them."""
+
+import importlib.util
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import bouncing_ball_beyond as bb
+from bouncing_ball_beyond import one_ball, simulation
+from bouncing_ball_beyond.one_ball import TURN
+
+
+def first_crossing(function, times):
+    """The first zero at which a function of the time falls through zero, by samples and a bracket.
+    """
+    values = function(times)
+    first = np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0))[0]
+    return brentq(function, times[first], times[first + 1], xtol=1e-15, rtol=1e-15)
+
+
+def flight(amplitude, leaves, gap, w, kappa=0.0):
+    """The next impact after a release, from samples every 10⁻³ of δ, or of δ + κδ′ below the level.
+    """
+
+    def position(t):
+        table = amplitude * (np.sin(leaves) - np.sin(leaves + t))
+        return gap + (w + amplitude * np.cos(leaves)) * t - t * t / 2 + table
+
+    def rate(t):
+        return w + amplitude * (np.cos(leaves) - np.cos(leaves + t)) - t
+
+    def free(t):
+        level = position(t)
+        return np.where(level < 0, level + kappa * rate(t), 1.0) if kappa else level
+
+    # No flight is longer than that of a ball that leaves and lands at the greatest distance.
+    longest = 2 * (abs(w + amplitude * np.cos(leaves)) + np.sqrt(2 * amplitude) + 1)
+    time = first_crossing(free, np.arange(1e-4, longest, 1e-3))
+    return leaves + time, -rate(time)
+
+
+def contact(amplitude, tau, u, acceleration, kappa=0.0):
+    """The end of a contact with a given acceleration of (gap, rate), by an integrator with an
+    event.
+    """
+
+    def motion(t, y):
+        return [y[1], acceleration(y[0], y[1]) - 1 + amplitude * np.sin(t)]
+
+    def release(t, y):
+        return y[0] + kappa * y[1] if t > tau + 1e-9 else -1.0
+
+    release.terminal = True
+    release.direction = 1
+    start = [kappa * min(u, 0.0), -u]
+    found = solve_ivp(
+        motion, (tau, tau + 30), start, "DOP853", events=release, rtol=1e-12, atol=1e-14
+    )
+    return found.t_events[0][0], found.y_events[0][0][1]
+
+
+def oscillator(ball):
+    """The acceleration by a spring and a damper as a function of the gap and its rate."""
+    stiffness = ball.frequency_ratio**2
+    loss = 2 * float(ball.zeta) * ball.frequency_ratio
+    return lambda gap, rate: -loss * rate - stiffness * gap
+
+
+def reference(ball, amplitude, tau, u, impacts):
+    """The times of impacts and their closing speeds, without a formula of the package."""
+    states = [(tau, u)]
+    for _ in range(impacts - 1):
+        leaves, gap, w = tau, 0.0, None
+        if isinstance(ball, bb.Rigid):
+            w = ball.restitution * u
+        else:
+            leaves, w = contact(amplitude, tau, u, oscillator(ball), float(ball.kappa))
+            gap = -ball.kappa * w
+        tau, u = flight(amplitude, leaves, gap, w, 0.0 if ball.kappa == 0 else float(ball.kappa))
+        states.append((tau, u))
+    return np.array(states).T
+
+
+BALLS = {
+    "restitution": bb.Rigid(0.65),
+    "displacement release": bb.SpringDamper(20.0, restitution=0.65),
+    "force release": bb.SpringDamper(20.0, restitution=0.65, release="force"),
+}
+
+
+@pytest.mark.parametrize("name", BALLS)
+def test_regular_motions_are_those_of_an_integrator_over_many_impacts(name):
+    ball = BALLS[name]
+    impacts = 1000
+    found = bb.simulate(ball, amplitude=1.2, phase=0.5, velocity=-3.0, impacts=impacts)
+    tau, u = reference(ball, 1.2, 0.5, 3.0 + 1.2 * np.cos(0.5), impacts)
+    assert np.abs(found.time - (tau - 0.5)).max() < 1e-9
+    assert np.abs(found.relative_impact_velocity + u).max() < 1e-10
+
+
+@pytest.mark.parametrize("ball", [*BALLS.values(), bb.SpringDamper(3.0, restitution=0.9)])
+def test_chaotic_motions_are_those_of_an_integrator_as_long_as_digits_last(ball):
+    """They part from it no faster than from a ball that starts with a speed changed by 10⁻¹¹."""
+    start = {"amplitude": 3.0, "phase": 0.5, "impacts": 14}
+    found, beside = (bb.simulate(ball, velocity=-3.0 + d, **start).time for d in (0.0, 1e-11))
+    tau, _ = reference(ball, 3.0, 0.5, 3.0 + 3.0 * np.cos(0.5), 14)
+    parted = np.maximum.accumulate(np.abs(found - beside).values)
+    assert parted[-1] > 1e-9
+    assert (np.abs(found.values - (tau - 0.5)) < 1e-10 + 10 * parted).all()
+
+
+def test_the_corrected_model_and_a_law_of_hertz_are_simulated():
+    """An instant is where the ball of the continued flight is below the table by u t_c."""
+    corrected = bb.Corrected(bb.SpringDamper(20.0, restitution=0.65))
+    r, _, centroid, loss = (float(x) for x in corrected.signature(1.0))
+    found = bb.simulate(corrected, amplitude=1.2, phase=0.6, velocity=-3.0, impacts=20)
+    tau, u, times = 0.6, 3.0 + 1.2 * np.cos(0.6), [0.0]
+    for _ in range(19):
+        gap, w = -u * centroid, r * u + loss * (1 - 1.2 * np.sin(tau))
+
+        def above(t, tau=tau, gap=gap, w=w):
+            table = 1.2 * (np.sin(tau) - np.sin(tau + t))
+            rate = w + 1.2 * (np.cos(tau) - np.cos(tau + t)) - t
+            return gap + (w + 1.2 * np.cos(tau)) * t - t * t / 2 + table - centroid * rate
+
+        time = first_crossing(above, np.arange(0.1, 50, 1e-3))
+        u = time - w - 1.2 * (np.cos(tau) - np.cos(tau + time))
+        tau += time
+        times.append(tau - 0.6)
+    assert np.abs(found.time.values - times).max() < 1e-10
+
+    hertz = bb.tsuji(stiffness=2000.0, damping=0.5)
+    law = lambda gap, rate: hertz.force(-gap, -rate, **hertz.parameters)  # noqa: E731
+    found = bb.simulate(hertz, amplitude=1.2, phase=0.6, velocity=-3.0, impacts=6)
+    tau, u = 0.6, 3.0 + 1.2 * np.cos(0.6)
+    for k in range(5):
+        leaves, w = contact(1.2, tau, u, lambda gap, rate: law(min(gap, 0.0), rate))
+        assert abs(found.contact_duration[k] - (leaves - tau)) < 1e-7
+        tau, u = flight(1.2, leaves, 0.0, w)
+        assert abs(found.time[k + 1] - (tau - 0.6)) < 1e-6
+
+
+def test_both_lines_of_the_restitution_map():
+    """Λ(sin τ₁ - sin τ₀) = s v₀ - s²/2 and v₁ = -r(v₀ - s) + (1 + r)Λ cos τ₁ (Eq. 5)."""
+    r, amplitude = 0.85, 2.5
+    found = bb.simulate(bb.Rigid(r), amplitude=amplitude, impacts=300)
+    tau, v, s = found.impact_phase.values, found.bounce_velocity.values, found.flight_time.values
+    assert (found.contact_duration == 0).all()
+    height = amplitude * (np.sin(tau[1:]) - np.sin(tau[:-1]))
+    assert np.abs(height - (s * v - s**2 / 2)[:-1]).max() < 1e-12
+    after = -r * (v - s)[:-1] + (1 + r) * amplitude * np.cos(tau[1:])
+    assert np.abs(v[1:] - after).max() < 1e-13
+    part = np.linspace(1e-3, 1 - 1e-3, 500) * s[:, np.newaxis]
+    table = amplitude * np.sin(tau[:, np.newaxis] + part)
+    ball = amplitude * np.sin(tau[:, np.newaxis]) + v[:, np.newaxis] * part - part**2 / 2
+    assert (ball > table).all()
+
+
+@pytest.mark.parametrize("r", [0.0, 0.5, 0.9, 0.99])
+def test_a_ball_on_a_fixed_table_rests_when_its_bounces_end(r):
+    """Bounce k lasts 2 u rᵏ, and all together 2 u r/(1 - r)."""
+    found = bb.simulate(bb.Rigid(r), amplitude=0.0, velocity=-4.0, impacts=3000)
+    number = int(found.time.notnull().sum())
+    assert found.status == "permanent contact"
+    assert np.isinf(found.contact_duration[number - 1])
+    times = 8 * r * (1 - r ** np.arange(number)) / (1 - r)
+    assert np.abs(found.time[:number] - times).max() < 1e-12
+    assert abs(found.time[number - 1] - 8 * r / (1 - r)) < 2e-5 / (1 - r)
+
+
+def test_bounces_that_end_are_summed_up_as_if_they_were_followed():
+    """The sum of the flights from speeds ten thousand times smaller on, by landings one by one."""
+    amplitude, phase, r = 2.0, 3.0, 0.7
+    x, y = amplitude * np.cos(phase), amplitude * np.sin(phase)
+    w = 0.3e-5 * (1 - y) ** 2 * (1 - r) / 2
+    summed = one_ball.settling(w, r, x, y, amplitude)
+    time = 0.0
+    while w > 1e-14:
+        now = amplitude * np.cos(phase + time), amplitude * np.sin(phase + time)
+        flown, u = one_ball.landing(one_ball.earliest(w, *now, amplitude), 0.0, w, *now, amplitude)
+        time += flown
+        w = r * u
+    assert summed > 1e-6
+    assert abs(summed - time) < 1e-13
+
+
+def test_a_ball_that_rests_leaves_where_the_table_falls_faster_than_it():
+    amplitude = 2.0
+    lift_off = np.arcsin(1 / amplitude)
+    ball = bb.Rigid(0.4)
+    found = bb.simulate(ball, amplitude=amplitude, phase=3.0, relative_velocity=-0.1, impacts=60)
+    rests = int(np.argmax(found.contact_duration.values > 0))
+    leaves = (found.impact_phase + found.contact_duration)[rests] % TURN
+    assert abs(leaves - lift_off) < 1e-13
+    assert found.relative_bounce_velocity[rests] == 0
+    lands, u = flight(amplitude, lift_off, 0.0, 0.0)
+    assert abs(found.flight_time[rests] - (lands - lift_off)) < 1e-12
+    assert abs(found.relative_impact_velocity[rests + 1] + u) < 1e-12
+
+
+@pytest.mark.parametrize("speed", [1e-5, 1e-7, 1e-9, 1e-13])
+@pytest.mark.parametrize("many", [1, 100])
+def test_a_ball_that_leaves_slowly_lands_and_rests(speed, many):
+    """The first flight under the gravity 1 - Λ sin τ lasts 2w/(1 - Λ sin τ), but for its changes.
+    """
+    phase = xr.DataArray(np.full(many, 0.3), dims="ball")
+    start = {"amplitude": 0.5, "phase": phase, "relative_velocity": -speed}
+    found = bb.simulate(bb.Rigid(0.8), **start, impacts=60)
+    assert (found.status == "permanent contact").all()
+    assert (found.time.max("impact") < 20 * speed).all()
+    assert bb.motion_of(bb.Rigid(0.8), **start).kind[0] == "permanent contact"
+    if speed == 1e-5:
+        flown = 2 * 0.8 * speed / (1 - 0.5 * np.sin(0.3))
+        assert abs(found.flight_time[0, 0] / flown - 1) < 1e-4
+
+
+@pytest.mark.parametrize("w", [0.0, 1e-12, 1e-8, 1e-4, 0.3])
+@pytest.mark.parametrize("phase", [0.2, 0.9, 1.6, 2.2])
+def test_the_first_landing_is_found_where_the_table_falls_away_or_pushes(w, phase):
+    """Flights at Λ = 1.8, also those that begin slowly; a landing within 10⁻³ is a short flight."""
+    amplitude = 1.8
+    x, y = amplitude * np.cos(phase), amplitude * np.sin(phase)
+    if w == 0 and y < 1:
+        pytest.skip("the ball rests")
+    flown, u = one_ball.landing(one_ball.earliest(w, x, y, amplitude), 0.0, w, x, y, amplitude)
+    if y < 1 and w < 1e-2:
+        assert abs(flown * (1 - y) / (2 * w) - 1) < 1e-3
+        assert abs(u / w - 1) < 1e-3
+    else:
+        lands, speed = flight(amplitude, phase, 0.0, w)
+        assert abs(phase + flown - lands) < 1e-12
+        assert abs(u - speed) < 1e-12
+
+
+def test_a_flight_that_nearly_touches_the_table_goes_on():
+    """A ball that touches the table at Λ = 2 and τ = 1.2, where Λ sin τ > 1, is followed back to
+    the release from which it came. Thrown faster, it clears the table by 10⁻¹⁰ there, and goes on.
+    """
+    amplitude, touch = 2.0, 1.2
+
+    def below(t):
+        """The table above the ball, a time t before it touches."""
+        ball = amplitude * np.sin(touch) - amplitude * np.cos(touch) * t - t * t / 2
+        return ball - amplitude * np.sin(touch - t)
+
+    t = first_crossing(below, np.arange(1e-3, 20, 1e-3))
+    phase = touch - t
+    x, y = amplitude * np.cos(phase), amplitude * np.sin(phase)
+    w = amplitude * np.cos(touch) + t - x
+    for clearance in (1e-10, -1e-10):
+        thrown = w + clearance / t
+        start = one_ball.earliest(thrown, x, y, amplitude)
+        flown, speed = one_ball.landing(start, 0.0, thrown, x, y, amplitude)
+        # It lands a time √(2d/(Λ sin τ - 1)) before it would touch, with a speed proportional to
+        # it.
+        assert (abs(flown - t) < 1e-4) == (clearance < 0)
+        assert flown > t - 1e-4
+        assert speed > (0 if clearance < 0 else 0.1)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0, 30.0])
+def test_an_undamped_contact_on_a_fixed_table_keeps_the_energy(ratio):
+    ball = bb.SpringDamper(ratio, damping_ratio=0.0)
+    found = bb.simulate(ball, amplitude=0.0, velocity=-2.0, impacts=60)
+    assert np.abs(found.bounce_velocity - 2).max() < 1e-11
+    # A half oscillation about the depth 1/ϖ² at rest, and the part of the period above it.
+    duration = (2 * np.pi - 2 * np.arctan(2 * ratio)) / ratio
+    assert np.abs(found.contact_duration - duration).max() < 1e-11
+
+
+def test_contacts_last_below_the_limit_of_permanent_contact():
+    """Λ_SD = √γ/ϖ²: slow balls stay below it, and leave above it."""
+    ball = bb.SpringDamper(5.0, restitution=0.5)
+    zeta = float(ball.zeta)
+    limit = np.sqrt((25 - 1) ** 2 + (2 * zeta * 5) ** 2) / 25
+    start = {"phase": 3.0, "relative_velocity": -1e-6, "impacts": 40}
+    found = bb.simulate(ball, amplitude=[0.99 * limit, 1.01 * limit], **start)
+    assert found.status.values.tolist() == ["permanent contact", "bouncing"]
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_one_by_one_side_by_side_and_by_the_general_contact(release):
+    """Scalar loops, arrays, and releases found by another bound give the same impacts."""
+    rng = np.random.default_rng(3)
+    ball = bb.SpringDamper(rng.uniform(1.5, 60, 80), restitution=0.6, release=release)
+    balls = simulation.Balls(
+        ball, rng.uniform(0.1, 3, 80), np.zeros(80), rng.uniform(-3, 3, 80), rng.uniform(0, 5, 80)
+    )
+    side_by_side, going, _ = simulation.follow(balls, 5)
+    columns = [simulation.follow(balls.take([j]), 5)[0][..., 0] for j in range(80)]
+    one_by_one = np.stack(columns, axis=-1)
+    assert np.array_equal(np.isnan(one_by_one), np.isnan(side_by_side))
+    assert np.allclose(one_by_one, side_by_side, rtol=1e-8, atol=1e-8, equal_nan=True)
+    assert np.array_equal(going, np.flatnonzero(np.isfinite(side_by_side[-1, 7])))
+    general = ball.first_release(balls.phase, balls.speed, balls.amplitude)
+    assert np.array_equal(np.isnan(general), np.isnan(side_by_side[0, 3]))
+    assert np.nanmax(np.abs(general - side_by_side[0, 3])) < 1e-10
+
+
+def test_contacts_near_the_resonance_and_overdamped_ones_are_simulated():
+    near = bb.simulate(bb.SpringDamper(1 + 1e-9, damping_ratio=0.0), amplitude=0.7, impacts=4)
+    far = bb.simulate(bb.SpringDamper(1 + 1e-7, damping_ratio=0.0), amplitude=0.7, impacts=4)
+    assert np.abs(near.time - far.time).max() < 1e-4
+    over = bb.SpringDamper(10.0, damping_ratio=1.5)
+    found = bb.simulate(over, amplitude=2.0, phase=0.5, impacts=3)
+    tau, u = 0.5, np.pi + 2 * np.cos(0.5)
+    for k in range(2):
+        leaves, w = contact(2.0, tau, u, lambda gap, rate: -30 * rate - 100 * gap)
+        tau, u = flight(2.0, leaves, 0.0, w)
+        assert abs(found.time[k + 1] - (tau - 0.5)) < 1e-8
+
+
+def test_plain_python_gives_the_numbers_of_compiled_loops(monkeypatch):
+    """The file of the loops, loaded again as if numba were not installed."""
+    monkeypatch.setitem(sys.modules, "numba", None)
+    spec = importlib.util.spec_from_file_location("plain_loops", one_ball.__file__)
+    plain = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(plain)
+    for given in ((0.65, 0.0, 0.0, 0.0), (0.0, 20.0, 0.1, 0.0), (0.0, 20.0, 0.1, 0.01)):
+        both = np.empty((2, 200, len(one_ball.COLUMNS)))
+        plain.impacts(0.0, 0.5, 3.0, 1.2, *given, both[0])
+        one_ball.impacts(0.0, 0.5, 3.0, 1.2, *given, both[1])
+        assert np.abs(both[0] - both[1]).max() < 1e-12
+
+
+def test_late_impacts_keep_the_digits_of_the_phase():
+    """After a transient the ball is on the 1-T orbit, also after 80,000 periods."""
+    balls = simulation.Balls(bb.Rigid(0.65), *(np.array([x]) for x in (1.0, 0.0, 1.0, 3.0)))
+    for _ in range(4):
+        record, _, balls = simulation.follow(balls, 20_000)
+    orbit = bb.orbit(bb.Rigid(0.65), amplitude=1.0)
+    assert np.abs(record[1000:, 1] - orbit.phase).max() < 1e-13
+    assert abs(record[-1, 0, 0] - 80_000) < 100
+
+
+def test_a_ball_over_time():
+    ball = bb.SpringDamper(5.0, restitution=0.6)
+    start = {"amplitude": 1.2, "phase": 0.5}
+    found = bb.history(ball, **start, periods=4.0, samples=100)
+    impacts = bb.simulate(ball, **start, impacts=5)
+
+    def motion(t, y):
+        gap, rate = y[0] - 1.2 * np.sin(t), y[1] - 1.2 * np.cos(t)
+        force = -2 * float(ball.zeta) * 5 * rate - 25 * gap
+        return [y[1], force - 1]
+
+    # The first contact, and the flight after it.
+    end = 0.5 + float(impacts.contact_duration[0])
+    inside = found.time.values < end - 0.5
+    begin = [1.2 * np.sin(0.5), -np.pi]
+    exact = solve_ivp(
+        motion, (0.5, end), begin, rtol=1e-12, atol=1e-12, t_eval=0.5 + found.time.values[inside]
+    )
+    assert np.abs(found.ball.values[inside] - exact.y[0]).max() < 1e-9
+    assert np.abs(found.ball_velocity.values[inside] - exact.y[1]).max() < 1e-8
+    assert found.contact.values[inside].all()
+    speed = np.gradient(found.ball.values, found.time.values)
+    assert np.abs(speed - found.ball_velocity.values)[1:-1].max() < 0.3
+    assert ((found.ball - found.table > -1e-12) | found.contact).all()
+
+
+def test_a_dropped_ball_falls_freely_and_comes_to_rest():
+    found = bb.drop(bb.Rigid(0.5), height=[2.0, 8.0], periods=4.0)
+    falls = found.time <= 2.0
+    assert np.abs(found.ball.sel(height=2.0) - (2 - found.time**2 / 2)).where(falls).max() < 1e-12
+    # It lands with √(2h), and rests after √(2h) (1 + 2r/(1 - r)).
+    assert not found.contact.sel(height=2.0, time=slice(0, 5.9)).any()
+    assert found.contact.sel(height=2.0, time=slice(6.01, None)).all()
+    moving = bb.drop(bb.Rigid(0.5), height=3.0, amplitude=0.5, phase=1.0, periods=2.0)
+    assert float(moving.ball[0]) == 3.0
+    assert abs(float(moving.table[0]) - 0.5 * np.sin(1.0)) < 1e-15
+    assert float((moving.ball - moving.table).min()) > -1e-12
+
+
+def test_lists_span_a_grid_and_arrays_of_a_ball_vary_together():
+    ball = bb.SpringDamper([5.0, 10.0, 20.0], restitution=[0.5, 0.6, 0.7])
+    found = bb.simulate(ball, amplitude=[1.0, 1.2], impacts=3)
+    assert found.time.dims == ("amplitude", "ball", "impact")
+    assert found.restitution.dims == ("ball",)
+    alone = bb.simulate(bb.SpringDamper(10.0, restitution=0.6), amplitude=1.2, impacts=3)
+    assert np.abs(found.time.sel(amplitude=1.2).isel(ball=1) - alone.time).max() < 1e-13
+    assert alone.time.attrs == {"long_name": "time since the start", "symbol": "τ", "units": "1"}
+    one = bb.simulate(bb.Rigid([0.5, 0.6]), amplitude=1.0, phase=[0.1, 0.2, 0.3], impacts=2)
+    assert one.time.dims == ("phase", "restitution", "impact")
+    pairs = {"phase": xr.DataArray([0.1, 0.2], dims="start")}
+    pairs["velocity"] = xr.DataArray([-2.0, -3.0], dims="start")
+    assert bb.simulate(bb.Rigid(0.5), amplitude=1.0, **pairs).time.dims == ("start", "impact")
+
+
+def test_mistakes_have_one_line():
+    ball = bb.Rigid(0.5)
+    with pytest.raises(ValueError, match="velocity = 3: the ball rises from the table"):
+        bb.simulate(ball, amplitude=1.0, velocity=3.0)
+    with pytest.raises(ValueError, match="amplitude = -1: must be at least 0"):
+        bb.simulate(ball, amplitude=[1.0, -1.0])
+    with pytest.raises(ValueError, match="phase: must be a finite number"):
+        bb.simulate(ball, amplitude=1.0, phase=np.nan)
+    with pytest.raises(ValueError, match="height = 0: is below the table"):
+        bb.drop(ball, height=0.0, amplitude=1.0, phase=1.0)

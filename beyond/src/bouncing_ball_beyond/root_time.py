@@ -277,7 +277,6 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
     push = moved = 0.0
     early = np.zeros(v0.size)
     near = True
-    shortest = h / 10
     for sweep in range(SWEEPS):
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
@@ -298,8 +297,7 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         if event:
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
-            # A contact that starts at the zero of a function does not end there.
-            near = (np.abs(moved) <= NEAR * h) & (h > shortest)
+            near = np.abs(moved) <= NEAR * h
         if np.all(near & (change <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
             break
         if event:
@@ -368,6 +366,7 @@ def _first_event(motion, events, side, start, panel):
         low = np.abs(values[after - 1, crossed])
         high = np.abs(values[after, crossed])
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
+        # A contact that starts at the zero of a function does not end there.
         here = np.maximum(here, x[1] / 2)
         earlier = here < place[crossed]
         place[crossed[earlier]] = here[earlier]

@@ -27,8 +27,12 @@ for file in snakemake.output:
     Path(file).write_text("made by a stub")
 """
 FILES = {
-    **{name: {"nc", "png", "svg"} for name in ("ext_impact", "ext_instant", "ext_map")},
+    **{
+        name: {"nc", "png", "svg"}
+        for name in ("ext_impact", "ext_instant", "ext_map", "ext_phase")
+    },
     **{name: {"nc", "png", "svg", "md", "csv"} for name in ("ext_orders", "ext_laws")},
+    "ext_event": {"nc"},
     "explorer": {"nc", "html"},
 }
 STAGES = {
@@ -36,6 +40,7 @@ STAGES = {
     "error_law": ["ext_orders"],
     "stiffness_map": ["ext_map"],
     "contact_laws": ["ext_laws"],
+    "phases": ["ext_phase"],
 }
 
 
@@ -136,6 +141,7 @@ def test_a_figure_needs_its_stage_only(complete):
             tables = {"table"} if "md" in FILES[names[0]] else set()
             assert complete.planned(names[0]) == {f"compute_{stage}", stage, names[0]} | tables
         assert complete.planned("explorer") == {"compute_explorer", "explorer"}
+        assert complete.planned("ext_event") == {"compute_events", "ext_event"}
     finally:
         (complete.path / "aside").rename(fresh)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -212,14 +213,11 @@ def ext_orders(data: xr.Dataset) -> Figure:
         notes.append((part.law_order, LAW))
         if quantity == "max_height":
             node = data.sel(place="saddle-node", quantity=quantity)
-            errors = node.node_error, node.law_left
-            orders = node.node_order, node.law_order
-            for (name, look), error, order, slope in zip(
-                AT_NODE.items(), errors, orders, (0.5, 1.5), strict=True
-            ):
-                axes.plot(ratio, error, label=name, **look)
-                draw_slope(axes, ratio, error.values, slope)
-                notes.append((order, look))
+            at_node = (node.node_error, node.node_order, 0.5), (node.law_left, node.law_order, 1.5)
+            for (name, look), (left, measured, slope) in zip(AT_NODE.items(), at_node, strict=True):
+                axes.plot(ratio, left, label=name, **look)
+                draw_slope(axes, ratio, left.values, slope)
+                notes.append((measured, look))
         note_orders(axes, notes)
         along_ratio(axes, ratio)
         # Errors are below 1 but next to a phase of 0; the orders have the room above.
@@ -277,9 +275,13 @@ NOT_BY_RULE = "0.92"
 NOT_BY_PAPER = "0.8"
 
 
-def places(position: np.ndarray) -> np.ndarray:
+def places(position: xr.DataArray) -> xr.DataArray:
     """Places on the axis of positions, arcsin √p, negative below the saddle-node."""
-    return np.sign(position) * np.arcsin(np.sqrt(np.minimum(np.abs(position), 1)))
+
+    def place(p: np.ndarray) -> np.ndarray:
+        return np.sign(p) * np.arcsin(np.sqrt(np.minimum(np.abs(p), 1)))
+
+    return xr.apply_ufunc(place, position)
 
 
 def ext_map(data: xr.Dataset) -> Figure:
@@ -304,7 +306,7 @@ def ext_map(data: xr.Dataset) -> Figure:
     ranges = "$\\Lambda$ from saddle-node (0)\nto period doubling (1)"
     answers = "it is stable", f"it is as high, within {percent}"
     for axes, answer in zip(slots[:2, 0], answers, strict=True):
-        axes.set_yticks(places(np.array(POSITIONS)), [f"{each:g}" for each in POSITIONS])
+        axes.set_yticks(places(xr.DataArray([*POSITIONS])), [f"{each:g}" for each in POSITIONS])
         axes.set_ylim(0, np.pi / 2)
         axes.set_ylabel(f"{answer}\n{ranges}")
     below = slots[2, 0]
@@ -352,7 +354,8 @@ def draw_height(axes: Axes, family: xr.Dataset) -> None:
     width = family.period_doubling_amplitude - low
 
     def place(lift: xr.DataArray) -> xr.DataArray:
-        return np.sign(lift) * places((np.hypot(low, lift) - low) / width)
+        position = (xr.apply_ufunc(np.hypot, low, lift) - low) / width
+        return places(xr.where(lift < 0, -position, position))
 
     r = family.restitution
     jump = place(family.jump_lift)
@@ -449,8 +452,8 @@ def ext_laws(data: xr.Dataset) -> Figure:
     period doubling on all contacts, and for the other quantities on the linear one.
     """
     figure = Figure(figsize=(WHOLE_WIDTH, 6.0))
-    rows = [[f"{model} {name}" for name in SHORT_TITLES] for model in MODELS]
-    slots = figure.subplot_mosaic([*rows, ["doubling"] * 2 + ["linear"] * 2])
+    rows: list[Any] = [[f"{model} {name}" for name in SHORT_TITLES] for model in MODELS]
+    slots = figure.subplot_mosaic([*rows, ["doubling", "doubling", "linear", "linear"]])
     given = parameters(data)
     share = 1 / (2 * given["n"] * data.centroid_ratio)
     quotients = data.relative_error / data.relative_error.sel(law="linear")
@@ -496,8 +499,8 @@ def draw_doubling(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> None:
         one = part.isel(law=law, model=model)
         known = one.relative_error.notnull().values
         ratio = data.centroid_ratio.values[known]
-        place, error = with_zero(ratio, one.relative_error.values[known], float(one.law_error_zero))
-        axes.plot(per_cycle / place, error, **THIN | LAWS[str(one.law.values)])
+        ratio, error = with_zero(ratio, one.relative_error.values[known], float(one.law_error_zero))
+        axes.plot(per_cycle / ratio, error, **THIN | LAWS[str(one.law.values)])
     axes.set(yscale="log", ylabel="relative error", title=TITLES["period_doubling"])
     axes.set_ylim(0.3 * float(data.relative_error.min()), 1)
     beside: Look = {"textcoords": "offset points", "fontsize": 7}

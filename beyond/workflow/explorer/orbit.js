@@ -14,10 +14,10 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
 
 // By which of the two definitions the errors beside it are, and the other one of the greatest height.
 function definitionOf({physical, tolerance}, exact, simple) {
-  const contact = "relative to the contact", own = "relative to the simple model, as in Eqs. 37 and 38";
+  const contact = "relative to the contact", paper = "relative to the simple model, as in Eqs. 37 and 38";
   const other = (physical ? paperError : deviation)(exact.max_height, simple.max_height);
-  return `Errors here are ${physical ? contact : own}`
-    + (Number.isFinite(other) ? `; ${physical ? own : contact}, that of the restitution model is ${signed(other, tolerance)}.` : ".");
+  return `Errors here are ${physical ? contact : paper}`
+    + (Number.isFinite(other) ? `; ${physical ? paper : contact}, that of the restitution model is ${signed(other, tolerance)}.` : ".");
 }
 
 // Whether the restitution model is good enough, the verdict in words, and which errors it is by.

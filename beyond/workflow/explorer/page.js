@@ -89,7 +89,7 @@ function show(hash, kept = DEFAULTS) {
   }
   const moves = question.physical && question.amplitude * question.physical.length;
   $("table-moves").textContent = question.physical
-    ? `The table moves by ${prefixed(moves, "m", 3, axisPower(moves))} up and down.` : "";
+    ? `The table moves by ${prefixed(moves, "m", 3)} up and down.` : "";
   drawOrbit = () => {
     drawBranch(found, question);
     drawMotion(found, question);

@@ -34,23 +34,25 @@ function signed(x, tolerance) {
 function inPlaceOf(predicted, exact, unit) {
   const error = exact ? Math.abs(predicted / exact - 1) : 1;
   const digits = error ? Math.min(12, Math.max(4, 2 - Math.floor(Math.log10(error)))) : 4;
-  const power = prefixPower(Math.max(Math.abs(predicted), Math.abs(exact)));
+  const power = powerOf(Math.max(Math.abs(predicted), Math.abs(exact)), unit);
   return [predicted, exact].map(x => unit ? prefixed(x, unit, digits, power) : shown(x, digits)).join(" in place of ");
 }
 
 const prefixPower = x => x === 0 ? 0
   : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(nearest(x, 4))) / 3)));
 const PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n"};
-function prefixed(x, unit, digits = 4, power = prefixPower(x)) {
+// Lengths are in mm as long as those have few digits, as on a ruler.
+const isMilli = size => size >= 1e-5 && size < 1;
+const powerOf = (x, unit) => unit === "m" && isMilli(Math.abs(x)) ? -3 : prefixPower(x);
+function prefixed(x, unit, digits = 4, power = powerOf(x, unit)) {
   if (!Number.isFinite(x)) return "none";
   return `${shown(x / 10 ** power, digits)} ${PREFIXES[power]}${unit}`;
 }
 
 // ---- Axes: the name with its unit, and the factor of the numbers.
-// A length or a time whose unit in SI is `scale`. It is in mm or ms as long as those have few digits.
-const axisPower = size => size >= 1e-5 && size < 1 ? -3 : prefixPower(size);
+// A length or a time whose unit in SI is `scale`, in mm or ms if they have few digits.
 function physicalAxis(name, scale, unit, largest) {
-  const power = axisPower(scale * largest);
+  const size = scale * largest, power = isMilli(size) ? -3 : prefixPower(size);
   return {name: `${name} [${PREFIXES[power]}${unit}]`, factor: scale / 10 ** power};
 }
 // Axes of a height, a time and a phase: in SI units if there are scales, else dimensionless.

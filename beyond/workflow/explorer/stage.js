@@ -185,11 +185,11 @@ function drawDiagram(ends, state) {
   })();
 }
 
-// ---- Play, pause, step: nothing moves before it is asked to.
+// ---- Play, pause, step: nothing moves before a button is pressed.
 let playing = null;
 function beat(at) {
   if (playing === null || !stage) return;
-  // The first frame may have begun before it was asked to play.
+  // The first frame may have begun before the button was pressed.
   const passed = Math.min(Math.max(at - playing, 0) / 1000, 0.1);
   playing = at;
   place(stage.now + passed * TURN / SECONDS / Number(stage.state.pace), true);

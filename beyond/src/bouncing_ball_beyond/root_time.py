@@ -265,6 +265,11 @@ def linearised(motion, nodes, h):
     return Linearised(*slopes, h[:, np.newaxis, np.newaxis])
 
 
+def _end_of(start, h, slopes):
+    """q, v and t at the ends of panels, from their derivatives with respect to s at the nodes."""
+    return tuple(y + h * (_WEIGHTS @ slope) for y, slope in zip(start, slopes, strict=True))
+
+
 def solve_panel(motion, start, h, event=None, *, newton=False):
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
@@ -281,7 +286,8 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
         t = t0 + h * (_INTEGRALS @ lever)
-        force = rates(motion, (q, v, t))[1]
+        a = load(t, motion.given)
+        force = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         if newton:
             missing = (force - push).T[..., np.newaxis]
             force = push + linearised(motion, (q, v, t), h).solved(missing)[..., 0].T
@@ -293,8 +299,8 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         change = np.abs(v - before).max(0)
         if sweep == EARLY and not newton:
             early = change
-        end = q0 + h * (_WEIGHTS @ v), v0 + h * (_WEIGHTS @ push), t0 + h * (_WEIGHTS @ lever)
         if event:
+            end = _end_of(start, h, (v, push, lever))
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
             near = np.abs(moved) <= NEAR * h
@@ -303,6 +309,7 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         if event:
             h = h + moved
             v = v0 + h * (_INTEGRALS @ push)
+    end = _end_of(start, h, (v, push, lever))
     if event:
         end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
     return Panel((q, v, t), end, h + moved, early, np.where(near, change, np.inf))
@@ -400,7 +407,10 @@ def _next_panel(motion, events, side, start, length, newton):
             new = solve_panel(motion.of(at), begin, place[found == k], events[k], newton=newton)
             panel.replace_some(at, new)
         which[rows[found >= 0]] = found[found >= 0]
-        rows = rows[(found >= 0) & np.isfinite(panel.change[rows])]
+        doubtful = (found >= 0) & np.isfinite(panel.change[rows])
+        if not motion.kinks:
+            doubtful &= found > 0
+        rows = rows[doubtful]
         if not rows.size:
             break
         # Another event may turn out to be earlier than the one that seemed to be the first.

@@ -263,6 +263,7 @@ ON_LINE: Look = {
     "ha": "center",
     "va": "center",
     "fontsize": 6.5,
+    "clip_on": True,
     "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.5},
 }
 TOO_HIGH = {200.0: 0.2, 1000.0: 0.13}

@@ -177,7 +177,7 @@ def test_a_doubled_branch_is_refused_on_the_side_where_it_is_not():
     with pytest.raises(OrbitNotFound, match="twice the period are above the period doubling at am"):
         follow(doubling, to=1.2)
     fold = limits(Rigid(0.5)).saddle_node
-    with pytest.raises(OrbitNotFound, match="orbits of the saddle-node at .* are above it"):
+    with pytest.raises(OrbitNotFound, match=r"orbits of the saddle-node at .* are above it"):
         follow(fold, to=0.5)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.balls import Ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
 from bouncing_ball_beyond.forms import one_impact_more
+from bouncing_ball_beyond.paths import Path, path_of
 from bouncing_ball_beyond.periodic import (
     OrbitNotFound,
     PeriodicOrbit,
@@ -22,7 +23,6 @@ from bouncing_ball_beyond.periodic import (
     shortest_contacts,
     single,
 )
-from bouncing_ball_beyond.paths import Path, path_of
 from bouncing_ball_beyond.special_orbits import (
     KINDS,
     ON_THE_WAY,
@@ -736,7 +736,8 @@ def _grazing_start(task: _Task, way: int) -> _Start:
     what = "the orbits with one impact more are {side} the grazing at {place}"
     _on_side(reasons, away, task, goal, what)
     step = np.full(len(goal), 1e-3)
-    return _Start(more, start.z, start.z - origin, goal, reasons, step, origin)
+    away = start.z - origin
+    return _Start(more, start.z, away, goal, reasons, step=step, origin=origin)
 
 
 def _halved_start(task: _Task, way: int) -> _Start:
@@ -803,7 +804,7 @@ def _doubled_start(task: _Task, way: int) -> _Start:
         reasons[short & ~solution.found] = (
             "the start of the orbits of twice the period is not found"
         )
-    return _Start(twice, start, start - origin, goal, reasons, step, origin)
+    return _Start(twice, start, start - origin, goal, reasons, step=step, origin=origin)
 
 
 def _about_four(pair: NDArray) -> NDArray:

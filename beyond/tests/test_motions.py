@@ -58,7 +58,7 @@ def test_exponents_of_stable_orbits_are_those_of_their_multipliers(ball):
 def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
     """The growth of a distance of 10⁻⁹ over 12 impacts, averaged over a chaotic motion."""
     ball = bb.SpringDamper(20.0, restitution=0.85)
-    found = bb.lyapunov(ball, amplitude=2.0, impacts=20_000)
+    found = bb.motion_of(ball, amplitude=2.0, impacts=20_000)
     assert found.kind == "chaotic"
     _, balls = simulation.first_impacts(ball, 2.0, 0.0, -3.0, None)
     record, _, _ = simulation.follow(balls, 20_000)
@@ -81,14 +81,14 @@ def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
 def test_the_error_of_an_exponent_covers_its_scatter():
     """Thirty pieces of one chaotic motion: their exponents scatter by their errors."""
     ball = bb.SpringDamper(20.0, restitution=0.85)
-    whole = bb.motion_of(ball, amplitude=2.0, impacts=100_000)
+    whole = bb.motion_of(ball, amplitude=2.0, impacts=30_000)
     start = xr.DataArray(np.linspace(0.1, 3, 30), dims="start")
     pieces = bb.motion_of(ball, amplitude=2.0, phase=start, impacts=2000)
     chaotic = pieces.kind == "chaotic"
     assert chaotic.sum() > 20
     away = (pieces.lyapunov_exponent - whole.lyapunov_exponent) / pieces.lyapunov_error
     assert 0.3 < float(np.sqrt((away**2).where(chaotic).mean())) < 2.0
-    assert whole.lyapunov_error < 0.3 * pieces.lyapunov_error.where(chaotic).mean()
+    assert whole.lyapunov_error < 0.5 * pieces.lyapunov_error.where(chaotic).mean()
 
 
 def test_exponents_of_sections_with_a_known_scatter():
@@ -264,8 +264,6 @@ def test_a_summary_of_many_impacts_needs_no_history():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(motions, "follow", watched)
-        found = bb.motion_of(
-            bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=200_000
-        )
-    assert found.followed >= 200_000
+        found = bb.motion_of(bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=60_000)
+    assert found.followed >= 60_000
     assert max(most) <= motions.ROWS

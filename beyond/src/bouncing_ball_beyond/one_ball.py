@@ -24,7 +24,14 @@ except ImportError:
         """Without numba the functions remain as they are."""
         return function
 else:
-    compiled = njit(cache=True)
+
+    def compiled(function):
+        """The function compiled, and kept for later sessions where a folder can be written to."""
+        try:
+            return njit(cache=True)(function)
+        except RuntimeError:
+            return njit(function)
+
 
 TURN = 2 * math.pi
 REACH = 4.0

@@ -61,7 +61,7 @@ def contact(table, phase, u, amplitude, ratio):
 
 
 def orbit(table, phase, ratio):
-    """Λ and the greatest height of the orbit whose contact starts at a phase, by Newton's method."""
+    """Λ and the greatest height of the orbit that touches at a phase, by Newton's method."""
 
     def residuals(unknowns):
         amplitude, u = unknowns
@@ -115,7 +115,7 @@ def test_remainders_are_of_second_order(name):
 
 @pytest.mark.parametrize("name", HARMONICS)
 def test_at_the_saddle_node_they_are_of_order_three_halves(name):
-    """Where max w′ = C, times ϖ^1.5 they tend to a constant, with a distance of the order ϖ^-1/2."""
+    """Where max w′ = C, times ϖ^1.5 they tend to a constant, with a rest of the order ϖ^-1/2."""
     table = Table(name)
     amplitude = C / table.largest
     scaled = []

@@ -25,7 +25,8 @@ def touch_speeds(ball: Ball, record: NDArray, amplitude: float) -> NDArray:
     The impacts of the corrected model are instants. The flights to them touch the table t_c
     earlier.
     """
-    phase, speed = record[:, 1], record[:, 2]
+    phase = record[:, 1]
+    speed = record[:, 2]
     if not isinstance(ball, Corrected):
         return speed
     delay = ball.of.signature(speed).centroid

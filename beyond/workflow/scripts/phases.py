@@ -121,7 +121,8 @@ def any_waveform(parameters: dict) -> dict[str, tuple]:
 
 def in_the_plane(parameters: dict) -> dict[str, tuple]:
     """Touches of exact orbits with a sine for several durations, and the lines of the law."""
-    r, shares = parameters["shown_restitution"], np.array(parameters["shown_share"])
+    r = parameters["shown_restitution"]
+    shares = np.array(parameters["shown_share"])
     ball = linear(r, 2 * np.pi * shares)
     phase = np.linspace(0.02, 1.0, parameters["samples"])
     found = [
@@ -220,7 +221,8 @@ def simulated_measurement(given: SimpleNamespace, generator: np.random.Generator
 
     The phase of each impact has a random error, and each impact a random r.
     """
-    r, share = given.measured_restitution, given.measured_share
+    r = given.measured_restitution
+    share = given.measured_share
     ball = linear(r, 2 * np.pi * share)
     levels_of = amplitudes(r)
     impacts = round(given.duration * given.frequency / levels_of.size)
@@ -240,7 +242,8 @@ def simulated_measurement(given: SimpleNamespace, generator: np.random.Generator
             sine += np.sin(heard)
     mean_phase = np.arctan2(sine, cosine).reshape(given.runs, -1)
     found = [contact_of(*reading(touches, levels_of)) for touches in mean_phase]
-    mean, spread = np.mean(found, axis=0), np.std(found, axis=0, ddof=1)
+    mean = np.mean(found, axis=0)
+    spread = np.std(found, axis=0, ddof=1)
     true = 2 * np.pi * share
     return {
         "measured_restitution": mean[0],
@@ -261,7 +264,8 @@ def balls_with(balls: Balls, ball: Ball) -> Balls:
 def by_law(r: float, duration: float) -> NDArray:
     """Λ of saddle-node and period doubling on a linear contact, by the error law."""
     impact = free_impact(linear(r, duration), 1)
-    errors, values = law_errors(impact, amplitude=1.0), restitution_values(impact, 1.0)
+    errors = law_errors(impact, amplitude=1.0)
+    values = restitution_values(impact, 1.0)
     names = "saddle_node", "period_doubling"
     return np.array([values[name] * (1 + errors[name]) for name in names])
 

@@ -28,8 +28,7 @@ for file in snakemake.output:
 """
 FILES = {
     **{
-        name: {"nc", "png", "svg"}
-        for name in ("ext_impact", "ext_instant", "ext_map", "ext_phase")
+        name: {"nc", "png", "svg"} for name in ("ext_impact", "ext_instant", "ext_map", "ext_phase")
     },
     **{name: {"nc", "png", "svg", "md", "csv"} for name in ("ext_orders", "ext_laws")},
     "ext_event": {"nc"},

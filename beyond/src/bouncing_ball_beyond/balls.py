@@ -97,6 +97,14 @@ class Ball:
         """T of impacts: 0 for impacts without a duration."""
         return 0.0 * (tau + u + amplitude)
 
+    def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:
+        """The end of an impact that starts at the time τ with the closing speed u."""
+        raise NotImplementedError
+
+    def signature(self, u) -> Signature:
+        """What free impacts of the closing speed u are, as seen from outside."""
+        raise NotImplementedError
+
     def first_impact(self, tau, u, amplitude, gravity=1.0):
         """T of the first release, and the impact up to it."""
         T = self.first_release(tau, u, amplitude, gravity)

@@ -560,7 +560,7 @@ def _follow_all(orbits, along, to, points, until) -> list:
     """Branches of orbits, or reasons, in order; orbits with the same equations side by side."""
     found = list(orbits)
     tasks = {}
-    groups = []
+    groups: list = []
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
@@ -654,7 +654,7 @@ def _from_special(task: _Task, way: int, kind, points, until) -> list:
     """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
     start = _STARTS.get(kind, _no_start)(task, way)
     name = task.equations.along[-1].name
-    found = [OrbitNotFound(reason) for reason in start.reasons]
+    found: list = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
     if not going.size:
         return found
@@ -886,7 +886,7 @@ def _between_limits(equations: OrbitEquations) -> list:
     r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)
     fold = np.pi * n * (1 - r) / (1 + r)
-    found = [OrbitNotFound("no orbit with one impact is found")] * len(n)
+    found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     for share in (0.5, 0.9, 0.2, 2.0, 4.0):
         amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)
         z, good, _ = near_instants(equations, amplitude, 1)

@@ -48,8 +48,8 @@ from bouncing_ball_beyond.forms import (
     one_impact_less,
     taken_twice,
 )
-from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, value_and_gradient
 
 FIRST_STEP = 0.05

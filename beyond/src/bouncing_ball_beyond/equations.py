@@ -59,6 +59,11 @@ class Flights(NamedTuple):
         return flight(t, leaves, gap, speed, amplitude)
 
 
+def _some(values, which):
+    """The values of some rows; a number is that of all."""
+    return values[which] if np.ndim(values) else values
+
+
 @dataclass(frozen=True)
 class OrbitEquations:
     """Equations of orbits of one ball, or of a row of balls that differ in their parameters.
@@ -104,8 +109,8 @@ class OrbitEquations:
         return replace(
             self,
             ball=self.ball.at(**{name: each[which] for name, each in arrays.items()}),
-            periods=self.periods[which] if np.ndim(self.periods) else self.periods,
-            amplitude=self.amplitude[which] if np.ndim(self.amplitude) else self.amplitude,
+            periods=_some(self.periods, which),
+            amplitude=_some(self.amplitude, which),
         )
 
     @cached_property
@@ -236,12 +241,14 @@ class OrbitEquations:
             return np.full(len(z), FAR)
         during = self._during(z)
 
-        def falls(t):
-            return -_derivative(lambda time: during(time).release, t)
+        def release(t):
+            return during(t).release
 
-        return turns_back(falls, lambda t: -during(t).release, self.split(z)[0][..., 2]).min(
-            axis=-1
-        )
+        def falls(t):
+            return -_derivative(release, t)
+
+        length = self.split(z)[0][..., 2]
+        return turns_back(falls, lambda t: -release(t), length).min(axis=-1)
 
     def max_height(self, z) -> NDArray:
         """The greatest height of the ball, shape (rows,): at a summit of a flight or in a contact.

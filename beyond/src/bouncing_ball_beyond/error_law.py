@@ -126,6 +126,7 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
 
 def _ordinate(amplitude: ArrayLike, x: NDArray) -> NDArray:
     """Y ≥ 0 of the point with X = x at the distance Λ from the origin, NaN if there is none."""
+    amplitude = np.asarray(amplitude, float)
     with np.errstate(invalid="ignore"):
         return np.sqrt((amplitude - x) * (amplitude + x))
 
@@ -352,7 +353,7 @@ def contact_values(
     ball: Ball,
     *,
     amplitude: ArrayLike,
-    n: int = 1,
+    n: ArrayLike = 1,
     quantities: Sequence[str] = QUANTITIES,
 ) -> dict:
     """Quantities of the n-T orbit of a ball and of its bifurcations, exactly.
@@ -430,8 +431,8 @@ def _bifurcation(row: Ball, periods: NDArray, name: str) -> NDArray:
     guess = [np.arctan2(y, x) - delay, impact.half + x - (1 - y) * delay]
     if row.lasts:
         guess.append(row.free(guess[1]))
-    guess = np.stack(np.broadcast_arrays(*guess, np.hypot(x, y)), axis=-1)
-    z, good = special_near(OrbitEquations(row, 1, periods), kind, guess)
+    rows = np.stack(np.broadcast_arrays(*guess, np.hypot(x, y)), axis=-1)
+    z, good = special_near(OrbitEquations(row, 1, periods), kind, rows)
     return np.where(good & (z[:, -1] > 0), z[:, -1], np.nan)
 
 
@@ -557,7 +558,7 @@ def error_thresholds(
     ['82.177 found', '132.569 found']
     """
     path = ball_at_ratio(contacts, n, tolerance)
-    known = {"amplitude": amplitude, "n": n, "simple": simple}
+    known: dict = {"amplitude": amplitude, "n": n, "simple": simple}
     shape = rows_of(path(high), amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))

@@ -315,9 +315,9 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
 def rows_of(ball: Ball, *others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
     """A ball and further numbers as rows of one length, and the shape which these had."""
     fields = ball.parameters
-    arrays = np.broadcast_arrays(*fields.values(), *others)
-    shape = arrays[0].shape if arrays else ()
-    arrays = [np.array(each).reshape(-1) for each in arrays]
+    broadcast = np.broadcast_arrays(*fields.values(), *others)
+    shape = broadcast[0].shape if broadcast else ()
+    arrays = [np.array(each).reshape(-1) for each in broadcast]
     names = list(fields)
     row = ball.at(**dict(zip(names, arrays[: len(names)], strict=True))) if names else ball
     return row, arrays[len(names) :], shape

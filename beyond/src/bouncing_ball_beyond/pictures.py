@@ -106,7 +106,7 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
             legend_below(figure, entries, columns=3)
             return figure
         axes.legend(entries.values(), entries.keys())
-        return axes.get_figure(root=True)
+        return axes.get_figure(root=True) or figure
 
 
 def _branches(group: Any) -> list[FollowedBranch]:

@@ -21,8 +21,8 @@ from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
-from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.special_orbits import scales
 
 OF_IMPACTS = {

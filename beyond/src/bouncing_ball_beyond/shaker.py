@@ -23,10 +23,10 @@ from bouncing_ball_beyond.named_laws import tsuji
 from bouncing_ball_beyond.paths import Frequency
 
 STANDARD_GRAVITY = 9.80665
-UNITS = pint.UnitRegistry()
+UNITS: pint.UnitRegistry = pint.UnitRegistry()
 
 
-def in_si(name: str, value: float | str, unit: str) -> float:
+def in_si(name: str, value: float | str | None, unit: str) -> float:
     """A positive quantity in SI units, from a number or from a text with a unit.
 
     The unit "Hz" stands for cycles, of which the angular frequency in rad/s is returned. An
@@ -57,7 +57,7 @@ def in_si(name: str, value: float | str, unit: str) -> float:
 def _quantity(text: str, unit: str) -> pint.Quantity:
     if "," in text:
         raise ValueError("a comma may be a decimal point or separate thousands")
-    quantity = UNITS.Quantity(text)
+    quantity: pint.Quantity = UNITS.Quantity(text)
     if quantity.units == UNITS.dimensionless:
         quantity = quantity.m * UNITS.Unit(unit)
     if quantity.units == UNITS.Unit("1/s"):
@@ -303,7 +303,7 @@ def _mass(mass, radius, density) -> float:
     return 4 / 3 * np.pi * in_si("radius", radius, "m") ** 3 * in_si("density", density, "kg/m^3")
 
 
-def _compliance(modulus: float | str, ratio: float, body: str) -> float:
+def _compliance(modulus: float | str | None, ratio: float, body: str) -> float:
     """(1 - ν²)/E of a body in contact, with the beginning of the names of its quantities."""
     if not -1 < ratio <= 0.5:
         raise ValueError(f"{body}poissons_ratio = {ratio!r}: must be above -1 and at most 0.5")

@@ -15,14 +15,14 @@ from bouncing_ball_beyond.one_ball import TURN
 
 
 def first_crossing(function, times):
-    """The first zero at which a function of the time falls through zero, by samples and a bracket."""
+    """The first zero through which a function of the time falls, by samples and a bracket."""
     values = function(times)
     first = np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0))[0]
     return brentq(function, times[first], times[first + 1], xtol=1e-15, rtol=1e-15)
 
 
 def flight(amplitude, leaves, gap, w, kappa=0.0):
-    """The next impact after a release, from samples every 10⁻³ of δ, or of δ + κδ′ below the level."""
+    """The next impact after a release, by samples of δ, or of δ + κδ′ below the level."""
 
     def position(t):
         table = amplitude * (np.sin(leaves) - np.sin(leaves + t))
@@ -203,7 +203,7 @@ def test_a_ball_that_rests_leaves_where_the_table_falls_faster_than_it():
 @pytest.mark.parametrize("speed", [1e-5, 1e-7, 1e-9, 1e-13])
 @pytest.mark.parametrize("many", [1, 100])
 def test_a_ball_that_leaves_slowly_lands_and_rests(speed, many):
-    """The first flight under the gravity 1 - Λ sin τ lasts 2w/(1 - Λ sin τ), but for its changes."""
+    """The first flight lasts 2w/(1 - Λ sin τ), but for changes of this gravity."""
     phase = xr.DataArray(np.full(many, 0.3), dims="ball")
     start = {"amplitude": 0.5, "phase": phase, "relative_velocity": -speed}
     found = bb.simulate(bb.Rigid(0.8), **start, impacts=60)

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import elementwise
 
 from bouncing_ball_beyond import one_ball
 from bouncing_ball_beyond.balls import Ball, Corrected, H, Rigid, SpringDamper
@@ -740,4 +739,7 @@ def own_times(ball, amplitude, above, *given):
     above = np.where(np.isfinite(above), above, 1.0)
     while np.any(late(above, *given) < 0):
         above = np.where(late(above, *given) < 0, 2 * above, above)
+    # Its import takes longer than most simulations.
+    from scipy.optimize import elementwise
+
     return elementwise.find_root(late, (np.zeros_like(above), above), args=given).x

@@ -151,6 +151,31 @@ def test_answers_in_sentences():
     assert "2 periods" in str(on_shaker(**TABLE, contact_duration="10 us", n=2))
 
 
+@pytest.mark.parametrize(
+    ("acceleration", "duration", "reason"),
+    [
+        ("1.2 g", "0.1 ms", "the orbit is unstable in both models, so that the height means noth"),
+        ("0.8 g", "0.3 ms", "on the contact the height is less than the tolerance allows."),
+        ("0.2 g", "0.1 ms", "the ball does not bounce, in both models, so that"),
+        ("0.254 g", "0.14 ms", "the ball does not bounce, in the restitution model only, so that"),
+    ],
+)
+def test_the_answer_says_why_not(acceleration, duration, reason):
+    answer = on_shaker(**{**TABLE, "acceleration": acceleration}, contact_duration=duration)
+    assert f"is not good enough: {reason}" in str(answer)
+    assert not answer.is_good_enough
+
+
+def test_error_and_tolerance_are_in_per_cent():
+    answer = str(on_shaker(**TABLE, contact_duration="100 us", tolerance=0.02))
+    assert "% lower than" in answer and "within the tolerance of 2%;" in answer
+
+
+def test_a_bare_acceleration_is_in_metres_per_second_squared():
+    answer = on_shaker(**{**TABLE, "acceleration": 9.80665}, contact_duration="10 us")
+    assert answer.amplitude == pytest.approx(1.0, rel=1e-14)
+
+
 def test_between_the_bifurcations_of_both_models():
     """Where the contact has an orbit and the restitution model has none."""
     answer = on_shaker(**{**TABLE, "acceleration": "0.254 g"}, **CONTACT)
@@ -167,6 +192,7 @@ def test_between_the_bifurcations_of_both_models():
         ({"stiffness": None}, "exactly one of contact_duration, stiffness, youngs_modulus"),
         ({"mass": None}, "mass"),
         ({"mass": "20 m"}, "mass"),
+        ({"mass": "20 m", "stiffness": None, "contact_duration": "0.1 ms"}, "mass"),
         ({"restitution": 1.2}, "restitution"),
         ({"frequency": "0 Hz"}, "frequency"),
         ({"n": 0}, "n = 0"),

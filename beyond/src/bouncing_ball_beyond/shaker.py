@@ -130,7 +130,22 @@ class ShakerAnswer:
     @property
     def is_good_enough(self) -> bool:
         """Whether the ball bounces, on a stable orbit, as high as the restitution model says."""
-        return self.is_stable and abs(self.error) <= self.tolerance
+        return not self.reason
+
+    @property
+    def reason(self) -> str:
+        """Why a restitution coefficient is not good enough; empty if it is."""
+        no_orbit = [value > self.amplitude for value in self.saddle_node[:2]]
+        if any(no_orbit):
+            where = _where(no_orbit)
+            return f"the ball does not bounce, {where}, so that there is no height to compare"
+        unstable = [value < self.amplitude for value in self.period_doubling[:2]]
+        if any(unstable):
+            return f"the orbit is unstable {_where(unstable)}, so that the height means nothing"
+        if abs(self.error) > self.tolerance:
+            than = "less" if self.error < 0 else "more"
+            return f"on the contact the height is {than} than the tolerance allows"
+        return ""
 
     def __str__(self) -> str:
         rows = [
@@ -159,6 +174,7 @@ class ShakerAnswer:
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
+        tolerance = f"{100 * self.tolerance:.3g}%"
         sentences = [
             f"The acceleration of the table is Λ = {self.amplitude:.4g} times gravity."
             f" A contact lasts {duration}, {share:.2%} of a period.",
@@ -170,16 +186,25 @@ class ShakerAnswer:
             beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
             by_law = self.max_height.by_law / self.max_height.by_restitution - 1
             sentences.append(
-                f"Its greatest height is {abs(self.error):.2%} {lower} than with a restitution"
-                f" coefficient, {beyond} {self.tolerance:.3g}; the error law has {by_law:+.2%}."
+                f"Its greatest height is {100 * abs(self.error):.3g}% {lower} than with a"
+                f" restitution coefficient, {beyond} the tolerance of {tolerance};"
+                f" the error law has {100 * by_law:+.3g}%."
             )
             if self.longest_contact > 0:
                 longest = in_words(self.longest_contact, "s")
                 sentences.append(f"Contacts of up to {longest} are within this tolerance.")
         if self.amplitude < 1:
             sentences.append("A ball that is laid on the table stays there.")
-        verdict = "is" if self.is_good_enough else "is not"
-        return [*sentences, f"A restitution coefficient {verdict} good enough."]
+        reason = self.reason
+        verdict = f"is not good enough: {reason}" if reason else "is good enough"
+        return [*sentences, f"A restitution coefficient {verdict}."]
+
+
+def _where(fails: list[bool]) -> str:
+    """In which of the two models, restitution and contact, something fails that fails in one."""
+    if all(fails):
+        return "in both models"
+    return "in the restitution model only" if fails[0] else "on the contact only"
 
 
 BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
@@ -217,9 +242,11 @@ def on_shaker(
         Restitution coefficient r of a free impact, between 0 and 1.
     stroke, acceleration
         One of both: the amplitude of the table's motion, which is half of the distance between its
-        lowest and its highest position, or its greatest acceleration, such as "0.8 g".
+        lowest and its highest position, or its greatest acceleration, such as "0.8 g". A number is
+        in m, or in m/s²: 0.8 is not 0.8 g.
     mass, radius, density
-        The mass of the ball, or its radius and density. A contact duration needs none of them.
+        The mass of the ball, or its radius and density. A contact duration needs none of them, and
+        the units of those given are checked nevertheless.
     contact_duration, stiffness, youngs_modulus
         One of them. The first two are those of a contact with a spring and a damper. With Young's
         modulus of the ball, the contact is that of Hertz with the damping of Tsuji, whose r is the
@@ -251,6 +278,16 @@ def on_shaker(
     rate = in_si("frequency", frequency, "Hz")
     fall = in_si("gravity", gravity, "m/s^2")
     within = in_si("tolerance", tolerance, "dimensionless")
+    # Also those that this contact does not need.
+    bodies = {
+        "mass": (mass, "kg"),
+        "radius": (radius, "m"),
+        "density": (density, "kg/m^3"),
+        "table_youngs_modulus": (table_youngs_modulus, "Pa"),
+    }
+    for name, (value, unit) in bodies.items():
+        if value is not None:
+            in_si(name, value, unit)
     if _one_of(stroke=stroke, acceleration=acceleration) == "stroke":
         amplitude = in_si("stroke", stroke, "m") * rate**2 / fall
     else:

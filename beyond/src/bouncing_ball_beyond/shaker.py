@@ -142,9 +142,8 @@ class ShakerAnswer:
         unstable = [value < self.amplitude for value in self.period_doubling[:2]]
         if any(unstable):
             return f"the orbit is unstable {_where(unstable)}, so that the height means nothing"
-        if abs(self.error) > self.tolerance:
-            than = "less" if self.error < 0 else "more"
-            return f"on the contact the height is {than} than the tolerance allows"
+        if not abs(self.error) <= self.tolerance:
+            return "the heights of both models differ by more than the tolerance"
         return ""
 
     def __str__(self) -> str:

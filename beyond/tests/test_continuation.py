@@ -392,6 +392,12 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
         (lambda: follow(start, along="restitution", to=1.1), r"restitution must be in \[0, 1\]"),
         (lambda: follow(start, to=(1.4, 2.0)), "amplitude = 1.3 of the orbit must be between"),
         (lambda: follow(start, along=path, to=2.0), "the orbit is not on the path x"),
+        (lambda: limits(0.7), r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"),
+        (
+            lambda: follow(Rigid(0.5), to=2.0),
+            r"orbit = Rigid\(.*\): must be a periodic orbit, such",
+        ),
+        (lambda: cascade(follow(start), to=2.0), "doubling = FollowedBranch.*: must be a period d"),
         (lambda: follow(start, to=1.3), "amplitude = 1.3 is that of the orbit already"),
     ):
         with pytest.raises(ValueError, match=text) as raised:

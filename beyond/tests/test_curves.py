@@ -183,7 +183,7 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight(ball, to):
 
 def test_wrong_arguments_are_named(rigid):
     doubling = rigid.first("period doubling")
-    with pytest.raises(OrbitNotFound, match="kind = ''"):
+    with pytest.raises(OrbitNotFound, match="the orbit is an ordinary one: a curve starts at a sp"):
         special_curve(rigid.orbits[0])
     with pytest.raises(OrbitNotFound, match="the only impact of the orbit vanishes"):
         special_curve(replace(doubling, kind="grazing of an impact"))
@@ -191,6 +191,12 @@ def test_wrong_arguments_are_named(rigid):
         special_curve(doubling, along=("amplitude", "stiffness"))
     with pytest.raises(OrbitNotFound, match="no cusp on this curve; its orbits of codimension two"):
         special_curve(doubling, ranges={"restitution": (0.4, 0.6)}).first("cusp")
+    with pytest.raises(ValueError, match="along = 'frequency_ratio': must be two names or paths"):
+        special_curve(doubling, along="frequency_ratio")
+    with pytest.raises(ValueError, match=r"ranges = \[0\.5, 3\]: must be a mapping of names to"):
+        special_curve(doubling, ranges=[0.5, 3])
+    with pytest.raises(ValueError, match=r"special = FollowedBranch\(…\): must be a special orbit"):
+        special_curve(rigid)
     with pytest.raises(ValueError, match="two different parameters"):
         special_curve(doubling, along=("amplitude", "amplitude"))
     with pytest.raises(ValueError, match=r"restitution = 0\.5 is not in its range"):

@@ -232,6 +232,9 @@ def test_a_reason_has_the_digits_that_tell_two_amplitudes_apart():
     ("call", "text"),
     [
         (lambda: orbit(Rigid(0.5), amplitude=-1), "amplitude = -1: must be a positive number"),
+        (lambda: orbit(Rigid(0.5), amplitude="1.0"), "amplitude = '1.0': is a text, and must be a"),
+        (lambda: orbit(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
+        (lambda: orbits(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
         (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be a whole number from 1"),
         (lambda: orbit(Rigid(0.5), amplitude=1, side="left"), "side = 'left': must be 'stable' or"),
         (lambda: orbit_near(Rigid(0.5), amplitude=1, phases=[0, 1], velocities=[-1]), "one entry"),

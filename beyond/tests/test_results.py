@@ -223,6 +223,13 @@ def test_pictures_refuse_what_they_cannot_draw(rigid):
     softer = follow(orbit(Rigid(0.5), amplitude=1.4), along="restitution", to=0.6)
     with pytest.raises(ValueError, match="all along the same parameters"):
         plot(rigid, softer)
+    with pytest.raises(ValueError, match="plot draws branches, curves and lists of them"):
+        plot(rigid.orbits[0])
+
+
+def test_a_list_of_branches_has_a_dataset_for_each(rigid):
+    with pytest.raises(ValueError, match="each branch has a dataset of its own"):
+        to_dataset([rigid, rigid])
 
 
 def test_all_kinds_have_marks():

@@ -394,6 +394,10 @@ def test_mistakes_have_one_line():
         bb.simulate(ball, amplitude=1.0, velocity=3.0)
     with pytest.raises(ValueError, match="amplitude = -1: must be at least 0"):
         bb.simulate(ball, amplitude=[1.0, -1.0])
+    with pytest.raises(ValueError, match=r"amplitude = '1\.0': is a text"):
+        bb.simulate(ball, amplitude="1.0")
+    with pytest.raises(ValueError, match=r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"):
+        bb.simulate(0.7, amplitude=1.0)
     with pytest.raises(ValueError, match="phase: must be a finite number"):
         bb.simulate(ball, amplitude=1.0, phase=np.nan)
     with pytest.raises(ValueError, match="height = 0: is below the table"):

@@ -115,6 +115,18 @@ def _varies(value):
     return not (value is None or callable(value) or isinstance(value, str))
 
 
+def brief(value):
+    """A wrong argument in an error message: as it is written, or its type if that is long."""
+    text = repr(value)
+    return f"{type(value).__name__}(…)" if "\n" in text or len(text) > 60 else text
+
+
+def check_ball(ball):
+    """Raise ValueError with one line for what is no ball."""
+    if not isinstance(ball, Ball):
+        raise ValueError(f"ball = {brief(ball)}: must be a ball, such as Rigid(0.7)")
+
+
 def _checked(name, value, low, high, *, low_allowed):
     """The value as a number or an array; ValueError unless all are finite, from low to high."""
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"

@@ -4,6 +4,7 @@ A branch is followed by pseudo-arclength continuation: the predictor goes along 
 corrector is Newton's method on the plane across it. Many branches, rows, are followed side by side.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -11,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball
+from bouncing_ball_beyond.balls import Ball, brief
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
 from bouncing_ball_beyond.forms import one_impact_more
 from bouncing_ball_beyond.paths import Path, path_of
@@ -504,7 +505,9 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     [('period doubling', 1.526824)]
     """
     many = not isinstance(orbit, PeriodicOrbit)
-    found = _follow_all(list(orbit) if many else [orbit], along, to, points, None)
+    wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
+    orbits = _listed(orbit, "orbit", wanted) if many else [orbit]
+    found = _follow_all(orbits, along, to, points, None)
     if not many and isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found if many else found[0]
@@ -520,7 +523,8 @@ def cascade(doubling, *, to, impacts: int = 64):
     to : float or array_like
         A value of the parameter beyond which nothing is followed.
     impacts : int
-        The largest number of impacts of an orbit.
+        The largest number of impacts of an orbit. The doubling of orbits with that many impacts is
+        included: their branch is followed up to it.
 
     Returns
     -------
@@ -531,13 +535,24 @@ def cascade(doubling, *, to, impacts: int = 64):
     ------
     OrbitNotFound
         If there is no doubled orbit towards `to`.
+    ValueError
+        If `doubling` is no orbit and no list of them.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, orbit
+    >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
+    >>> branches = cascade(branch.first("period doubling"), to=1.8, impacts=4)
+    >>> [(each.impacts, each.special[-1].kind) for each in branches]
+    [(2, 'period doubling'), (4, 'period doubling')]
     """
     if isinstance(doubling, PeriodicOrbit):
         branches = cascade([doubling], to=to, impacts=impacts)[0]
         if isinstance(branches, OrbitNotFound):
             raise branches
         return branches
-    latest = list(doubling)
+    wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
+    latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
@@ -554,6 +569,14 @@ def cascade(doubling, *, to, impacts: int = 64):
                 further.append(i)
         going = further
     return whole
+
+
+def _listed(given, name: str, wanted: str) -> list:
+    """Several orbits as a list; ValueError with one line for anything else."""
+    found = list(given) if isinstance(given, Iterable) else [given]
+    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in found):
+        raise ValueError(f"{name} = {brief(given)}: must be {wanted}")
+    return found
 
 
 def _follow_all(orbits, along, to, points, until) -> list:

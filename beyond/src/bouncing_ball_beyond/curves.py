@@ -28,13 +28,14 @@ bordered matrices; Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, ch
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import KroghInterpolator
 from scipy.optimize import brentq
 
+from bouncing_ball_beyond.balls import brief
 from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.equations import OrbitEquations, dense
 from bouncing_ball_beyond.forms import (
@@ -336,6 +337,7 @@ def special_curve(
 
 
 CLOSED = "the curve is closed"
+SUCH = "such as branch.first('period doubling')"
 
 
 class _Half(NamedTuple):
@@ -346,9 +348,20 @@ class _Half(NamedTuple):
     end: str
 
 
-def _start(special: PeriodicOrbit, along) -> tuple[_System, NDArray]:
+def _start(special: Any, along) -> tuple[_System, NDArray]:
     """The equations of special orbits along two parameters, and one of them."""
     allowed = KINDS.keys() - {"lost release", "vanishing flight"}
+    if not isinstance(special, PeriodicOrbit):
+        raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
+    if not special.kind:
+        raise OrbitNotFound(
+            f"the orbit is an ordinary one: a curve starts at a special one, {SUCH}"
+        )
+    if isinstance(along, str) or np.size(along) != 2:
+        raise ValueError(
+            f"along = {brief(along)}: must be two names or paths, such as"
+            " ('amplitude', 'restitution')"
+        )
     if special.kind not in allowed:
         raise OrbitNotFound(
             f"kind = {special.kind!r}: a curve goes through a special orbit of a branch:"
@@ -372,7 +385,13 @@ def _start(special: PeriodicOrbit, along) -> tuple[_System, NDArray]:
 
 def _limits(equations, z, special, ranges) -> NDArray:
     """The ends of both parameters, shape (2, 2): the least and the greatest values."""
-    wanted = dict(ranges or {})
+    wanted = {} if ranges is None else ranges
+    if not isinstance(wanted, Mapping) or any(np.size(each) != 2 for each in wanted.values()):
+        raise ValueError(
+            f"ranges = {brief(ranges)}: must be a mapping of names to (low, high), such as"
+            " {'amplitude': (0.5, 3.0)}"
+        )
+    wanted = dict(wanted)
     ends = []
     for path, value in zip(equations.along, z[equations.size :], strict=True):
         least, greatest = path.limits(special.ball, special.amplitude)

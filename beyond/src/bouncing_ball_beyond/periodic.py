@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import Ball, Corrected
+from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
 
 
@@ -314,6 +314,7 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
 
 def rows_of(ball: Ball, *others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
     """A ball and further numbers as rows of one length, and the shape which these had."""
+    check_ball(ball)
     fields = ball.parameters
     broadcast = np.broadcast_arrays(*fields.values(), *others)
     shape = broadcast[0].shape if broadcast else ()
@@ -431,8 +432,12 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
 
 def _check_arguments(amplitude, n, side):
     """Raise ValueError with one line for a wrong argument."""
+    for name, given in (("amplitude", amplitude), ("n", n)):
+        if np.asarray(given).dtype.kind not in "iufb":
+            what = "is a text, and must be a number" if isinstance(given, str) else "is no number"
+            raise ValueError(f"{name} = {brief(given)}: {what}")
     for value in np.ravel(amplitude):
-        if not (np.isreal(value) and 0 < value < np.inf):
+        if not 0 < value < np.inf:
             raise ValueError(f"amplitude = {float(value):g}: must be a positive number")
     for value in np.ravel(n):
         if value != int(value) or not 1 <= value <= 1000:
@@ -484,6 +489,7 @@ def orbits(
     >>> [(round(each.max_height, 3), each.stable) for each in found]
     [(8.209, True), (8.007, False)]
     """
+    check_ball(ball)
     _check_arguments(amplitude, periods, "stable")
     _check_arguments(1.0, impacts, "stable")
     equations = OrbitEquations(ball, impacts, periods)
@@ -599,6 +605,7 @@ def orbit_near(
     OrbitNotFound
         If Newton's method does not converge.
     """
+    check_ball(ball)
     _check_arguments(amplitude, 1, "stable")
     phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
     if phases.shape != velocities.shape or phases.ndim != 1:

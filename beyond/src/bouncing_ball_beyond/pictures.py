@@ -81,6 +81,10 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
     ValueError
         If there is no such quantity, or the branches are not along the same parameters.
     """
+    if not all(isinstance(group, FollowedBranch | list | tuple) for group in found):
+        raise ValueError(
+            "plot draws branches, curves and lists of them, such as follow(orbit, to=1.3)"
+        )
     branches = [each for group in found for each in _branches(group)]
     along = {tuple(path.name for path in each.equations.along) for each in branches}
     if len(along) != 1:

@@ -7,7 +7,7 @@ impact along ``impact`` and those of the orbit beside them; special orbits are r
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from os import PathLike
 from typing import Any
@@ -135,7 +135,12 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
         return [found]
     if isinstance(found, FollowedBranch):
         return with_special(found)
-    orbits = [each for each in found if isinstance(each, PeriodicOrbit)]
+    several: list[Any] = list(found) if isinstance(found, Iterable) else [found]
+    if any(isinstance(each, FollowedBranch) for each in several):
+        raise ValueError(
+            "each branch has a dataset of its own: [to_dataset(branch) for branch in branches]"
+        )
+    orbits = [each for each in several if isinstance(each, PeriodicOrbit)]
     if not orbits:
         raise ValueError("there is no orbit to make a dataset of")
     if len({each.impacts for each in orbits}) > 1:

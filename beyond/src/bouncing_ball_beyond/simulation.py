@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball_beyond import one_ball
-from bouncing_ball_beyond.balls import Ball, Corrected, H, Rigid, SpringDamper
+from bouncing_ball_beyond.balls import Ball, Corrected, H, Rigid, SpringDamper, brief, check_ball
 from bouncing_ball_beyond.one_ball import COLUMNS, PATIENCE, REACH, ROUNDING, STEPS, TURN
 
 FEW = 40
@@ -434,6 +434,8 @@ def axis(name, value, dim=None):
     """An argument as a labelled array: a list is an axis with the name of the argument."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
+    if np.asarray(value).dtype.kind in "SU":
+        raise ValueError(f"{name} = {brief(value)}: is a text, and must be a number")
     value = np.asarray(value, float)
     if value.ndim > 1 or not np.isfinite(value).all():
         raise ValueError(f"{name}: must be a finite number, a list of them or an xarray.DataArray")
@@ -456,6 +458,7 @@ def grid_of(ball, **values):
     rows : list of ndarray
         The values at each point, in one row.
     """
+    check_ball(ball)
     rows = {name: value for name, value in ball.parameters.items() if np.ndim(value)}
     dim = "ball" if len(rows) > 1 else None
     arrays = [axis(name, value) for name, value in values.items()]

@@ -253,6 +253,15 @@ def test_the_orbit_of_a_motion_is_that_of_newtons_method():
         bb.orbit_of_motion(ball, amplitude=[1.0, 1.1])
 
 
+def test_basins_keep_the_number_of_impacts_and_refuse_arrays():
+    assert bb.basins(bb.Rigid(0.5), amplitude=1.2, starts=4, impacts=500).attrs["impacts"] == 500
+    for ball, amplitude in ((bb.Rigid(0.5), [1.0, 1.2]), (bb.Rigid([0.5, 0.6]), 1.2)):
+        with pytest.raises(ValueError, match=r"^amplitude, ball: basins are those of a single"):
+            bb.basins(ball, amplitude=amplitude)
+    with pytest.raises(ValueError, match=r"^ball = 0\.7: must be a ball, such as Rigid\(0\.7\)$"):
+        bb.basins(0.7, amplitude=1.2)
+
+
 def test_a_summary_of_many_impacts_needs_no_history():
     """The greatest number of impacts that are kept at a time does not grow with those followed."""
     most = []

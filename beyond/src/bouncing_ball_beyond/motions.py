@@ -18,13 +18,14 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtrit
 
-from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.balls import H, check_ball
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.periodic import OrbitNotFound, solved
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
     Balls,
+    axis,
     contacts,
     dataset,
     described,
@@ -657,7 +658,8 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     starts : int
         Number of starts along each axis, the phase of the table and the closing speed.
     relative_velocity_max : float, optional
-        The largest closing speed; by default one that balls seldom exceed (:func:`fastest`).
+        The largest closing speed; by default (1 + r) max(Λ, 1)/(1 - r), above which every impact
+        slows the ball, for 1 - r ≥ 0.05.
     impacts : int
         As in :func:`motion_of`. A ball is no longer followed once its motion is known.
 
@@ -666,7 +668,18 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     xarray.Dataset
         The ``destination`` of each start, the number of a ``motion``, and of each motion the
         ``kind``, the ``impacts`` and ``periods``, and the ``share`` of the starts with its standard
-        error. Motions of the same kind, impacts and periods count as one.
+        error. Motions of the same kind, impacts and periods count as one. The attribute
+        ``impacts`` is the number of impacts after which the search for a repetition ended.
+
+    Raises
+    ------
+    ValueError
+        If the ball or the amplitude is an array.
+
+    Warnings
+    --------
+    "chaotic" after ``impacts`` impacts may be a long transient. For ϖ = 15, r = 0.7, Λ = 1.3 and
+    60 starts along each axis, 2 % are chaotic after 2,000 impacts, and none is after 20,000.
 
     Examples
     --------
@@ -675,14 +688,17 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     >>> sorted(found.kind.values.tolist()), float(found.share.sum())
     (['locked', 'periodic'], 1.0)
     """
+    check_ball(ball)
+    table = axis("amplitude", amplitude)
+    if table.ndim or any(np.ndim(value) for value in ball.parameters.values()):
+        raise ValueError("amplitude, ball: basins are those of a single ball on one table")
+    amplitude = float(table)
     middle = (np.arange(starts) + 0.5) / starts
     fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
     phase = TURN * middle - np.pi
     speed = fast * middle
     given = {"amplitude": amplitude, "speed": speed, "phase": phase}
     grid, ball, (amplitude, u, tau) = grid_of(ball, **given)
-    if grid.shape != (starts, starts):
-        raise ValueError("amplitude, ball: basins are those of a single ball on one table")
     ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u), impacts)
     names = {name: ends[name] for name in ("kind", "impacts", "periods")}
     names["kind"] = names["kind"].astype(str)
@@ -696,7 +712,8 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     }
     found = dataset(grid, {"destination": which}, OF_MOTIONS)
     of_motions = {name: ("motion", value) for name, value in names.items()}
-    return described(found.assign(of_motions), OF_MOTIONS)
+    found = found.assign(of_motions).assign_attrs(impacts=impacts)
+    return described(found, OF_MOTIONS)
 
 
 def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):

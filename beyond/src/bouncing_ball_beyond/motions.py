@@ -58,7 +58,7 @@ RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
 """The map with which a deviation starts again after a lift-off; its numbers do not matter."""
 FAR_BELOW = 1e6
 """More than the logarithm of the growth in any number of impacts that are followed at a time."""
-BLOCK = 4096
+BLOCK = 1 << 14
 """Balls that are followed at a time."""
 ERRORS = 5.0
 """The exponent of a chaotic motion is positive by so many standard errors: by chance once in three
@@ -105,7 +105,8 @@ def tangent_maps(balls, record, lifts):
     ndarray, shape (2, 2, impacts, balls)
         Zero where a ball leaves by the lift-off after a rest, because it forgets its past there.
     """
-    ball, amplitude = balls.ball, balls.amplitude
+    ball = balls.ball
+    amplitude = balls.amplitude
     _, tau, u, T, duration, _, w, time = np.moveaxis(record, 1, 0)
     if has_closed_form(ball):
         slopes = slopes_of_oscillator(balls, tau, u, duration, w)
@@ -144,7 +145,9 @@ def slopes_of_contact(balls, tau, u, T):
 def slopes_of_oscillator(balls, tau, u, duration, w):
     """The same for a spring and a damper, by the responses of which its motion is a sum."""
     ball = balls.ball
-    ratio, zeta, kappa = ball.frequency_ratio, ball.zeta, ball.kappa
+    ratio = ball.frequency_ratio
+    zeta = ball.zeta
+    kappa = ball.kappa
     x, y = table_at(tau, balls.amplitude)
     start = np.where(u < 0, kappa, 0.0)
     load = contacts(duration, 0.0, 0.0, 0.0, 0.0, ratio, zeta)
@@ -236,7 +239,9 @@ def _follow_to_end(found, balls, lane, impacts, section):
         count = min(count, max(ROWS // track["lane"].size // section, 1))
         record, going, after = follow(balls, count * section)
         _store_resting(found, track["lane"], record, going, seen)
-        balls, track, record = balls.take(going), _take(track, going), record[:, :, going]
+        balls = balls.take(going)
+        track = _take(track, going)
+        record = record[:, :, going]
         lifts = lift_offs(balls, record)
         maps = tangent_maps(balls, record, lifts)
         again = recurrence(balls, record, after, maps)
@@ -246,7 +251,8 @@ def _follow_to_end(found, balls, lane, impacts, section):
         locked = _store_locked(found, track, record, after, lifts, lap, seen)
         seen += len(record)
         (left,) = (~locked & ~again["repeats"]).nonzero()
-        balls, track = after.take(left), _take(track, left)
+        balls = after.take(left)
+        track = _take(track, left)
     _store_others(found, balls, track, seen)
 
 
@@ -495,9 +501,9 @@ def exponent(growth, time, areas):
         error = np.sqrt(n / (n - 1) * np.sum(residual**2)) / time[first:].sum()
         errors.append(error * np.array([1.0, stdtrit(n - 1, 0.975) / 1.96]))
         residual = residual[: n // 2 * 2].reshape(-1, 2).sum(axis=1)
-    scatter, widest = errors[0][0], np.max(errors, axis=0)[1]
+    widest = np.max(errors, axis=0)[1]
     tells = lengths[-1] - lengths[first] >= TELLING
-    return rate, scatter, widest if tells else np.nan
+    return rate, errors[0][0], widest if tells else np.nan
 
 
 OF_MOTIONS = DESCRIPTIONS | {

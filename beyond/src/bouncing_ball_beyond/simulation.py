@@ -207,7 +207,9 @@ def releases(ball, phase, u, amplitude):
     speed = np.full(u.shape, np.nan)
     left = np.arange(u.size)
     while left.size >= FEW:
-        ratio, zeta, kappa = ball.frequency_ratio, ball.zeta, ball.kappa
+        ratio = ball.frequency_ratio
+        zeta = ball.zeta
+        kappa = ball.kappa
         loss = 2 * zeta * ratio
         stiffness = ratio * ratio
         detuning = (ratio - 1) * (ratio + 1)
@@ -251,7 +253,7 @@ def releases(ball, phase, u, amplitude):
 
 
 def has_closed_form(ball):
-    """Whether :func:`.one_ball.press` and :func:`releases` follow the contacts of a ball."""
+    """Whether :func:`.one_ball.impacts` and :func:`releases` follow the contacts of a ball."""
     if not isinstance(ball, SpringDamper):
         return False
     detuning = ball.frequency_ratio**2 - 1
@@ -262,7 +264,8 @@ def has_closed_form(ball):
 
 def leave(balls):
     """How balls leave the table after their impacts."""
-    ball, u = balls.ball, balls.speed
+    ball = balls.ball
+    u = balls.speed
     if has_closed_form(ball):
         duration, w = releases(ball, balls.phase, u, balls.amplitude)
         own_time = np.where(duration < np.inf, duration * ball.frequency_ratio, np.nan)
@@ -288,7 +291,8 @@ def left_of_contacts(balls):
 
 def rest(balls, gap, w):
     """How balls leave after instantaneous impacts, some of them after :func:`.one_ball.rest`."""
-    amplitude, phase = balls.amplitude, balls.phase
+    amplitude = balls.amplitude
+    phase = balls.phase
     left = left_of_contacts(balls)
     restitution = w / np.maximum(balls.speed, TINY)
     # The limit of :func:`.one_ball.settling`, moved so that rounding does not decide here.
@@ -331,7 +335,10 @@ def fly(balls, leaving):
     Where a contact resumes, the speed is negative. The time is NaN where it does so for a law whose
     force does not vanish where δ + κδ′ = 0.
     """
-    ball, amplitude, gap, w = balls.ball, balls.amplitude, leaving.gap, leaving.speed
+    ball = balls.ball
+    amplitude = balls.amplitude
+    gap = leaving.gap
+    w = leaving.speed
     x, y = table_at(leaving.phase, amplitude)
     # A ball without a speed leaves because the table falls away: Y ≥ 1, but for rounding.
     y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)

@@ -88,7 +88,7 @@ def original(tmp_path_factory):
     code = [folder / "study.py"]
     datasets.save(heights(), folder / "figures" / "fig14.nc", "Figure 14", PARAMETERS, code)
     datasets.save(verdicts(), folder / "figures" / "claims.nc", "Claims", {}, code)
-    data = compare.load(folder, ["fig14", "claims"])
+    data = compare.read_all(folder, ["fig14", "claims"])
     for product in (PICTURE, PAPER):
         product.make(data, folder)
     return folder
@@ -178,7 +178,7 @@ def test_rounding_and_other_versions_of_the_code_of_the_reference_are_no_differe
     drawn.edit(scaled("relative_error", 1 + 1e-7, slice(20, None)))
     drawn.edit(lambda data: data.assign_attrs(commit="old", code="old"), side="reference")
     drawn.edit(lambda data: data[sorted(data.variables, reverse=True)])
-    PICTURE.make(compare.load(drawn.results, ["fig14"]), drawn.results)
+    PICTURE.make(compare.read_all(drawn.results, ["fig14"]), drawn.results)
     assert drawn.lines() == ""
 
 
@@ -431,7 +431,7 @@ def test_a_text_that_is_written_otherwise_is_different(record, monkeypatch):
 def test_a_number_that_rounds_otherwise_within_its_tolerance_is_no_difference(record):
     for side, value in (("reference", 82.175 - 1e-10), ("results", 82.175 + 1e-10)):
         record.edit(lambda data, value=value: data.assign(error_threshold=value), side=side)
-        data = compare.load(getattr(record, side), ["fig14", "claims"])
+        data = compare.read_all(getattr(record, side), ["fig14", "claims"])
         PAPER.make(data, getattr(record, side))
     texts = [(folder / "paper.md").read_text() for folder in (record.reference, record.results)]
     assert texts[0] != texts[1]
@@ -506,7 +506,7 @@ def test_a_png_with_more_than_its_pixels_is_different(original, tmp_path):
 def test_a_picture_that_is_older_than_its_dataset_is_different(drawn):
     drawn.edit(scaled("max_height", 1.01))
     drawn.edit(scaled("max_height", 1.01), side="reference")
-    PICTURE.make(compare.load(drawn.reference, ["fig14"]), drawn.reference)
+    PICTURE.make(compare.read_all(drawn.reference, ["fig14"]), drawn.reference)
     lines = drawn.lines()
     assert "figures/fig14.png in the results is not what its dataset gives" in lines
     assert "figures/fig14.svg in the results is not what its dataset gives" in lines
@@ -661,8 +661,8 @@ def test_a_changed_text_is_blamed_for_the_text_only(committed, monkeypatch):
 
 def test_the_page_has_all_findings_and_needs_no_other_file(drawn):
     drawn.edit(scaled("error_threshold", 1.01, ()))
-    PICTURE.make(compare.load(drawn.results, ["fig14"]), drawn.results)
-    PAPER.make(compare.load(drawn.results, ["fig14", "claims"]), drawn.results)
+    PICTURE.make(compare.read_all(drawn.results, ["fig14"]), drawn.results)
+    PAPER.make(compare.read_all(drawn.results, ["fig14", "claims"]), drawn.results)
     drawn.rewrite("figures/fig14.svg", "#0072b2", "<&>", "reference")
     template = Path(__file__).parents[1] / "workflow" / "templates" / "diff.html.j2"
     report = drawn.report()
@@ -680,7 +680,7 @@ def test_the_page_has_all_findings_and_needs_no_other_file(drawn):
 @pytest.fixture
 def clean(committed):
     """Results that differ, and follow from committed code."""
-    data = compare.load(committed.results, ["fig14", "claims"])
+    data = compare.read_all(committed.results, ["fig14", "claims"])
     PAPER.make(data, committed.results)
     return committed
 
@@ -694,7 +694,7 @@ def test_a_picture_is_accepted_with_its_dataset(drawn, monkeypatch):
     git(drawn.reference, "add", ".")
     git(drawn.reference, "commit", "-q", "-m", "code")
     drawn.edit(scaled("max_height", 1.01))
-    PICTURE.make(compare.load(drawn.results, ["fig14"]), drawn.results)
+    PICTURE.make(compare.read_all(drawn.results, ["fig14"]), drawn.results)
     assert accepted(drawn) == ["figures/fig14.nc", "figures/fig14.png", "figures/fig14.svg"]
     assert drawn.lines() == ""
 
@@ -827,7 +827,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def test_claims_are_judged_anew_from_the_datasets_of_a_folder(tmp_path):
-    data = compare.load(ROOT, products.ALL)
+    data = compare.read_all(ROOT, products.ALL)
     (tmp_path / "figures").mkdir()
     products.judge(data, tmp_path)
     judged = datasets.read(tmp_path / "figures" / "claims.nc")
@@ -860,7 +860,7 @@ def test_claims_that_stay_as_they_are_stay_in_the_reference(judging):
 
 def test_claims_change_with_the_dataset_that_decides_them(judging):
     judging.edit(scaled("error_threshold", 100, ()))
-    data = compare.load(judging.results, ["fig14"])
+    data = compare.read_all(judging.results, ["fig14"])
     (judged,) = (product for product in products.PRODUCTS if product.artifact == "claims")
     # The results still have the claims of before.
     with pytest.raises(ValueError, match=r"figures/claims\.nc in the results is not what"):
@@ -870,6 +870,6 @@ def test_claims_change_with_the_dataset_that_decides_them(judging):
         lambda made: made.assign_attrs(code=datasets.digest([judging.reference / "study.py"])),
         "claims",
     )
-    PAPER.make(compare.load(judging.results, ["fig14", "claims"]), judging.results)
+    PAPER.make(compare.read_all(judging.results, ["fig14", "claims"]), judging.results)
     assert accepted(judging) == ["figures/claims.nc", "figures/fig14.nc", "paper.md"]
     assert judging.lines() == ""

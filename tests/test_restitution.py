@@ -133,7 +133,7 @@ def test_height_and_velocity_over_a_cycle():
 
 def test_a_simulation_is_that_of_an_independent_search_for_impacts():
     r, amplitude, impacts = 0.8, 2.0, 10
-    path = restitution.simulate(r, amplitude, 0.7, 6.0, impacts)
+    path = restitution.iterate(r, amplitude, 0.7, 6.0, impacts)
     time, velocity = 0.7, 6.0
     deviation = np.array([1.0, 0.0])
     growth = []
@@ -163,7 +163,7 @@ def test_the_lyapunov_exponent_of_a_periodic_ball_is_that_of_its_largest_multipl
     lift = 0.02
     trace = 1 + r**2 - (1 + r) ** 2 * lift
     largest = trace / 2 + np.sqrt(trace**2 / 4 - r**2)
-    path = restitution.simulate(r, np.hypot(x, lift), np.arctan2(lift, x), n * np.pi, 400)
+    path = restitution.iterate(r, np.hypot(x, lift), np.arctan2(lift, x), n * np.pi, 400)
     exponent, error = restitution.lyapunov_exponent(path)
     # The other multiplier is smaller by a factor of two and is gone after a quarter of the impacts.
     assert exponent == pytest.approx(np.log(largest) / n, abs=1e-11)
@@ -190,8 +190,8 @@ def test_the_error_of_the_lyapunov_exponent_is_that_of_a_ratio_of_means():
 def test_motions_repeat_after_a_period_doubling_and_not_in_chaos():
     r = 0.65
     doubled = 1.01 * restitution.period_doubling(1, r)
-    assert restitution.repetition(restitution.simulate(r, doubled, 0.8, np.pi, 2000)) == (2, 2)
-    chaos = restitution.simulate(0.8, 3.5, 0.7, 6.0, 800)
+    assert restitution.repetition(restitution.iterate(r, doubled, 0.8, np.pi, 2000)) == (2, 2)
+    chaos = restitution.iterate(0.8, 3.5, 0.7, 6.0, 800)
     assert restitution.repetition(chaos) == (0, 0)
     assert restitution.lyapunov_exponent(chaos)[0] > 0.1
 
@@ -220,7 +220,7 @@ def test_repetition_needs_phases_and_velocities_of_the_last_quarter_of_the_impac
 @pytest.mark.parametrize("amplitude", [1.01, 1.1])
 def test_a_ball_that_sticks_leaves_the_table_where_it_falls_faster(amplitude):
     r = 0.2
-    path = restitution.simulate(r, amplitude, 0.7, 2.0, 400)
+    path = restitution.iterate(r, amplitude, 0.7, 2.0, 400)
     assert path.stickings > 2
     assert np.isnan(path.growth).sum() == path.stickings
     leaving = np.arcsin(1 / amplitude)
@@ -248,7 +248,7 @@ def test_the_departure_from_the_table_is_the_next_time_at_which_its_force_would_
 
 def test_a_ball_comes_to_rest_on_a_table_with_a_small_amplitude():
     with pytest.raises(ValueError, match=r"Λ = 0.9 comes to rest: Λ must exceed 1 \(Eq. 9\)"):
-        restitution.simulate(0.3, 0.9, 0.7, 1.0, 500)
+        restitution.iterate(0.3, 0.9, 0.7, 1.0, 500)
 
 
 @pytest.mark.parametrize("before_the_end", [1e-4, 1e-3, 1e-2])

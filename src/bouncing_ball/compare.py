@@ -224,7 +224,7 @@ def compare(
     folders = Path(results), Path(reference)
     refuse_links(*folders, files)
     new, old = (
-        Side(name, folder, load(folder, [*compared, *needed(made)] or needed(products)))
+        Side(name, folder, read_all(folder, [*compared, *needed(made)] or needed(products)))
         for name, folder in zip(("results", "reference"), folders, strict=True)
     )
     whole = len(made) == len(products)
@@ -308,7 +308,7 @@ def refuse_links(results: Path, reference: Path, files: Collection[str]) -> None
         raise ValueError(f"{path} is a part of the reference: results must be files of their own")
 
 
-def load(folder: Path, names: Collection[str]) -> dict[str, xr.Dataset]:
+def read_all(folder: Path, names: Collection[str]) -> dict[str, xr.Dataset]:
     """The datasets of a folder that can be read, without groups that nobody sees."""
     data = {}
     for name in dict.fromkeys(names):
@@ -485,14 +485,14 @@ def accept(
         raise ValueError(f"nothing is accepted, commit first: {', '.join(edited.splitlines())}")
     report = compare(results, reference, products, artifacts, names)
     every = needed(products)
-    new = Side("results", Path(results), load(Path(results), every))
+    new = Side("results", Path(results), read_all(Path(results), every))
     unfit = [finding.line for finding in report.findings if finding.of_results]
     unfit += notes(new, new, artifacts)
     if unfit:
         raise ValueError(f"nothing is accepted: {unfit[0]}")
     red = {finding.artifact for finding in report.findings}
     with tempfile.TemporaryDirectory() as scratch:
-        stage(products, red, new, load(old_folder, every), Path(scratch), commit)
+        stage(products, red, new, read_all(old_folder, every), Path(scratch), commit)
         return list(replaced(Path(scratch), old_folder))
 
 

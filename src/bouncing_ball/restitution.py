@@ -244,7 +244,7 @@ def departure(amplitude: float, time: float) -> float:
     return time + np.mod(rising - phase, 2 * np.pi)
 
 
-def simulate(r: float, amplitude: float, time: float, velocity: float, impacts: int) -> Impacts:
+def iterate(r: float, amplitude: float, time: float, velocity: float, impacts: int) -> Impacts:
     """Follow a ball that leaves the table at a time τ with a velocity over a number of impacts.
 
     After an impact with a relative velocity below STICKING the ball moves with the table until

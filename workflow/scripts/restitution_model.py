@@ -72,7 +72,7 @@ def three_balls(parameters: dict) -> xr.Dataset:
     paths = []
     for amplitude in amplitudes:
         velocity = amplitude * np.cos(phase) + r * parameters["impact_speed"]
-        path = restitution.simulate(r, amplitude, phase, velocity, parameters["impacts"])
+        path = restitution.iterate(r, amplitude, phase, velocity, parameters["impacts"])
         paths.append(path)
         impacts, periods = restitution.repetition(path)
         exponent = (np.nan, np.nan)

@@ -377,9 +377,7 @@ def error_law(ball, amplitude, n):
 @click.option("--frequency", required=True, help='Of the table, such as "50 Hz".')
 @click.option("--restitution", type=float, required=True, help="Restitution coefficient r.")
 @click.option("--stroke", help='Amplitude of the table, half of peak to peak, such as "0.1 mm".')
-@click.option(
-    "--acceleration", help='Greatest one, such as "0.8 g", in place of the stroke; else in m/s².'
-)
+@click.option("--acceleration", help='In place of it, such as "0.8 g"; a number is in m/s².')
 @click.option("--mass", help='Of the ball, such as "20 g"; or its radius and density.')
 @click.option("--radius", help='Of the ball, such as "5 mm".')
 @click.option("--density", help='Of the ball, such as "7800 kg/m^3".')

@@ -144,7 +144,7 @@ def steps(data: xr.DataArray) -> NDArray:
     return data.sortby("frequency_ratio").diff("frequency_ratio").values
 
 
-def ascending_rows(ends: xr.DataArray) -> xr.DataArray:
+def from_the_stiffest(ends: xr.DataArray) -> xr.DataArray:
     """Table 1 from the stiffest row to the most compliant one."""
     return ends.sortby("frequency_ratio", ascending=False)
 
@@ -380,7 +380,7 @@ def contact_gets_longer(*sweeps):
     "table1",
 )
 def existence_changes(table1):
-    node = ascending_rows(table1["computed"]).isel(frequency_ratio=-1).sel(bound="saddle-node")
+    node = from_the_stiffest(table1["computed"]).isel(frequency_ratio=-1).sel(bound="saddle-node")
     rigid = table1["restitution_range"].sel(impact_map="exact", bound="saddle-node")
     moved = abs(node.values / rigid.values - 1)
     return [at_least("the smallest relative change of a saddle-node at ϖ = 2", moved, LIMIT)]
@@ -714,7 +714,7 @@ def apart_when_compliant(*figures):
     "Eq. 8; the moves are called slight",
 )
 def bifurcations_move(table1, lowest):
-    move = ascending_rows(table1["computed"]).diff("frequency_ratio")
+    move = from_the_stiffest(table1["computed"]).diff("frequency_ratio")
     node = -move.sel(bound="saddle-node")
     doubling = move.sel(bound="period doubling")
     turns = ", ".join(f"{ratio:.4g}" for ratio in complete(lowest["period_doubling_turn"]))
@@ -738,7 +738,7 @@ def bifurcations_move(table1, lowest):
     remark="the range of Table 1; *stable between* has further ones at ϖ = 2",
 )
 def range_widens(table1):
-    width = ascending_rows(table1["computed"]).diff("bound")
+    width = from_the_stiffest(table1["computed"]).diff("bound")
     return [
         above("the smallest growth from a row to the next, in Λ", width.diff("frequency_ratio"))
     ]
@@ -977,7 +977,7 @@ def representative(fig15, table1):
     given = parameters(fig15)
     printed = restitution.holmes_period_doubling(given["n"], given["restitution"])
     eq_8 = abs(upper / printed - 1)
-    rows = ascending_rows(table1["printed"])
+    rows = from_the_stiffest(table1["printed"])
     slight = float(complete(abs(rows / rows.isel(frequency_ratio=0) - 1)).max())
     return [
         at_most("both ends, as the moves of Table 1 that are called slight", [node, eq_5], slight),

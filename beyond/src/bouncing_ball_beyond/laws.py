@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
-from bouncing_ball_beyond.root_time import Motion, follow, load, rows_of
+from bouncing_ball_beyond.root_time import ContactMotion, follow, load_of, values_by_row
 
 SLOWEST = 1e-12
 """The speed that a ball without one is given, because p would stay zero."""
@@ -268,19 +268,21 @@ class ForceLaw(Ball):
         if self.lag:
             # q at which p + κp′ = 0, so that the zero is a simple one for κ = 0 as well.
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
-        return -self.force_at(q**self.root, v, load(t, given), given)
+        return -self.force_at(q**self.root, v, load_of(t, given), given)
 
     def _followed(self, tau, u, amplitude, gravity, T=None):
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
-        rows = rows_of(values if T is None else values | {"T": T})
+        rows = values_by_row(values if T is None else values | {"T": T})
         given = rows.given
         none = np.zeros((rows.size, rows.directions))
         kinks = (
             lambda q, v, t, given, kink=kink: kink(q**self.root, v, **self.own(given))
             for kink in self.kinks
         )
-        motion = Motion(self.root, self.force_at, self._release, tuple(kinks), given, rows.steps)
+        motion = ContactMotion(
+            self.root, self.force_at, self._release, tuple(kinks), given, rows.steps
+        )
         # Where a contact resumes, the ball moves away, u < 0, from the line p + κp′ = 0.
         stepped = motion.stepped()
         kappa = self.at(**self.own(stepped)).kappa

@@ -49,8 +49,8 @@ EARLY, WANTED, LONGER = 3, 0.03, 2.0
 """The change in the sweep EARLY that the next panel should have, and the largest ratio of lengths.
 With these, contacts of four laws took the least number of sweeps."""
 
-NEAR = 1e-12
-"""The last step of Newton's method to an event, over the length of its panel."""
+NEAR = 1e-13
+"""The last step of Newton's method to an event, over the length of the panel in which it is."""
 
 SAME = 1e-10
 """Two events are the same if they are nearer, over the length of their panel."""
@@ -59,7 +59,7 @@ MOST_PANELS, PATIENT = 4000, 40
 """The largest number of panels of a contact, and the one from which on Newton's method solves them.
 An impact takes about six."""
 
-CALM = 1e-6
+CALM = 1e-3
 """The least speed of a ball that lies on the table, over its greatest one, that is resolved."""
 
 STEADY, PERIODS = 1e-9, 100
@@ -110,7 +110,7 @@ class Rows(NamedTuple):
         return values.reshape(-1, *self.shape)
 
 
-def rows_of(values):
+def values_by_row(values):
     """:class:`Rows` of numbers and arrays that broadcast."""
     arrays = {name: np.asarray(value) for name, value in values.items()}
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
@@ -131,7 +131,7 @@ def rows_of(values):
     return Rows(shape, given, steps, size, directions)
 
 
-class Motion(NamedTuple):
+class ContactMotion(NamedTuple):
     """The equation of motion of contacts, and where panels end.
 
     Parameters
@@ -178,7 +178,7 @@ class Motion(NamedTuple):
         return self.root * power
 
 
-def load(t, given):
+def load_of(t, given):
     """a = g - Λ sin(τ + t)."""
     return given["gravity"] - given["amplitude"] * np.sin(given["tau"] + t)
 
@@ -187,7 +187,7 @@ def rates(motion, state):
     """dq/ds, dv/ds and dt/ds."""
     q, v, t = state
     lever = motion.lever(q)
-    a = load(t, motion.given)
+    a = load_of(t, motion.given)
     return v, lever * (a - motion.force(q * lever / motion.root, v, a, motion.given)), lever
 
 
@@ -255,7 +255,7 @@ def linearised(motion, nodes, h):
     lever = motion.lever(q)
     bend = m * (m - 1) * q ** max(m - 2, 0)
     p = q * lever / m
-    a = load(t, given)
+    a = load_of(t, given)
     along = motion.force(p + 1j * H, v, a, given)
     felt = 1 - motion.force(p, v, a + 1j * H, given).imag / H
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
@@ -270,8 +270,10 @@ def _end_of(start, h, slopes):
     return tuple(y + h * (_WEIGHTS @ slope) for y, slope in zip(start, slopes, strict=True))
 
 
-def solve_panel(motion, start, h, event=None, *, newton=False):
+def solve_panel(motion, start, h, event=None, within=0.0, *, newton=False):
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
+
+    An event is found if the last step to it is at most ``within``.
 
     The sweeps are Picard's, or steps of Newton's method. With these the panel of a ball that lies
     on the table may be as long as many oscillations of its contact, which have died out. In each
@@ -286,7 +288,7 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
         q = q0 + h * (_INTEGRALS @ v)
         lever = motion.lever(q)
         t = t0 + h * (_INTEGRALS @ lever)
-        a = load(t, motion.given)
+        a = load_of(t, motion.given)
         force = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         if newton:
             missing = (force - push).T[..., np.newaxis]
@@ -303,7 +305,7 @@ def solve_panel(motion, start, h, event=None, *, newton=False):
             end = _end_of(start, h, (v, push, lever))
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
-            near = np.abs(moved) <= NEAR * h
+            near = np.abs(moved) <= within
         if np.all(near & (change <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
             break
         if event:
@@ -329,7 +331,7 @@ def carried(motion, nodes, by, h):
         stepped = motion.stepped().items()
         given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in stepped}
         lever = motion.lever(q)
-        a = load(t, given)
+        a = load_of(t, given)
         known = known + (lever * (a - motion.force(q * lever / motion.root, v, a, given))).imag
     push = linear.solved(known)
     rate = v0 + linear.h * (_INTEGRALS @ push)
@@ -404,7 +406,9 @@ def _next_panel(motion, events, side, start, length, newton):
         for k in np.unique(found[found >= 0]):
             at = rows[found == k]
             begin = [y[at] for y in start]
-            new = solve_panel(motion.of(at), begin, place[found == k], events[k], newton=newton)
+            short = place[found == k]
+            within = NEAR * length[at]
+            new = solve_panel(motion.of(at), begin, short, events[k], within, newton=newton)
             panel.replace_some(at, new)
         which[rows[found >= 0]] = found[found >= 0]
         doubtful = (found >= 0) & np.isfinite(panel.change[rows])
@@ -438,7 +442,7 @@ def _turn(q, v, t, given):
 class _Contacts:
     """Contacts on their way; most arrays have a value for each of them."""
 
-    motion: Motion
+    motion: ContactMotion
     events: tuple
     until: NDArray | None
     now: NDArray
@@ -512,7 +516,7 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
 
     Parameters
     ----------
-    motion : Motion
+    motion : ContactMotion
         The equation of motion.
     q, v, length, period : array, shape (rows,)
         q and v at the start, the length of the first panel, and the period of the table.
@@ -532,6 +536,7 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
     side = np.zeros((len(events), rows))
     side[len(motion.kinks) :] = -1.0
     now = np.array([0 * v, q, v, 0 * v])
+    known = now.sum(0) + load(0 * v, motion.given) + (0 if until is None else until)
     contacts = _Contacts(
         motion=motion,
         events=events,
@@ -544,7 +549,7 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
         side=side,
         before=now[1:3].copy(),
         ended=np.zeros(rows, bool),
-        lost=~np.isfinite(now.sum(0) + load(0 * v, motion.given)),
+        lost=~np.isfinite(known),
     )
     for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))

@@ -536,7 +536,7 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
     side = np.zeros((len(events), rows))
     side[len(motion.kinks) :] = -1.0
     now = np.array([0 * v, q, v, 0 * v])
-    known = now.sum(0) + load(0 * v, motion.given) + (0 if until is None else until)
+    known = now.sum(0) + load_of(0 * v, motion.given) + (0 if until is None else until)
     contacts = _Contacts(
         motion=motion,
         events=events,

@@ -257,6 +257,7 @@ def newton(trial):
         heights.append(float(states[0].body_q.numpy()[0, 2]) - r)
     return np.array(heights), math.nan
 
+
 def liggghts(trial):
     program = shutil.which("liggghts")
     if program is None:
@@ -485,7 +486,6 @@ def genesis(trial):
         scene.step()
         heights.append(float(ball.get_pos()[2]) - r)
     return np.array(heights), math.nan
-
 
 
 RUNS = {

@@ -313,7 +313,11 @@ def liggghts(trial):
 
 
 def ode(trial):
-    import odepy
+    try:
+        import odepy
+    except Exception as missing:
+        # Its wheel has no library of ODE: that is Debian's libode8.
+        raise ImportError("ODE", name="odepy with libode") from missing
 
     odepy.dInitODE()
     r = trial.size

@@ -25,9 +25,9 @@ without scatter, it may hold it in 91.5 % with scatter. The interval is never sh
 probable error, 50 %, without scatter.
 
 A law is judged by how much worse it fits than a parabola in ln v, for each φ and σ by the χ²
-distribution of the difference, averaged over them. Scatter alone, which both have, therefore rejects
-no law. Without given errors a systematic error of the measurement does not show in the scatter: a
-law is then not called incompatible, but said to deviate.
+distribution of the difference, averaged over them. Scatter alone, which both have, therefore
+rejects no law. Without given errors a systematic error of the measurement does not show in the
+scatter: a law is then not called incompatible, but said to deviate.
 """
 
 import functools

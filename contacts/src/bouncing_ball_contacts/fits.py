@@ -32,7 +32,7 @@ scatter: a law is then not called incompatible, but said to deviate.
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -47,7 +47,7 @@ from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, sh
 
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
-_EXPONENTS = np.array([-0.5, 1e-6, 0.2, 0.5, 1.0])
+_EXPONENTS = np.array([-0.5, 1e-6, 0.2, 0.4, 0.6, 0.8, 1.0])
 # φ for unknown and for given errors of the readings.
 _SHARES = np.array([0.0, 0.01, 0.05, 0.2, 0.5, 1.0])
 _SHARES_GIVEN = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.94, 0.985])
@@ -209,7 +209,7 @@ def errors_of(impacts: Impacts, known: float | Array | None) -> Errors:
     given = 1.0 if isinstance(known, np.ndarray) else known
     sizes = given * math.sqrt(unit) / np.sqrt(1 - shares)[:, None]
     # Beside given errors a large scatter is less likely than a small one.
-    return Errors(shapes, sizes, np.log(1 - shares), np.zeros_like(sizes))
+    return Errors(shapes, sizes, 0.5 * np.log(1 - shares), np.zeros_like(sizes))
 
 
 @dataclass(frozen=True)
@@ -313,9 +313,23 @@ def balance(curves: Curves, weights: Array) -> tuple[Array, Array]:
     return logs, held
 
 
+def _likely(curves: Curves, weights: Array) -> Curves:
+    """Return the curves with those sizes of errors that have a weight, and their neighbours."""
+    of_size = weights.max(axis=(0, 1, 3))
+    likely = np.flatnonzero(of_size > 1e-6 * of_size.max())
+    kept = slice(max(likely[0] - 3, 0), likely[-1] + 4)
+    sizes = curves.errors.sizes[:, kept]
+    errors = replace(curves.errors, sizes=sizes, size_prior=curves.errors.size_prior[:, kept])
+    spread = curves.spread[:, :, kept]
+    return replace(curves, errors=errors, spread=spread, log_weight=curves.log_weight[:, :, kept])
+
+
 def interval(curves: Curves, y: Array) -> tuple[float, float, float, float]:
     """Return the mean of β, the ends of its interval, and the mean of s, for one ln r."""
     middle = float(np.mean(y))
+    weights, _, _ = curves.posterior(y[:, None] - middle)
+    # Other sizes are not needed, and cost time in the simulated recordings.
+    curves = _likely(curves, weights)
     weights, beta, slope = curves.posterior(y[:, None] - middle)
     centre = float(np.sum(weights * beta))
     logs, _ = balance(curves, weights)

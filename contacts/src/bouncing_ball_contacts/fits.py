@@ -325,7 +325,7 @@ def _likely(curves: Curves, weights: Array) -> Curves:
 
 
 def interval(curves: Curves, y: Array) -> tuple[float, float, float, float]:
-    """Return the mean of β, the ends of its interval, and the mean of s, for one ln r."""
+    """Return the mean of β, the ends of its interval, and the mean of s, of a recording."""
     middle = float(np.mean(y))
     weights, _, _ = curves.posterior(y[:, None] - middle)
     # Other sizes are not needed, and cost time in the simulated recordings.
@@ -550,8 +550,14 @@ class Timed:
     unit: str
 
 
-def time(impacts: Impacts, durations: Array, laws: list[Judged], at: float, restitution: float,
-         mass: float) -> list[Timed]:  # fmt: skip
+def by_contact_time(
+    impacts: Impacts,
+    durations: Array,
+    laws: list[Judged],
+    at: float,
+    restitution: float,
+    mass: float,
+) -> list[Timed]:
     """Return the laws whose contacts last as long as measured ones, one time or one per impact."""
     v = impacts.speed if len(durations) == len(impacts.speed) else np.array([at])
     parameters = {LAWS[each.law]: each.parameter for each in laws}
@@ -793,7 +799,7 @@ def fit(
     restitution = min(math.exp(centre), 1.0)
     times: list[Timed] = []
     if durations is not None:
-        times = time(impacts, durations, laws, at, restitution, kilograms or 1.0)
+        times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)
     return Fit(
         recording=recording,
         impacts=impacts,

@@ -5,12 +5,13 @@ The impacts of a recording have restitution coefficients rᵢ at speeds vᵢ. Th
     ln rᵢ = β + s (e^(q xᵢ) - 1)/q + eᵢ,   xᵢ = ln(vᵢ/v₀)
     cov e = σ² [(1 - φ) M Mᵀ + φ I],       M Mᵀ in units of the median of its diagonal
 
-The exponent q is between -1/2 and 1: 0 for an r that is a power of the speed, 1/5 for a law of
-Kuwabara and Kono, 1 for one of Hunt and Crossley, and negative for an r that falls at low speeds
-only. The slope s has a normal prior of the width 0.25, because measured slopes lie between 0 and
-about -0.3; β has none. M says how readings enter: an error of a time enters the flights on both of
-its sides. φ is the share of the scatter between impacts in the variance of ln r; its size σ has a
-log-normal prior about 0.006. If the errors of the readings are given, σ² (1 - φ) is known.
+The exponent q is between -1/2 and 5/4: 0 for an r that is a power of the speed, about 1/5 for a law
+of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - c v, and negative for an r
+that changes at low speeds only. The slope s has a normal prior of the width 0.25, because measured
+slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
+enters the flights on both of its sides. φ is the share of the scatter between impacts in the
+variance of ln r; its size σ has a log-normal prior about 0.006. If the errors of the readings are
+given, σ² (1 - φ) is known.
 
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
 does. The interval therefore holds the β that a test does not reject (G. Elliott, U. K. Müller and
@@ -47,7 +48,7 @@ from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, sh
 
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
-_EXPONENTS = np.array([-0.5, 1e-6, 0.2, 0.4, 0.6, 0.8, 1.0])
+_EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # φ for unknown and for given errors of the readings.
 _SHARES = np.array([0.0, 0.01, 0.05, 0.2, 0.5, 1.0])
 _SHARES_GIVEN = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.94, 0.985])

@@ -282,7 +282,7 @@ def main():
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for i in chosen:
         kind = KINDS[i]
-        held, width, spread, best, rejected = study(kind, recordings, 200 + i)
+        held, width, spread, best, rejected = study(kind, recordings, 300 + i)
         share = f"{100 * rejected / recordings:.1f}" if kind[2] else "–"
         print(
             f"| {kind[0]} | {100 * held / recordings:.1f} | {width:.4f} | {spread:.4f} | "

@@ -5,9 +5,13 @@ balls, after each step, and the largest contact force if the engine reports forc
 """
 
 import ctypes
+import functools
 import math
+import shutil
+import subprocess
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 from typing import NamedTuple
 
@@ -254,6 +258,240 @@ def newton(trial):
     return np.array(heights), math.nan
 
 
+def liggghts(trial):
+    program = shutil.which("liggghts")
+    if program is None:
+        raise ModuleNotFoundError("liggghts", name="liggghts")
+    r = trial.size
+    volume = 4 / 3 * math.pi * r**3
+    wide = 4 * (r + trial.gap) + 1
+    model = "hertz tangential off" if "hertz" in trial.design.engine else "hooke/stiffness"
+    lines = [
+        "atom_style granular",
+        "atom_modify map array",
+        "boundary f f f",
+        "newton off",
+        "communicate single vel yes",
+        "units si",
+        f"region all block -1 1 -1 1 {-wide!r} {wide!r} units box",
+        "create_box 1 all",
+        f"pair_style gran model {model}",
+        "pair_coeff * *",
+        *trial.design.snippet.splitlines(),
+        f"create_atoms 1 single 0 0 {r + trial.gap!r} units box",
+        f"set atom 1 diameter {2 * r!r} density {trial.mass / volume!r}",
+        "group up id 1",
+    ]
+    height = f"xcm(up,z)-{r!r}"
+    if trial.shape == "two":
+        lines += [
+            f"create_atoms 1 single 0 0 {-r!r} units box",
+            f"set atom 2 diameter {2 * r!r} density {trial.other / volume!r}",
+            "group low id 2",
+        ]
+        height = f"xcm(up,z)-xcm(low,z)-{2 * r!r}"
+    lines += [
+        f"velocity up set 0 0 {-trial.speed!r} units box",
+        "fix move all nve/sphere",
+        f"fix down all gravity {trial.gravity!r} vector 0 0 -1",
+        f"variable height equal {height}",
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        lines += [
+            'fix heights all print 1 "${height}" file heights.txt screen no title ""',
+            f"run {trial.steps}",
+        ]
+        command = [program, "-screen", "none", "-log", "log.txt"]
+        text = "\n".join(lines)
+        ran = subprocess.run(
+            command, input=text, text=True, cwd=folder, capture_output=True, check=False
+        )
+        log = Path(folder, "log.txt")
+        if ran.returncode or "ERROR" in log.read_text():
+            raise RuntimeError(f"LIGGGHTS: {log.read_text()[-500:]}")
+        return np.loadtxt(Path(folder, "heights.txt"))[1:], math.nan
+
+
+def ode(trial):
+    try:
+        import odepy
+    except Exception as missing:
+        # Its wheel has no library of ODE: that is Debian's libode8.
+        raise ImportError("ODE", name="odepy with libode") from missing
+
+    odepy.dInitODE()
+    r = trial.size
+    world = odepy.dWorldCreate()
+    odepy.dWorldSetGravity(world, 0, 0, -trial.gravity)
+    space = odepy.dSimpleSpaceCreate(0)
+    shapes = []
+    bodies = []
+    masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
+    for mass, place in zip(masses, (r + trial.gap, -r), strict=False):
+        body = odepy.dBodyCreate(world)
+        inertia = odepy.dMass()
+        odepy.dMassSetSphereTotal(ctypes.byref(inertia), mass, r)
+        odepy.dBodySetMass(body, ctypes.byref(inertia))
+        odepy.dBodySetPosition(body, 0, 0, place)
+        ball = odepy.dCreateSphere(space, r)
+        odepy.dGeomSetBody(ball, body)
+        bodies.append(body)
+        shapes.append(ball)
+    odepy.dBodySetLinearVel(bodies[0], 0, 0, -trial.speed)
+    if trial.shape != "two":
+        bodies.append(0)
+        shapes.append(odepy.dCreatePlane(space, 0, 0, 1, 0))
+    group = odepy.dJointGroupCreate(0)
+    contact = odepy.dContact()
+    surface = contact.surface
+    surface.mode = odepy.dContactSoftERP | odepy.dContactSoftCFM
+    surface.mu = 0
+    surface.soft_erp = trial.design.parameters["soft_erp"]
+    surface.soft_cfm = trial.design.parameters["soft_cfm"]
+    size = ctypes.sizeof(odepy.dContactGeom)
+    heights = []
+    for _ in range(trial.steps):
+        if odepy.dCollide(*shapes, 1, ctypes.byref(contact.geom), size):
+            joint = odepy.dJointCreateContact(world, group, ctypes.byref(contact))
+            odepy.dJointAttach(joint, *bodies)
+        odepy.dWorldStep(world, trial.step)
+        odepy.dJointGroupEmpty(group)
+        low = odepy.dBodyGetPosition(bodies[1])[2] + r if trial.shape == "two" else 0.0
+        heights.append(odepy.dBodyGetPosition(bodies[0])[2] - r - low)
+    return np.array(heights), math.nan
+
+
+# Of the stage: the scene, the material, and what stands for a table.
+_STAGE = """#usda 1.0
+(
+    defaultPrim = "World"
+    metersPerUnit = 1
+    kilogramsPerUnit = 1
+    upAxis = "Z"
+)
+def Xform "World"
+{{
+    def PhysicsScene "Scene" (prepend apiSchemas = ["PhysxSceneAPI"])
+    {{
+        vector3f physics:gravityDirection = (0, 0, -1)
+        float physics:gravityMagnitude = {gravity!r}
+        uniform token physxScene:solverType = "PGS"
+        bool physxScene:enableGPUDynamics = 0
+        uniform token physxScene:broadphaseType = "MBP"
+    }}
+    def Material "Material" (prepend apiSchemas = ["PhysicsMaterialAPI", "PhysxMaterialAPI"])
+    {{
+        float physics:dynamicFriction = 0
+        float physics:staticFriction = 0
+        float physics:restitution = 0
+        float physxMaterial:compliantContactStiffness = {compliantContactStiffness!r}
+        float physxMaterial:compliantContactDamping = {compliantContactDamping!r}
+    }}
+    def Plane "Table" (
+        prepend apiSchemas = ["PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
+    )
+    {{
+        uniform token axis = "Z"
+        float physxCollision:contactOffset = {ahead!r}
+        float physxCollision:restOffset = 0
+        rel material:binding:physics = </World/Material>
+    }}
+    def Sphere "Ball" (
+        prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysxRigidBodyAPI", "PhysicsMassAPI",
+            "PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
+    )
+    {{
+        double radius = {radius!r}
+        double3 xformOp:translate = (0, 0, {start!r})
+        uniform token[] xformOpOrder = ["xformOp:translate"]
+        float physics:mass = {mass!r}
+        float physxRigidBody:linearDamping = 0
+        float physxRigidBody:sleepThreshold = 0
+        float physxCollision:contactOffset = {ahead!r}
+        float physxCollision:restOffset = 0
+        rel material:binding:physics = </World/Material>
+    }}
+}}
+"""
+
+
+@functools.cache
+def _physx():
+    """Return the one PhysX of a process, with its schemas registered."""
+    import ovphysx
+    import ovstage
+    from ovphysx.samples.python_samples.schema_support import physx_schema_paths
+
+    ovphysx.PhysX.set_cpu_mode(True)
+    engine = ovphysx.PhysX()
+    schemas = [*map(str, physx_schema_paths()), str(ovphysx.newton_schema_root())]
+    ovstage.population.register_usd_schemas(schemas)
+    return engine, ovphysx.types.TensorType.RIGID_BODY_POSE, ovstage
+
+
+def physx(trial):
+    engine, poses, ovstage = _physx()
+    r = trial.size
+    gap = max(trial.gap, 0.0)
+    # Contacts are found at twice the way of a step, or the body falls through them.
+    ahead = 2 * (math.sqrt(2 * trial.gravity * gap) + trial.speed) * trial.step
+    text = _STAGE.format(
+        gravity=trial.gravity,
+        ahead=max(ahead, 1e-3),
+        radius=r,
+        start=r + trial.gap,
+        mass=trial.mass,
+        **trial.design.parameters,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "stage.usda")
+        file.write_text(text)
+        stage = ovstage.Stage("drop")
+        domains = ovstage.PopulationDomain.ALL
+        ovstage.population.open_usd(stage, str(file), ordinal=1, domains=domains)
+    stage.advance_write_floor(ordinal=1).wait()
+    engine.wait_task(engine.attach_ovstage(stage, read_ordinal=1))
+    engine.wait_all()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        ball = engine.create_tensor_binding(pattern="/World/Ball", tensor_type=poses)
+    pose = np.zeros(ball.shape, np.float32)
+    heights = []
+    for _ in range(trial.steps):
+        engine.step_sync(trial.step)
+        ball.read(pose)
+        heights.append(float(pose[0, 2]) - r)
+    ball.destroy()
+    engine.wait_task(engine.detach_ovstage())
+    stage.destroy()
+    return np.array(heights), math.nan
+
+
+def genesis(trial):
+    import genesis
+
+    if not genesis._initialized:
+        genesis.init(backend=genesis.cpu, precision="64", logging_level="error")
+    r = trial.size
+    density = trial.mass / (4 / 3 * math.pi * r**3)
+    options, *of_geoms = trial.design.snippet.split("\n", 1)
+    names = {"gs": genesis}
+    exec(options, names)
+    names["options"].gravity = (0.0, 0.0, -trial.gravity)
+    scene = genesis.Scene(show_viewer=False, sim_options=names["options"])
+    names["one"] = scene.add_entity(genesis.morphs.Plane())
+    sphere = genesis.morphs.Sphere(radius=r, pos=(0.0, 0.0, r + trial.gap))
+    ball = scene.add_entity(sphere, material=genesis.materials.Rigid(rho=density))
+    names["other"] = ball
+    scene.build()
+    exec(of_geoms[0], names)
+    heights = []
+    for _ in range(trial.steps):
+        scene.step()
+        heights.append(float(ball.get_pos()[2]) - r)
+    return np.array(heights), math.nan
+
+
 RUNS = {
     "mujoco": mujoco,
     "pybullet": pybullet,
@@ -262,8 +500,14 @@ RUNS = {
     "lammps": lammps,
     "lammps-limit-damping": lammps,
     "lammps-hertz": lammps,
+    "liggghts": liggghts,
+    "liggghts-limit-force": liggghts,
+    "liggghts-hertz": liggghts,
     "newton": newton,
     "newton-mujoco": newton,
+    "genesis": genesis,
+    "physx": physx,
+    "ode": ode,
 }
 
 

@@ -55,14 +55,25 @@ def test_a_recording_becomes_a_contact_in_one_command(typed, tmp_path):
     assert "it rises to" in script.read_text()
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet", "drake", "lammps", "newton"])
-def test_scripts_are_python(typed, tmp_path, engine):
+SCRIPTS = {
+    "": ("mujoco", "pybullet", "drake", "lammps", "newton"),
+    "--points 4": ("mujoco", "pybullet", "drake"),
+    "--other-mass 1 --speed 2": ("mujoco", "pybullet", "drake", "lammps-hertz"),
+}
+
+
+@pytest.mark.parametrize(
+    ("bodies", "engine"), [(one, engine) for one, all_ in SCRIPTS.items() for engine in all_]
+)
+def test_scripts_are_python(typed, tmp_path, bodies, engine):
     script = tmp_path / "drop.py"
-    status, _, _ = typed(f'{BALL} --radius "30 mm" --engine {engine} --script {script}')
+    line = f'design --mass "50 g" --restitution 0.8 --radius "30 mm" --engine {engine} {bodies}'
+    status, _, _ = typed(f"{line} --script {script}")
     assert status == 0
     text = script.read_text()
     compile(text, "drop.py", "exec")
     assert "@" not in text
+    assert ("they part with" in text) == ("other" in bodies)
 
 
 MISTAKES = {
@@ -105,7 +116,9 @@ MISTAKES = {
     f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
     f"{BALL} --script drop.py --engine physx": "no script is written for physx",
     f"{BALL} --script /no/such/folder/drop.py --engine mujoco": "cannot be written",
-    f"{BALL} --script drop.py --engine mujoco --points 4": "a script drops one ball",
+    f"{BALL} --script drop.py --engine mujoco --points 3": "a box of 4 points",
+    f"{BALL} --script drop.py --engine lammps --points 4": "a box of 4 points",
+    f"{BALL} --speed 2 --other-mass 1 --script drop.py --engine newton": "two free balls",
     f"{BALL} --damping-ratio 2": "No such option",
     f"{BALL} --restitutionn 2": "No such option",
     f"{BALL} extra": "unexpected extra argument",

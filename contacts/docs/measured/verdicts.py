@@ -34,8 +34,8 @@ def draw(found):
         axes.plot(v, one.impacts.restitution, "ko", markersize=3)
         speeds = np.geomspace(v.min(), v.max(), 100)
         of = {law.law: law.parameter for law in one.laws}
-        for law, (log_r, _) in LAWS.items():
-            axes.plot(speeds, np.exp(log_r(of[law], speeds)), label=law)
+        for name_of_law, law in LAWS.items():
+            axes.plot(speeds, np.exp(law.log_r(of[name_of_law], speeds)), label=name_of_law)
         spread = np.ptp(one.impacts.restitution)
         middle = float(np.mean(one.impacts.restitution))
         axes.set(

@@ -174,11 +174,13 @@ def _lines(text: str | None) -> tuple[int, ...]:
 @click.option("--mass", help="Of the ball, for the drag of the air and the engine.")
 @click.option("--diameter", help="Of the ball, for the drag of the air.")
 @click.option("--leave-out", help="Lines of the file, such as 4,7.")
+@click.option("--intervals", is_flag=True, help="Read the intervals, and show single impacts.")
 @click.option("--engine", help="For which the contact is written.")
 @_options(_STEP, *_CONTACT, _JSON)
 def fit_command(
     recording: str,
     leave_out: str | None,
+    intervals: bool,
     engine: str | None,
     time_step: str | None,
     tolerance: str,
@@ -193,14 +195,17 @@ def fit_command(
     """
     from bouncing_ball_contacts.fits import fit
 
-    names = ("speed", "resolution", "mass", "diameter")
-    found = fit(recording, leave_out=_lines(leave_out), **{name: options[name] for name in names})
+    names = ("speed", "resolution", "mass", "diameter", "contact_time")
+    given = {name: options[name] for name in names}
+    found = fit(recording, leave_out=_lines(leave_out), intervals=intervals, **given)
+    if intervals and not as_json:
+        click.echo("\n".join([*found.intervals, ""]))
     if engine is None:
         if time_step is not None or script is not None:
             raise Refused("the engine is missing: --engine mujoco")
         _print(found, as_json)
         return
-    contact = ("penetration", "stiffness", "contact_time", "friction")
+    contact = ("penetration", "stiffness", "friction")
     bounce = found.bounce(**{name: options[name] for name in contact})
     written = design(bounce, engine, time_step, tolerance=tolerance, pick=pick)
     _write_script(written, script)

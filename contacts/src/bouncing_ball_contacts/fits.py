@@ -1,28 +1,39 @@
 r"""From a recording to r over the speed, with its interval, and to the contact laws that it allows.
 
-The impacts of a recording have restitution coefficients rᵢ at speeds vᵢ. Their logarithms are
+The impacts of a recording have restitution coefficients rᵢ at speeds vᵢ. Their logarithms are::
 
-    ln rᵢ = β₀ + β₁ x + β₂ x²/2 + τ εᵢ + σ (M η)ᵢ,   x = ln(v/v₀)
+    ln rᵢ = β + s (e^(q xᵢ) - 1)/q + eᵢ,   xᵢ = ln(vᵢ/v₀)
+    cov e = σ² [(1 - φ) M Mᵀ + φ I],       M Mᵀ in units of the median of its diagonal
 
-where τ is the scatter between impacts, σ the error of a reading (a time, a height, a speed), and M
-says how readings enter: an error of a time enters the flights on both of its sides. The slope and
-the curvature are those of a smooth curve. Measured laws have slopes between 0 and about -0.3, so
-that β₁ and β₂ have normal priors of the width 0.25 about 0; β₀ has none. The logarithm of σ is
-uniform on a grid; τ is 0 with a prior weight of a half (a tenth if σ is stated), and otherwise has
-a weight as √τ on such a grid. For each τ and σ, β is normal (generalized least squares), so that
-ln r at a speed is a mixture of normal distributions over the grid, whose quantiles are the ends of
-the 95 % interval.
+The exponent q is between -1/2 and 5/4: 0 for an r that is a power of the speed, about 1/5 for a law
+of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - c v, and negative for an r
+that changes at low speeds only. The slope s has a normal prior of the width 0.25, because measured
+slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
+enters the flights on both of its sides. φ is the share of the scatter between impacts in the
+variance of ln r; its size σ has a log-normal prior about 0.006. If the errors of the readings are
+given, σ² (1 - φ) is known.
 
-A law is judged by how much worse it fits than the smooth curve without priors, for each τ and σ by
-the χ² distribution of the difference, averaged over the grid. Scatter alone, which both have,
-therefore rejects no law. Without given errors a systematic error of the measurement does not show
-in the scatter: a law is then not called incompatible, but said to deviate.
+Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
+does. The interval therefore holds the β that a test does not reject (G. Elliott, U. K. Müller and
+M. W. Watson, Econometrica 83, 2015, 771-811)::
+
+    Σ_φ λ_φ Σ_(q, σ) p(φ, q, σ | y) exp(-(β - m)²/(2 d²)) ≥ 1
+
+p is the posterior for equal weights of the φ, m and d are mean and deviation of β for each φ, q and
+σ. The weights λ_φ follow from simulated recordings at the same speeds, so that the interval holds
+the truth in 95 % whatever φ is. Where that is not possible, because it holds it in more than 98 %
+without scatter, it may hold it in 92 % with scatter. The interval is never shorter than the
+probable error, 50 %, without scatter.
+
+A law is judged by how much worse it fits than a parabola in ln v, for each φ and σ by the χ²
+distribution of the difference, averaged over them. Scatter alone, which both have, therefore
+rejects no law. Without given errors a systematic error of the measurement does not show in the
+scatter: a law is then not called incompatible, but said to deviate.
 """
 
 import functools
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -37,18 +48,21 @@ from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, sh
 
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
-_CURVATURE = 0.25
-# τ, of ln r, of which 0 stands for none, and σ, in units in which a reading changes ln r by 1 at
-# the median impact.
-_SCATTERS = np.array([0.0, *np.geomspace(3e-4, 0.06, 16)])
-_ERRORS = np.array([0.0, *np.geomspace(1e-4, 0.3, 19)])
-# Prior weights of no scatter at all, for unknown and for stated errors of the readings. Unknown
-# errors explain the same deviations as a scatter does, and both explanations have the same weight;
-# beside stated errors the deviations themselves show a scatter. Chosen by simulated recordings of
-# seven impacts, so that intervals neither miss a scatter nor assume one that is not there.
-_NO_SCATTER = 0.5
-_NO_SCATTER_STATED = 0.1
+_EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
+# φ for unknown and for given errors of the readings.
+_SHARES = np.array([0.0, 0.01, 0.05, 0.2, 0.5, 1.0])
+_SHARES_GIVEN = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.94, 0.985])
+# σ, with the middle and the width of the prior of ln σ.
+_SIZE = 0.006
+_SIZE_WIDTH = 1.2
+_LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
+_AT_LEAST = 0.92
+_AT_MOST = 0.98
+_PROBABLE = 0.5
+_SIMULATED = 160
+# Whether a simulated recording is held is a step of the weights, smoothed over this part of ln λ.
+_SMOOTH = 0.05
 REJECTED = 0.005
 """A law with a smaller probability is rejected."""
 ACCEPTED = 0.05
@@ -160,160 +174,265 @@ def _block_diagonal(blocks: list[Array]) -> Array:
 
 
 @dataclass(frozen=True)
-class Posterior:
-    """The grid of errors: covariances of ln r, and their weights."""
+class Errors:
+    """Covariances σ² V of ln r by shares and sizes: V (share, n, n), σ (share, size).
 
-    covariances: Array
-    weights: Array
+    ``share_prior`` (share) and ``size_prior`` (share, size) are logarithms of their weights.
+    """
+
+    shapes: Array
+    sizes: Array
+    share_prior: Array
+    size_prior: Array
 
 
-def _powers(impacts: Impacts, at: float) -> Array:
-    """Return the columns 1, x and x²/2."""
-    x = np.log(impacts.speed / at)
-    return np.column_stack([np.ones_like(x), x, x**2 / 2])
-
-
-def posterior(impacts: Impacts, known: float | Array | None) -> Posterior:
-    """Return the grid of covariances with its weights.
+def errors_of(impacts: Impacts, known: float | Array | None) -> Errors:
+    """Return the covariances that a recording may have.
 
     ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
     """
     n = len(impacts.log_r)
-    unit = np.eye(n)
+    of_readings = impacts.readings @ impacts.readings.T
+    if isinstance(known, np.ndarray):
+        of_readings = np.diag((known / impacts.restitution) ** 2)
+    unit = float(np.median(np.diag(of_readings)))
+    shares = _SHARES if known is None else _SHARES_GIVEN
+    share = shares[:, None, None]
+    shapes = (1 - share) * of_readings / unit + share * np.eye(n)
+    # Contributions below 10⁻⁴ of σ keep the covariances regular.
+    shapes = shapes + 1e-9 * np.eye(n)
     if known is None:
-        of_readings = impacts.readings @ impacts.readings.T
-        of_readings = of_readings / np.median(np.diag(of_readings))
-        sigmas = _ERRORS
-    elif np.ndim(known):
-        of_readings = np.diag((np.asarray(known) / impacts.restitution) ** 2)
-        sigmas = np.ones(1)
-    else:
-        of_readings = impacts.readings @ impacts.readings.T
-        sigmas = np.array([float(known)])
-    scatter, sigma = (each.ravel() for each in np.meshgrid(_SCATTERS, sigmas))
-    has_errors = (scatter > 0) | (sigma > 0)
-    scatter = scatter[has_errors]
-    sigma = sigma[has_errors]
-    covariances = scatter[:, None, None] ** 2 * unit + sigma[:, None, None] ** 2 * of_readings
-    # Rounding errors of a covariance that is nearly singular stay below a millionth of r.
-    covariances = covariances + 1e-12 * unit
-    middle = math.exp(float(np.mean(np.log(impacts.speed))))
-    powers = _powers(impacts, middle)
-    prior = powers[:, 1:] @ np.diag([_SLOPE**2, _CURVATURE**2]) @ powers[:, 1:].T
-    logs = _log_likelihood(impacts.log_r, covariances + prior)
-    none = _NO_SCATTER if known is None else _NO_SCATTER_STATED
-    some = np.sqrt(_SCATTERS[1:])
-    prior_weights = np.array([none, *((1 - none) * some / some.sum())])
-    logs = logs + np.log(np.interp(scatter, _SCATTERS, prior_weights))
-    weights = np.exp(logs - logs.max())
-    return Posterior(covariances, weights / weights.sum())
+        # ln σ is known to about 1/√(2n), which the grid resolves.
+        size = np.geomspace(_LEAST, _MOST, 28 + (n if n > 11 else 0))
+        sizes = np.tile(size, (len(shares), 1))
+        prior = -0.5 * (np.log(sizes / _SIZE) / _SIZE_WIDTH) ** 2
+        return Errors(shapes, sizes, np.zeros(len(shares)), prior)
+    given = 1.0 if isinstance(known, np.ndarray) else known
+    sizes = given * math.sqrt(unit) / np.sqrt(1 - shares)[:, None]
+    # Beside given errors a large scatter is less likely than a small one.
+    return Errors(shapes, sizes, 0.5 * np.log(1 - shares), np.zeros_like(sizes))
 
 
-def _log_likelihood(y: Array, covariances: Array) -> Array:
-    """Return the logarithm of the likelihood of y, a constant with a flat prior plus errors."""
-    roots = np.linalg.cholesky(covariances)
-    both = np.column_stack([np.ones_like(y), y])
-    white = np.linalg.solve(roots, np.broadcast_to(both, (len(roots), *both.shape)))
-    ones = white[:, :, 0]
-    values = white[:, :, 1]
-    weight = np.sum(ones**2, axis=1)
-    rest = np.sum(values**2, axis=1) - np.sum(ones * values, axis=1) ** 2 / weight
-    logs = np.log(np.diagonal(roots, axis1=1, axis2=2)).sum(axis=1)
-    return -0.5 * rest - logs - 0.5 * np.log(weight)
+@dataclass(frozen=True)
+class Curves:
+    """The smooth curves of a recording, by share, exponent and size, at a speed.
+
+    ``columns`` are those of β and s at the impacts (exponent, 2, n), ``project`` is XᵀV⁻¹,
+    ``spread`` the covariance of β and s, ``log_weight`` what the likelihood has besides squares.
+    """
+
+    errors: Errors
+    columns: Array
+    whiten: Array
+    project: Array
+    spread: Array
+    log_weight: Array
+
+    @property
+    def deviation(self) -> Array:
+        """The standard deviation of β."""
+        return np.sqrt(self.spread[..., 0, 0])
+
+    def posterior(self, y: Array) -> tuple[Array, Array, Array]:
+        """Return weights of sum 1, β and s for ln r of recordings, of the shape (n, recordings)."""
+        normal = self.project @ y
+        squares = np.sum((self.whiten @ y) ** 2, axis=1)
+        variance = self.errors.sizes[:, None, :, None] ** 2
+        best = self.spread @ normal[:, :, None] / variance[..., None, :]
+        explained = np.sum(best * normal[:, :, None], axis=-2)
+        logs = self.log_weight[..., None] - (squares[:, None, None] - explained) / (2 * variance)
+        weights = np.exp(logs - logs.max(axis=(0, 1, 2)))
+        return weights / weights.sum(axis=(0, 1, 2)), best[..., 0, :], best[..., 1, :]
+
+    def near(self, weights: Array, beta: Array, at: Array | float) -> Array:
+        """Return Σ p exp(-z²/2) over exponents and sizes, z = (at - β)/d."""
+        z = (at - beta) / self.deviation[..., None]
+        return np.sum(weights * np.exp(-0.5 * z * z), axis=(1, 2))
 
 
-def predicted(impacts: Impacts, found: Posterior, at: float) -> tuple[Array, Array]:
-    """Return mean and standard deviation of ln r at a speed, for each covariance."""
-    powers = _powers(impacts, at)
-    inverse = np.linalg.inv(found.covariances)
-    information = powers.T @ inverse @ powers + np.diag([0, _SLOPE**-2, _CURVATURE**-2])
-    spread = np.linalg.inv(information)
-    best = (spread @ (powers.T @ inverse @ impacts.log_r)[..., None])[..., 0]
-    return best[:, 0], np.sqrt(spread[:, 0, 0])
-
-
-def scatter_of(impacts: Impacts, found: Posterior) -> float:
-    """Return the root mean square of the errors of r about the likeliest smooth curve."""
+def curves_of(impacts: Impacts, errors: Errors, at: float) -> Curves:
+    """Return the smooth curves about a speed in m/s."""
     n = len(impacts.log_r)
-    powers = _powers(impacts, math.exp(float(np.mean(np.log(impacts.speed)))))
-    inverse = np.linalg.inv(found.covariances[int(np.argmax(found.weights))])
-    information = powers.T @ inverse @ powers + np.diag([0, _SLOPE**-2, _CURVATURE**-2])
-    best = np.linalg.solve(information, powers.T @ inverse @ impacts.log_r)
-    errors = impacts.restitution - np.exp(powers @ best)
-    # A straight line takes two of the degrees of freedom.
-    return float(np.sqrt(np.sum(errors**2) / max(n - 2, 1)))
+    x = np.log(impacts.speed / at)
+    q = _EXPONENTS[:, None]
+    columns = np.stack([np.ones((len(q), n)), np.expm1(q * x) / q], axis=1)
+    inverse = np.linalg.inv(errors.shapes)
+    project = columns @ inverse[:, None]
+    information = project @ np.swapaxes(columns, 1, 2)
+    prior = np.diag([0.0, _SLOPE**-2])
+    precision = information[:, :, None] / errors.sizes[:, None, :, None, None] ** 2 + prior
+    logs = errors.share_prior - 0.5 * np.linalg.slogdet(errors.shapes)[1]
+    logs = logs[:, None] + errors.size_prior - n * np.log(errors.sizes)
+    return Curves(
+        errors=errors,
+        columns=columns,
+        whiten=np.linalg.inv(np.linalg.cholesky(errors.shapes)),
+        project=project,
+        spread=np.linalg.inv(precision),
+        log_weight=logs[:, None] - 0.5 * np.linalg.slogdet(precision)[1],
+    )
 
 
-def quantile(probability: float, means: Array, deviations: Array, weights: Array) -> float:
-    """Return a quantile of a mixture of normal distributions, by bisection."""
-    low = float(np.min(means - 12 * deviations))
-    high = float(np.max(means + 12 * deviations))
-    for _ in range(60):
-        middle = (low + high) / 2
-        if weights @ special.ndtr((middle - means) / deviations) < probability:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
+def _without_scatter(curves: Curves, weights: Array, beta: Array, at: float) -> Array:
+    """Return the probability that β is below a value if there is no scatter."""
+    below = special.ndtr((at - beta[0]) / curves.deviation[0][..., None])
+    # Where scatter is certain the weight of its absence may be 0.
+    total = np.maximum(np.sum(weights[0], axis=(0, 1)), 1e-300)
+    return np.sum(weights[0] * below, axis=(0, 1)) / total
 
 
-def _constant(a: float, v: Array) -> Array:
-    return np.full(np.shape(v), -a)
+def balance(curves: Curves, weights: Array) -> tuple[Array, Array]:
+    """Return ln λ, and the parts of simulated recordings that are held, by their shares.
+
+    ``weights`` are those of the recording, of whose likely sizes the simulated ones are.
+    """
+    random = np.random.default_rng(0)
+    n = curves.whiten.shape[-1]
+    noise = random.normal(size=(n, _SIMULATED))
+    chance = random.random(_SIMULATED)
+    near = []
+    probable = []
+    for share, root in enumerate(np.linalg.inv(curves.whiten)):
+        likely = np.cumsum(weights[share].sum(axis=(0, 2)))
+        index = np.searchsorted(likely[:-1], chance * likely[-1])
+        size = curves.errors.sizes[share][index]
+        found, beta, _ = curves.posterior(root @ noise * size)
+        near.append(curves.near(found, beta, 0.0))
+        below = _without_scatter(curves, found, beta, 0.0)
+        probable.append(np.abs(below - 0.5) < _PROBABLE / 2)
+    is_near = np.array(near)
+    is_probable = np.array(probable)
+    logs = np.full(len(near), 2.0)
+    for gain in np.repeat([10.0, 4.0, 1.0], [60, 50, 40]):
+        test = np.exp(logs) @ is_near
+        with np.errstate(divide="ignore"):
+            passed = special.expit(np.log(test) / _SMOOTH)
+        held = np.mean(np.where(is_probable, 1.0, passed), axis=-1)
+        # Where too many are held without scatter, fewer with it are enough.
+        wanted = np.clip(_AT_LEAST + _AT_MOST - held.max(), _AT_LEAST, _LEVEL)
+        logs = logs + gain * (wanted - held)
+    return logs, held
+
+
+def _likely(curves: Curves, weights: Array) -> Curves:
+    """Return the curves with those sizes of errors that have a weight, and their neighbours."""
+    of_size = weights.max(axis=(0, 1, 3))
+    likely = np.flatnonzero(of_size > 1e-6 * of_size.max())
+    kept = slice(max(likely[0] - 3, 0), likely[-1] + 4)
+    sizes = curves.errors.sizes[:, kept]
+    errors = replace(curves.errors, sizes=sizes, size_prior=curves.errors.size_prior[:, kept])
+    spread = curves.spread[:, :, kept]
+    return replace(curves, errors=errors, spread=spread, log_weight=curves.log_weight[:, :, kept])
+
+
+def interval(curves: Curves, y: Array) -> tuple[float, float, float, float]:
+    """Return the mean of β, the ends of its interval, and the mean of s, of a recording."""
+    middle = float(np.mean(y))
+    weights, _, _ = curves.posterior(y[:, None] - middle)
+    # Other sizes are not needed, and cost time in the simulated recordings.
+    curves = _likely(curves, weights)
+    weights, beta, slope = curves.posterior(y[:, None] - middle)
+    centre = float(np.sum(weights * beta))
+    logs, _ = balance(curves, weights)
+    spread = math.sqrt(float(np.sum(weights[..., 0] * curves.deviation**2)))
+    scale = spread + math.sqrt(float(np.sum(weights * (beta - centre) ** 2)))
+
+    def holds(at: float) -> bool:
+        if abs(float(_without_scatter(curves, weights, beta, at)[0]) - 0.5) < _PROBABLE / 2:
+            return True
+        return float(np.exp(logs) @ curves.near(weights, beta, at)[:, 0]) >= 1
+
+    ends = []
+    for side in (-scale, scale):
+        steps = np.concatenate([[0.0], np.geomspace(1e-3, 20, 60)])
+        last = max(i for i, step in enumerate(steps) if i == 0 or holds(centre + side * step))
+        low = steps[last]
+        high = steps[min(last + 1, len(steps) - 1)]
+        for _ in range(12):
+            step = (low + high) / 2
+            low, high = (step, high) if holds(centre + side * step) else (low, step)
+        ends.append(centre + side * low + middle)
+    return centre + middle, ends[0], ends[1], float(np.sum(weights * slope))
+
+
+def scatter_of(impacts: Impacts, curves: Curves) -> float:
+    """Return the root mean square of the errors of r about the likeliest smooth curve."""
+    weights, beta, slope = curves.posterior((impacts.log_r - np.mean(impacts.log_r))[:, None])
+    best = np.unravel_index(int(np.argmax(weights)), weights.shape)
+    level, steep = curves.columns[best[1]]
+    curve = np.mean(impacts.log_r) + beta[best] * level + slope[best] * steep
+    errors = impacts.restitution - np.exp(curve)
+    # The curve takes two of the degrees of freedom.
+    return float(np.sqrt(np.sum(errors**2) / max(len(errors) - 2, 1)))
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """A contact that pushes with K (p^n + A p^m p′), and never pulls.
+
+    In the units L = (M v²/K)^(1/(n + 1)) and L/v the ball arrives with the speed 1, and only the
+    damping x = A v L^(m - n) is left, which goes as v to the power of ``speed``.
+    """
+
+    n: float
+    m: float
+    most: float
+
+    @property
+    def speed(self) -> float:
+        """The power of the speed with which the damping x goes."""
+        return 1 + 2 * (self.m - self.n) / (self.n + 1)
+
+    def log_r(self, a: float, v: Array) -> Array:
+        """Return ln r at speeds in m/s if x = a v^speed."""
+        x, log_r, _ = _impacts_of_law(self)
+        return np.interp(a * v**self.speed, x, log_r)
+
+    def duration(self, a: float, v: Array) -> Array:
+        """Return the contact time at speeds in m/s, over L/v."""
+        x, _, duration = _impacts_of_law(self)
+        return np.interp(a * v**self.speed, x, duration)
+
+    def damping(self, restitution: float) -> float:
+        """Return the x with a restitution coefficient."""
+        x, log_r, _ = _impacts_of_law(self)
+        return float(np.interp(-math.log(restitution), -log_r, x))
 
 
 @functools.cache
-def _viscoelastic() -> tuple[Array, Array]:
-    """Return ln r of p″ = -(p^(3/2) + A √p p′)₊ with p′ = 1 at first, over A."""
-    a = np.concatenate([[0.0], np.geomspace(1e-3, 3, 400)])
+def _impacts_of_law(law: ContactLaw) -> tuple[Array, Array, Array]:
+    """Return x, ln r and the contact time over L/v of p″ = -(p^n + x p^m p′)₊, p′ = 1 at first."""
+    x = np.concatenate([[0.0], np.geomspace(1e-3, law.most, 200)])
     h = 0.005
-    p = np.zeros_like(a)
-    v = np.ones_like(a)
+    p = np.zeros_like(x)
+    v = np.ones_like(x)
+    duration = np.zeros_like(x)
 
     def push(p: Array, v: Array) -> Array:
-        root = np.sqrt(np.maximum(p, 0.0))
-        return np.maximum(root * p + a * root * v, 0.0)
+        depth = np.maximum(p, 0.0)
+        return np.maximum(depth**law.n + x * depth**law.m * v, 0.0)
 
     # The midpoint rule; a contact without damping lasts 3.2.
     for _ in range(1100):
         middle = p + h / 2 * v
         half = v - h / 2 * push(p, v)
-        v = v - h * push(middle, half)
+        change = push(middle, half)
+        v = v - h * change
         p = p + h * half
+        duration += np.where(change > 0, h, 0.0)
     # Without damping r is 1 but for the error of the rule.
-    return a, np.log(-v) - math.log(-v[0])
+    return x, np.log(-v) - math.log(-v[0]), duration
 
 
-def _kuwabara_kono(a: float, v: Array) -> Array:
-    table, log_r = _viscoelastic()
-    return np.interp(a * v**0.2, table, log_r)
-
-
-@functools.cache
-def _hunt_and_crossley() -> tuple[Array, Array]:
-    """Return ln r over x, by bisection of x (1 + r) = ln((1 + x)/(1 - x r))."""
-    x = np.concatenate([[0.0], np.geomspace(1e-6, 1e3, 3000)])
-    low = np.zeros_like(x)
-    high = np.minimum(1.0, (1 - 1e-12) / np.maximum(x, 1e-12))
-    for _ in range(50):
-        r = (low + high) / 2
-        above = x * (1 + r) < np.log1p(x) - np.log1p(-x * r)
-        low = np.where(above, low, r)
-        high = np.where(above, r, high)
-    # Below, rounding errors are larger than the next term of ln r = -2x/3.
-    return x, np.where(x < 1e-3, -2 * x / 3, np.log(r))
-
-
-def _hunt_crossley(a: float, v: Array) -> Array:
-    table, log_r = _hunt_and_crossley()
-    return np.interp(a * v, table, log_r)
-
-
-LAWS: dict[str, tuple[Callable[[float, Array], Array], float]] = {
-    "constant r (linear; Hertz with Tsuji)": (_constant, 5.0),
-    "Hertz with Kuwabara and Kono": (_kuwabara_kono, 2.9),
-    "Hunt and Crossley": (_hunt_crossley, 50.0),
+_LINEAR = ContactLaw(1.0, 0.0, 20.0)
+_TSUJI = ContactLaw(1.5, 0.25, 20.0)
+LAWS = {
+    "constant r (linear; Hertz with Tsuji)": _LINEAR,
+    "Hertz with Kuwabara and Kono": ContactLaw(1.5, 0.5, 2.9),
+    "Hunt and Crossley": ContactLaw(1.0, 1.0, 50.0),
 }
-"""Laws with one parameter a: ln r of a and the speed, and the largest a for 1 m/s."""
+"""Laws with one parameter a; a linear contact stands for all with a constant r."""
+_TIMED = {"linear": _LINEAR, "Hertz with Tsuji": _TSUJI} | dict(list(LAWS.items())[1:])
 
 
 @dataclass(frozen=True)
@@ -335,50 +454,54 @@ class Judged:
     verdict: str
 
 
-def _least_squares(law: Callable[[float, Array], Array], most: float, v: Array, y: Array,
-                   root: Array) -> float:  # fmt: skip
+def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
     """Return the parameter of a law with the least squares, by a golden section in ln a."""
     whiten = np.linalg.inv(root)
 
     def miss(log_a: float) -> float:
-        return float(np.sum((whiten @ (y - law(math.exp(log_a), v))) ** 2))
+        return float(np.sum((whiten @ (y - law.log_r(math.exp(log_a), v))) ** 2))
 
+    most = law.most / float(v.max()) ** law.speed
     grid = np.linspace(math.log(1e-5), math.log(most), 60)
     i = int(np.argmin([miss(each) for each in grid]))
     low = grid[max(i - 1, 0)]
     high = grid[min(i + 1, len(grid) - 1)]
     share = (math.sqrt(5) - 1) / 2
-    for _ in range(40):
+    for _ in range(30):
         one = high - share * (high - low)
         two = low + share * (high - low)
-        if miss(one) < miss(two):
-            high = two
-        else:
-            low = one
+        low, high = (low, two) if miss(one) < miss(two) else (one, high)
     return math.exp((low + high) / 2)
 
 
-def judge(impacts: Impacts, found: Posterior, at: float, is_known: bool) -> list[Judged]:
+def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[Judged]:
     """Return the laws with their verdicts, that of the smallest errors first."""
     v = impacts.speed
     y = impacts.log_r
     n = len(y)
-    powers = _powers(impacts, math.exp(float(np.mean(np.log(v)))))
+    x = np.log(v) - np.mean(np.log(v))
+    powers = np.column_stack([np.ones_like(x), x, x**2])
+    posterior, _, _ = curves.posterior((y - np.mean(y))[:, None])
+    # A law is judged with all sizes of errors alike.
+    likelihood = posterior[..., 0].sum(axis=1) * np.exp(-curves.errors.size_prior)
+    likelihood = likelihood / likelihood.sum()
+    share, size = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
+    shapes = curves.errors.shapes
+    sizes = curves.errors.sizes
     values = len(np.unique(np.round(np.log(v), 3)))
     shape = powers[:, : min(3, values, n - 1)]
     further = shape.shape[1] - 1
-    likely = found.covariances[int(np.argmax(found.weights))]
+    likely = shapes[share] * sizes[share, size] ** 2
     root = np.linalg.cholesky(likely)
-    heavy = found.weights > 1e-4
-    covariances = found.covariances[heavy]
-    weights = found.weights[heavy] / found.weights[heavy].sum()
+    heavy = np.nonzero(likelihood > 1e-4)
+    covariances = shapes[heavy[0]] * sizes[heavy][:, None, None] ** 2
+    weights = likelihood[heavy] / likelihood[heavy].sum()
     smooth = _rest(covariances, shape, y)
     judged = []
-    for name, (law, most) in LAWS.items():
-        largest = most / max(1.0, float(v.max()))
-        a = _least_squares(law, largest, v, y, root)
-        fitted = law(a, v)
-        slope = (law(a * 1.001, v) - law(a * 0.999, v)) / (0.002 * a)
+    for name, law in LAWS.items():
+        a = _least_squares(law, v, y, root)
+        fitted = law.log_r(a, v)
+        slope = (law.log_r(a * 1.001, v) - law.log_r(a * 0.999, v)) / (0.002 * a)
         misfit = y - fitted
         worse = np.maximum(_rest(covariances, slope[:, None], misfit) - smooth, 0.0)
         probability = math.nan
@@ -395,7 +518,7 @@ def judge(impacts: Impacts, found: Posterior, at: float, is_known: bool) -> list
             Judged(
                 law=name,
                 parameter=a,
-                restitution=float(np.exp(law(a, np.array([at])))[0]),
+                restitution=float(np.exp(law.log_r(a, np.asarray(at)))),
                 rms=float(np.sqrt(np.mean(errors**2))),
                 left_out=float(np.sqrt(np.mean(apart**2))),
                 needed=float(np.mean(r) * math.sqrt(max(excess[0], 0.0) / bound)),
@@ -409,6 +532,59 @@ def judge(impacts: Impacts, found: Posterior, at: float, is_known: bool) -> list
         for each in judged
     ]
     return sorted(with_words, key=lambda each: each.rms)
+
+
+@dataclass(frozen=True)
+class Timed:
+    """A law with measured contact times.
+
+    ``duration`` is the contact time of the law at the speed in s, ``rms`` the root mean square of
+    the relative errors of the times, NaN of a single one; ``stiffness`` is K in N/m^n (per kg if
+    the mass is not known) and ``damping`` A of the force K (p^n + A p^m p′), in SI units.
+    """
+
+    law: str
+    duration: float
+    rms: float
+    stiffness: float
+    damping: float
+    unit: str
+
+
+def by_contact_time(
+    impacts: Impacts,
+    durations: Array,
+    laws: list[Judged],
+    at: float,
+    restitution: float,
+    mass: float,
+) -> list[Timed]:
+    """Return the laws whose contacts last as long as measured ones, one time or one per impact."""
+    v = impacts.speed if len(durations) == len(impacts.speed) else np.array([at])
+    parameters = {LAWS[each.law]: each.parameter for each in laws}
+    found = []
+    for name, law in _TIMED.items():
+        # A constant r is known without a fit.
+        a = law.damping(restitution) if law.speed == 0 else parameters.get(law)
+        if a is None:
+            continue
+        power = 1 / (law.n + 1)
+        # T = D(x) L/v with L = (M v²/K)^(1/(n + 1)).
+        lasting = np.log(law.duration(a, v)) + (2 * power - 1) * np.log(v)
+        scale = float(np.mean(np.log(durations) - lasting))
+        errors = np.expm1(np.log(durations) - lasting - scale)
+        length = math.exp(scale) * at ** (2 * power)
+        found.append(
+            Timed(
+                law=name,
+                duration=float(law.duration(a, np.asarray(at))) * length / at,
+                rms=float(np.sqrt(np.mean(errors**2))) if len(v) > 1 else math.nan,
+                stiffness=mass * math.exp(-scale / power),
+                damping=a * at ** (law.speed - 1) * length ** (law.n - law.m),
+                unit="N/m" if law.n == 1 else "N/m^1.5",
+            )
+        )
+    return found
 
 
 def _rest(covariances: Array, columns: Array, y: Array) -> Array:
@@ -442,6 +618,7 @@ class Fit:
     scatter: float
     slope: float
     laws: tuple[Judged, ...]
+    times: tuple[Timed, ...]
     mass: float | None
     diameter: float | None
     notes: tuple[str, ...]
@@ -474,10 +651,40 @@ class Fit:
             f"{title}: {len(v)} impacts at {span}, from {self.recording.kind}",
             f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {low:.4f} to {high:.4f}; "
             f"r goes as v^{self.slope:+.3f}, and impacts scatter about it by {self.scatter:.4f}",
-            "",
-            *aligned(self.table),
+            *(["", *aligned(self.table)] if self.laws else []),
+            *self.timed,
             *(f"! {note}" for note in self.notes),
         ]
+
+    @property
+    def timed(self) -> list[str]:
+        """The lines of the laws by their contact times, if there are some."""
+        if not self.times:
+            return []
+        per = "" if self.mass else "/kg"
+        head = ["law", f"contact time at {self.speed:.3g} m/s", "rms", "stiffness", "damping"]
+        rows = [
+            [
+                each.law,
+                show(each.duration, "s", 4),
+                f"{100 * each.rms:.1f} %" if math.isfinite(each.rms) else "–",
+                show(each.stiffness, each.unit, 4) + per,
+                f"{each.damping:.4g}",
+            ]
+            for each in self.times
+        ]
+        return ["", *aligned([head, *rows])]
+
+    @property
+    def intervals(self) -> list[str]:
+        """The lines of single impacts: r, the plain ratio of the flights, and the drag's part."""
+        plain = np.exp(impacts_of(self.recording).log_r)
+        r = self.impacts.restitution
+        rows = [
+            [f"{v:.5g}", f"{each:.5f}", f"{ratio:.5f}", f"{ratio - each:+.5f}"]
+            for v, each, ratio in zip(self.impacts.speed, r, plain, strict=True)
+        ]
+        return aligned([["v in m/s", "r", "ratio", "by drag"], *rows])
 
     def __repr__(self) -> str:
         return "\n".join(self.lines[:2])
@@ -494,18 +701,23 @@ class Fit:
         return f"<p>{escape(first)}</p><p>{escape(second)}</p><table>{rows}</table>"
 
     def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
-        """Return the bounce at this speed, with the contact time of the recording if it has one."""
+        """Return the bounce at this speed, with the contact time of the recording if it has one.
+
+        That of a bounce is the one of a linear contact without damping.
+        """
         body = self.mass if mass is None else mass
         if body is None:
             raise Refused("the mass is missing: the recording does not say it, give --mass '46 g'")
         given = {"penetration", "stiffness", "contact_time"} & {
             name for name, value in more.items() if value is not None
         }
-        if self.recording.duration is not None and not given:
-            more["contact_time"] = self.recording.duration
+        if self.times and not given:
+            x = _LINEAR.damping(self.restitution)
+            lasts = float(_LINEAR.duration(x, np.asarray(self.speed)))
+            more["contact_time"] = self.times[0].duration * math.pi / lasts
         if self.diameter is not None and more.get("radius") is more.get("density") is None:
             more["radius"] = self.diameter / 2
-        return Bounce(mass=body, restitution=min(self.restitution, 1.0), speed=self.speed, **more)
+        return Bounce(mass=body, restitution=self.restitution, speed=self.speed, **more)
 
     def design(self, engine: str = "generic", time_step: Quantity = None, **more: Any) -> Design:
         """Return the design of an engine for this bounce; ``more`` belongs to the bounce."""
@@ -519,7 +731,9 @@ def fit(
     resolution: Quantity = None,
     mass: Quantity = None,
     diameter: Quantity = None,
+    contact_time: Quantity = None,
     leave_out: tuple[int, ...] = (),
+    intervals: bool = False,
 ) -> Fit:
     """Return r of a recording at a speed with its 95 % interval, and the laws that it allows.
 
@@ -533,15 +747,19 @@ def fit(
         The standard deviation of a reading: of a time, a height, a speed, or r.
     mass, diameter : Quantity, optional
         Of the ball, with which the drag of the air is removed from flights and heights.
+    contact_time : Quantity, optional
+        A measured one, in place of those of the recording: it gives the laws their stiffness.
     leave_out : tuple of int
         Lines of the file.
+    intervals : bool
+        Whether a file with times and intervals is read by its intervals.
 
     Raises
     ------
     Refused
         If the recording cannot be read or has fewer than three impacts.
     """
-    recording = source if isinstance(source, Recording) else read(source, leave_out)
+    recording = source if isinstance(source, Recording) else read(source, leave_out, intervals)
     head = recording.head
     notes = list(recording.notes)
     body = mass if mass is not None else head.get("mass")
@@ -566,32 +784,33 @@ def fit(
     if stated is not None:
         unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s"}
         known = positive("resolution", stated, unit.get(recording.kind, ""))
-    found = posterior(impacts, known)
-    means, deviations = predicted(impacts, found, at)
-    tail = (1 - _LEVEL) / 2
-    low = quantile(tail, means, deviations, found.weights)
-    high = quantile(1 - tail, means, deviations, found.weights)
-    centre = quantile(0.5, means, deviations, found.weights)
-    steep = predicted(impacts, found, at * 1.05)[0] - predicted(impacts, found, at / 1.05)[0]
+    curves = curves_of(impacts, errors_of(impacts, known), at)
+    centre, low, high, slope = interval(curves, impacts.log_r)
     if not 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max():
         notes.append(f"{at:.3g} m/s is outside of the measured speeds")
     is_known = known is not None
     if not is_known:
         notes.append("no errors are given: a law can only deviate by more than the scatter")
-    laws = judge(impacts, found, at, is_known) if n >= _FEWEST else []
+    laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
     if laws and all(each.probability < REJECTED for each in laws):
         notes.append("no law fits: r is that of a smooth curve")
-    if recording.duration is not None:
-        notes.append(f"the contact time is {show(recording.duration, 's')}")
+    durations = recording.durations
+    if contact_time is not None:
+        durations = np.array([positive("contact time", contact_time, "s")])
+    restitution = min(math.exp(centre), 1.0)
+    times: list[Timed] = []
+    if durations is not None:
+        times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)
     return Fit(
         recording=recording,
         impacts=impacts,
         speed=at,
-        restitution=math.exp(centre),
+        restitution=restitution,
         interval=(math.exp(low), min(math.exp(high), 1.0)),
-        scatter=scatter_of(impacts, found),
-        slope=float(found.weights @ steep) / (2 * math.log(1.05)),
+        scatter=scatter_of(impacts, curves),
+        slope=slope,
         laws=tuple(laws),
+        times=tuple(times),
         mass=kilograms,
         diameter=wide,
         notes=tuple(notes),

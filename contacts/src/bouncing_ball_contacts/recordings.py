@@ -71,15 +71,15 @@ class Recording:
     "drops" (pairs of heights), "speeds" (pairs) or "coefficients" (pairs of speed and r).
 
     ``chains`` are arrays, one for each recording; those of pairs have two columns. ``uncertainty``
-    has standard deviations of r, ``duration`` contact times in s; ``head`` what the file says of
-    the ball.
+    has standard deviations of r, ``durations`` contact times in s, one or one for each impact;
+    ``head`` has what the file says of the ball.
     """
 
     name: str
     kind: str
     chains: tuple[Array, ...]
     uncertainty: Array | None = None
-    duration: float | None = None
+    durations: Array | None = None
     head: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
@@ -90,7 +90,7 @@ def experiments() -> list[str]:
     return sorted(path.name.removesuffix(".csv") for path in folder.iterdir())
 
 
-def read(source: str | Path, leave_out: Sequence[int] = ()) -> Recording:
+def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = False) -> Recording:
     """Return the recording of a file, or of a published experiment by its name.
 
     Parameters
@@ -98,6 +98,8 @@ def read(source: str | Path, leave_out: Sequence[int] = ()) -> Recording:
     source : str or Path
     leave_out : sequence of int
         Numbers of lines, from 1 on, that are left out with the impacts beside them.
+    intervals : bool
+        Whether a file with times and intervals is read by its intervals, and not by its times.
 
     Raises
     ------
@@ -113,7 +115,7 @@ def read(source: str | Path, leave_out: Sequence[int] = ()) -> Recording:
         raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
     name = path.name
     text = _sheet(data) if data.startswith(b"PK") else _decoded(name, data)
-    return _interpreted(name, text.splitlines(), set(leave_out))
+    return _interpreted(name, text.splitlines(), set(leave_out), intervals)
 
 
 def _decoded(name: str, data: bytes) -> str:
@@ -158,7 +160,7 @@ def _sheet(data: bytes) -> str:
         raise Refused("the spreadsheet cannot be read: save it as xlsx or as text") from None
 
 
-def _interpreted(name: str, lines: list[str], leave_out: set[int]) -> Recording:
+def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bool) -> Recording:
     head: dict[str, str] = {}
     body: list[tuple[int, str]] = []
     for number, line in enumerate(lines, 1):
@@ -174,6 +176,12 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int]) -> Recording:
         raise Refused(f"{name} has no line {min(missing)} of numbers to leave out")
     table = _table(name, body, leave_out)
     columns = _columns(name, table)
+    if intervals:
+        if not {"time", "interval"} & columns.keys():
+            raise Refused(f"{name} has no column of intervals")
+        # A list without a heading is one of intervals as well.
+        times = columns.pop("time", np.empty(0))
+        columns.setdefault("interval", times)
     return _measured(name, columns, head, table)
 
 
@@ -354,17 +362,19 @@ def _measured(
             raise Refused(f"{name}: each impact needs an uncertainty above 0, or none has one")
     else:
         uncertainty = None
-    duration = None
+    durations = None
     if "contact time" in head:
-        duration = in_si("contact time", head["contact time"], "s")
+        durations = np.array([in_si("contact time", head["contact time"], "s")])
     elif "duration" in have and np.isfinite(columns["duration"]).any():
-        duration = float(np.nanmean(columns["duration"]))
+        durations = columns["duration"][np.isfinite(columns["duration"])]
+        if len(durations) != len(chains[0]):
+            durations = np.array([durations.mean()])
     return Recording(
         name=name,
         kind=kind,
         chains=tuple(chains),
         uncertainty=uncertainty,
-        duration=duration,
+        durations=durations,
         head=head,
         notes=tuple(notes),
     )

@@ -1,4 +1,4 @@
-"""Scripts that drop the ball of a design in its engine and print the rebound."""
+"""Scripts that let the bodies of a design bounce in its engine and print how they rebound."""
 
 import math
 
@@ -7,20 +7,39 @@ from bouncing_ball_contacts.engines import filled, text_of
 from bouncing_ball_contacts.units import Refused
 
 # The scripts of engines with several contacts are the same.
-_FILES = {
-    "mujoco": "mujoco-drop",
-    "pybullet": "pybullet-drop",
-    "drake": "drake-drop",
-    "drake-hunt-crossley": "drake-drop",
-    "lammps": "lammps-drop",
-    "lammps-limit-damping": "lammps-drop",
-    "lammps-hertz": "lammps-drop",
-    "newton": "newton-drop",
+_FAMILIES = {
+    "mujoco": "mujoco",
+    "pybullet": "pybullet",
+    "drake": "drake",
+    "drake-hunt-crossley": "drake",
+    "lammps": "lammps",
+    "lammps-limit-damping": "lammps",
+    "lammps-hertz": "lammps",
+    "newton": "newton",
 }
+# A ball, and a box with four contact points, in those engines that have boxes.
+_SHAPES = {
+    "mujoco": (
+        'size="@radius@"',
+        'type="box" size="@radius@ @radius@ @radius@"',
+    ),
+    "pybullet": (
+        "pybullet.GEOM_SPHERE, radius=@radius@",
+        "pybullet.GEOM_BOX, halfExtents=[@radius@, @radius@, @radius@]",
+    ),
+    "drake": (
+        "Sphere(@radius@)",
+        "Box(2 * @radius@, 2 * @radius@, 2 * @radius@)",
+    ),
+}
+_PAIRS = ("mujoco", "pybullet", "drake", "lammps")
 
 
 def drop_script(design: Design) -> str:
-    """Return a script in Python that drops the ball of a design in its engine.
+    """Return a script in Python that drops the body of a design in its engine.
+
+    It is a ball, or a box if the design has four contact points. Two free balls meet without
+    gravity; they have the same density.
 
     Raises
     ------
@@ -28,26 +47,47 @@ def drop_script(design: Design) -> str:
         If there is no script for the engine or for this bounce.
     """
     bounce = design.bounce
-    if design.engine not in _FILES:
-        raise Refused(f"no script is written for {design.engine}: only for {', '.join(_FILES)}")
-    if bounce.points > 1 or bounce.other_mass is not None or design.one_body:
-        raise Refused("a script drops one ball on a table: leave out points, other mass, one body")
+    family = _FAMILIES.get(design.engine)
+    if family is None:
+        known = ", ".join(_FAMILIES)
+        raise Refused(f"no script is written for {design.engine}: only for {known}")
+    is_pair = bounce.other_mass is not None
+    if is_pair and family not in _PAIRS:
+        raise Refused(f"no script of two free balls is written for {design.engine}")
+    if bounce.points > 1 and (bounce.points != 4 or family not in _SHAPES or is_pair):
+        raise Refused("a script drops a ball, or in MuJoCo, PyBullet and Drake a box of 4 points")
+    if design.one_body:
+        raise Refused("a script gives both bodies the same numbers: leave out --one-body")
     row = design.row
-    height = bounce.impact_speed**2 / (2 * bounce.gravity)
-    fall = math.sqrt(2 * height / bounce.gravity)
+    speed = bounce.impact_speed
     low, _, high = row.outcome.restitution
-    contact = 8 * row.outcome.depth[1] / bounce.impact_speed
-    steps = math.ceil((2.05 * fall + contact) / row.step) + 10
+    lasts = 8 * row.outcome.depth[1] / speed
+    if is_pair:
+        # They touch within the eleventh step.
+        gap = 10.5 * speed * row.step
+        steps = math.ceil(lasts / row.step) + 22
+        fall = 0.0
+    else:
+        gap = speed**2 / (2 * bounce.gravity)
+        fall = math.sqrt(2 * gap / bounce.gravity)
+        steps = math.ceil((2.05 * fall + lasts) / row.step) + 10
     radius = bounce.size
+    other = bounce.other_mass or bounce.mass
+    other_radius = radius * (other / bounce.mass) ** (1 / 3)
     values = {
         "mass": bounce.mass,
         "radius": radius,
+        "other_mass": other,
+        "other_radius": other_radius,
         "diameter": 2 * radius,
+        "other_diameter": 2 * other_radius,
         "density": bounce.mass / (4 / 3 * math.pi * radius**3),
         "gravity": bounce.gravity,
-        "height": height,
-        "start": radius + height,
-        "top": 2 * (radius + height + row.outcome.depth[1]),
+        "speed": speed,
+        "height": gap,
+        "start": radius + gap,
+        "apart": radius + other_radius + gap,
+        "top": 2 * (radius + other_radius + gap + row.outcome.depth[1]),
         "step": row.step,
         # Within a step, so that rounding errors take none away.
         "end": (steps + 0.5) * row.step,
@@ -56,6 +96,13 @@ def drop_script(design: Design) -> str:
     texts["steps"] = str(steps)
     # At this step the ball is in contact.
     texts["fall"] = str(math.ceil(fall / row.step) + 1)
-    texts["rise"] = f"{low**2 * height:.3g} to {high**2 * height:.3g}"
+    texts["rise"] = f"{low**2 * gap:.3g} to {high**2 * gap:.3g}"
+    texts["leave"] = f"{low:.3f} to {high:.3f}"
     texts["recipe"] = design.snippet
-    return filled(text_of(_FILES[design.engine]), texts)
+    ball, box = _SHAPES.get(family, ("", ""))
+    texts["shape"] = filled(box if bounce.points > 1 else ball, texts)
+    # In PyBullet a box gets its four points at once on a box, and not on a plane.
+    texts["table"] = "GEOM_BOX, halfExtents=[9, 9, 9]" if bounce.points > 1 else "GEOM_PLANE"
+    texts["below"] = "-9" if bounce.points > 1 else "0"
+    texts["body"] = "box of a half height" if bounce.points > 1 else "ball of a radius"
+    return filled(text_of(f"{family}-meet" if is_pair else f"{family}-drop"), texts)

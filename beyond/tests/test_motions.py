@@ -103,6 +103,7 @@ def test_exponents_of_sections_with_a_known_scatter():
     _, scatter, error = motions.exponent(twice, ones, -ones)
     assert error > 1.2 * scatter
     assert np.isnan(motions.exponent(growth, ones, -1e-3 * ones)[2])
+    assert motions.exponent(growth[:1], ones[:1], -ones[:1])[1] == np.inf
 
 
 @pytest.mark.parametrize(

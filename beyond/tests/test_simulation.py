@@ -298,6 +298,44 @@ def test_one_by_one_side_by_side_and_by_the_general_contact(release):
     assert np.nanmax(np.abs(general - side_by_side[0, 3])) < 1e-10
 
 
+@pytest.mark.parametrize("many", [1, 60])
+@pytest.mark.parametrize(
+    "ratio, r, amplitude, phase, speed",
+    [(8.0, 0.3, 2.7, -0.5, 0.47), (5.0, 0.7, 2.95, -1.6, 0.51), (2.0, 0.5, 1.25, 1.3, 0.57)],
+)
+def test_contacts_resume_on_the_line_of_zero_force(many, ratio, r, amplitude, phase, speed):
+    """A ball released by the force falls back to δ + κδ′ = 0 below the level, where u < 0."""
+    ball = bb.SpringDamper(ratio, restitution=r, release="force")
+    start = xr.DataArray(np.full(many, phase), dims="ball")
+    given = {"amplitude": amplitude, "phase": start, "relative_velocity": -speed}
+    found = bb.simulate(ball, **given, impacts=5).isel(ball=0)
+    tau, u = reference(ball, amplitude, phase, speed, 5)
+    assert found.relative_impact_velocity[1] > 1e-2
+    assert np.abs(found.time - (tau - phase)).max() < 1e-8
+    assert np.abs(found.relative_impact_velocity + u).max() < 1e-8
+
+
+@pytest.mark.parametrize(
+    "ball", [bb.Rigid(0.4), bb.Corrected(bb.SpringDamper(9.0, restitution=0.4))]
+)
+def test_balls_rest_side_by_side_as_one_by_one(ball):
+    """Sixty slow balls at Λ = 2 all rest and lift off at the same phase, after other turns."""
+    phase = xr.DataArray(np.linspace(-3, 3, 60), dims="ball")
+    given = {"amplitude": 2.0, "phase": phase, "relative_velocity": -0.05, "impacts": 15}
+    found = bb.simulate(ball, **given)
+    alone = [bb.simulate(ball, **given | {"phase": float(each)}) for each in phase[::7]]
+    rests = found.contact_duration > 0
+    assert rests.any("impact").mean() > 0.5
+    leaves = (found.impact_phase + found.contact_duration).where(rests) % TURN
+    falls = 2 * np.sin(leaves) > 1 + 1e-9
+    assert np.abs(leaves - np.pi / 6).where(~falls).max() < 1e-12
+    # The time to the next impact is that of the rest and of the flight.
+    lasts = found.contact_duration + found.flight_time
+    assert np.abs(found.time.diff("impact") - lasts.values[:, :-1]).max() < 1e-12
+    for one, other in zip(alone, found.time.values[::7], strict=True):
+        assert np.abs(one.time.values - other).max() < 1e-6
+
+
 def test_contacts_near_the_resonance_and_overdamped_ones_are_simulated():
     near = bb.simulate(bb.SpringDamper(1 + 1e-9, damping_ratio=0.0), amplitude=0.7, impacts=4)
     far = bb.simulate(bb.SpringDamper(1 + 1e-7, damping_ratio=0.0), amplitude=0.7, impacts=4)

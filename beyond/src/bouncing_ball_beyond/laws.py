@@ -297,7 +297,8 @@ class ForceLaw(Ball):
             # A table at rest has no period; an impact lasts some three times P/u.
             period = np.where(given["amplitude"] == 0, 3 * depth / np.abs(u), period)
         else:
-            first = given["T"] / (self.root + 2)
+            # So many panels are about the least that impacts need.
+            first = given["T"] / (1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
         ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits)
         s, q, v, t = rows.joined(*ends)

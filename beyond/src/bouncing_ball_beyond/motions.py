@@ -494,6 +494,8 @@ def exponent(growth, time, areas):
     first = max(growth.size // 4, int(np.searchsorted(lengths, SETTLED)))
     first = min(first, max(growth.size - 2, 0))
     rate = growth[first:].sum() / time[first:].sum()
+    if growth.size < 2:
+        return rate, np.inf, np.nan
     residual = growth[first:] - rate * time[first:]
     errors = []
     while residual.size >= (4 if errors else 2):

@@ -62,7 +62,7 @@ An impact takes about six."""
 CALM = 1e-3
 """The least speed of a ball that lies on the table, over its greatest one, that is resolved."""
 
-STEADY, PERIODS = 1e-9, 100
+STEADY, PERIODS = 1e-9, 30
 """A contact is permanent if its motion changes relatively by less in a period, or after so many."""
 
 ROWS = 500

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from integrated import leg
+from integrated import around, leg
 from scipy.optimize import brentq
 
 from bouncing_ball.continuation import bifurcations
@@ -15,6 +15,7 @@ from bouncing_ball_beyond.continuation import (
     kind_named,
     limits,
 )
+from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.paths import ParameterPath
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
 from bouncing_ball_beyond.special_orbits import doubled_of
@@ -422,3 +423,55 @@ def test_a_simulated_ball_ends_on_the_stable_orbits_of_a_cascade():
     for _ in range(4 * 40):
         tau, u, _ = leg(four.ball, four.amplitude, tau, u)
     assert np.abs(four.speeds - u).min() < 1e-6
+
+
+# Random branches
+
+
+def random_ball(number, random):
+    """A ball of one of four models, or of a law, its r, and the names of what may vary."""
+    r, ratio = random.uniform(0.4, 0.9), 10 ** random.uniform(0.6, 2)
+    laws = {57: tsuji, 58: hunt_crossley, 59: kuwabara_kono}
+    if number in laws:
+        ball = laws[number](restitution=r, duration=np.pi / ratio, speed=3.5)
+        return ball, r, ("amplitude", "stiffness", "damping")
+    damped = SpringDamper(ratio, restitution=r)
+    balls = [
+        Rigid(r),
+        damped,
+        SpringDamper(ratio, damping_ratio=float(damped.zeta), release="force"),
+        Corrected(damped),
+    ]
+    ball = balls[number % 4]
+    return ball, r, ("amplitude", "frequency", *ball.parameters)
+
+
+def closes(found):
+    """The distance by which one period by an independent code misses the start of an orbit."""
+    if not isinstance(found.ball, Corrected):
+        return np.abs(around(found)[0] - [found.times[0], found.speeds[0]]).max()
+    # The impulse of the instant is 2nπ: an orbit is a point of a line in the plane Λ (cos ψ, sin ψ).
+    r, _, _, loss = (float(each) for each in found.ball.signature(found.speeds[0]))
+    line = (1 + r) * np.cos(found.times[0]) - loss * np.sin(found.times[0])
+    half = np.pi * found.periods
+    return abs(found.amplitude * line - half * (1 - r) + loss)
+
+
+def test_random_branches_of_all_models_lead_to_orbits_of_independent_codes():
+    """Sixty branches along any parameter: a ball that follows their last orbit comes back."""
+    random = np.random.default_rng(78)
+    counted = 0
+    for number in range(60):
+        ball, r, names = random_ball(number, random)
+        amplitude = random.uniform(0.2, 0.9) * (period_doubling(1, r) - saddle_node(1, r))
+        one = orbit(ball, amplitude=saddle_node(1, r) + amplitude)
+        along = str(random.choice(names))
+        value = one.parameters.get(along, np.sqrt(one.amplitude))
+        goal = value * random.uniform(0.9, 1.1)
+        branch = follow(one, along=along, to=goal, points=40)
+        last = [each for each in branch.orbits if each.admissible][-1]
+        # The integrator is right to some 1e-11, which an unstable orbit stretches.
+        assert closes(last) < 1e-9 * (1 + np.abs(last.multipliers).max()), (number, branch)
+        counted += last.z[-1] != value
+    # All of them have moved.
+    assert counted == 60

@@ -321,19 +321,36 @@ def test_contacts_resume_on_the_line_of_zero_force(many, ratio, r, amplitude, ph
 def test_balls_rest_side_by_side_as_one_by_one(ball):
     """Sixty slow balls at Λ = 2 all rest and lift off at the same phase, after other turns."""
     phase = xr.DataArray(np.linspace(-3, 3, 60), dims="ball")
-    given = {"amplitude": 2.0, "phase": phase, "relative_velocity": -0.05, "impacts": 15}
-    found = bb.simulate(ball, **given)
-    alone = [bb.simulate(ball, **given | {"phase": float(each)}) for each in phase[::7]]
+    amplitude = xr.DataArray(np.linspace(1.5, 2.5, 60), dims="ball")
+    given = {"relative_velocity": -0.05, "impacts": 15}
+    found = bb.simulate(ball, amplitude=amplitude, phase=phase, **given)
     rests = found.contact_duration > 0
     assert rests.any("impact").mean() > 0.5
     leaves = (found.impact_phase + found.contact_duration).where(rests) % TURN
-    falls = 2 * np.sin(leaves) > 1 + 1e-9
-    assert np.abs(leaves - np.pi / 6).where(~falls).max() < 1e-12
+    falls = amplitude * np.sin(leaves) > 1 + 1e-9
+    assert np.abs(leaves - np.arcsin(1 / amplitude)).where(~falls).max() < 1e-12
     # The time to the next impact is that of the rest and of the flight.
     lasts = found.contact_duration + found.flight_time
     assert np.abs(found.time.diff("impact") - lasts.values[:, :-1]).max() < 1e-12
-    for one, other in zip(alone, found.time.values[::7], strict=True):
-        assert np.abs(one.time.values - other).max() < 1e-6
+    for j in range(0, 60, 7):
+        alone = bb.simulate(ball, amplitude=float(amplitude[j]), phase=float(phase[j]), **given)
+        assert np.abs(alone.time.values - found.time.values[j]).max() < 1e-6
+
+
+@pytest.mark.parametrize("many", [1, 50])
+def test_a_ball_that_is_laid_on_the_table(many):
+    """At Λ = 2 it is thrown off when the contact is first released, at Λ = 0.3 it stays for ever."""
+    ball = bb.SpringDamper(10.0, restitution=0.5)
+    amplitude = xr.DataArray(np.repeat([0.3, 2.0], many), dims="ball")
+    given = {"amplitude": amplitude, "phase": 3.0, "relative_velocity": 0.0, "impacts": 2}
+    found = bb.simulate(ball, **given)
+    assert (found.status[:many] == "permanent contact").all()
+    end, _ = contact(2.0, 3.0, 1e-12, oscillator(ball))
+    assert np.abs(found.contact_duration[many:, 0] - (end - 3.0)).max() < 1e-8
+    stays = bb.simulate(bb.Rigid(0.5), **given)
+    assert (stays.status[:many] == "permanent contact").all()
+    lift_off = np.arcsin(0.5) + TURN
+    assert np.abs(stays.contact_duration[many:, 0] - (lift_off - 3.0)).max() < 1e-13
 
 
 def test_contacts_near_the_resonance_and_overdamped_ones_are_simulated():

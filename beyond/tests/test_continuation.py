@@ -450,7 +450,7 @@ def closes(found):
     """The distance by which one period by an independent code misses the start of an orbit."""
     if not isinstance(found.ball, Corrected):
         return np.abs(around(found)[0] - [found.times[0], found.speeds[0]]).max()
-    # The impulse of the instant is 2nπ: an orbit is a point of a line in the plane Λ (cos ψ, sin ψ).
+    # The impulse of the instant is 2nπ, and so an orbit is a point of a line of Λ (cos ψ, sin ψ).
     r, _, _, loss = (float(each) for each in found.ball.signature(found.speeds[0]))
     line = (1 + r) * np.cos(found.times[0]) - loss * np.sin(found.times[0])
     half = np.pi * found.periods

@@ -339,7 +339,7 @@ def test_balls_rest_side_by_side_as_one_by_one(ball):
 
 @pytest.mark.parametrize("many", [1, 50])
 def test_a_ball_that_is_laid_on_the_table(many):
-    """At Λ = 2 it is thrown off when the contact is first released, at Λ = 0.3 it stays for ever."""
+    """At Λ = 2 it is thrown off when the contact is first released, at Λ = 0.3 it stays."""
     ball = bb.SpringDamper(10.0, restitution=0.5)
     amplitude = xr.DataArray(np.repeat([0.3, 2.0], many), dims="ball")
     given = {"amplitude": amplitude, "phase": 3.0, "relative_velocity": 0.0, "impacts": 2}

@@ -38,6 +38,8 @@ REACH = 4.0
 """The reach H of the second bound, in steps of the first one."""
 PATIENCE = 100 * TURN
 """A contact without a release for this long is a lasting one."""
+SLOWEST = 1e-12
+"""The closing speed that is given to a ball without one, which is laid on the table."""
 CHATTER = 1e-5
 """Chattering is summed up once Λ T₀ and T₀ are below this multiple of the gravity on the table: the
 sum has a relative error of the order of the square, so that an absolute error of 1e-15 is left."""
@@ -120,8 +122,6 @@ def rise(gap, w, x, y, amplitude, kappa):
         third = x * math.cos(t) - y * math.sin(t)
         f = position + kappa * rate
         slope = rate + kappa * second
-        if t > 0 and f <= 0:
-            return True, t
         f = max(f, 0.0)
         step, last = safe_step(t, f, slope, second + kappa * third, 1 + forcing, forcing)
         t += step
@@ -176,8 +176,6 @@ def landing(start, gap, w, x, y, amplitude):
         if absolute - aloft <= t < absolute + aloft:
             t = absolute + aloft
         position, rate, second = flight(t, gap, w, x, y)
-        if position <= 0 and rate <= 0:
-            return t, -rate
         position = max(position, 0.0)
         step, last = safe_step(t, position, rate, second, 1 + amplitude, amplitude)
         if last:
@@ -242,6 +240,8 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
     a = (detuning + kappa * loss) / scale
     b = (kappa * detuning - loss) / scale
     growth = math.sqrt(1 + 4 * zeta * zeta)
+    if u == 0:
+        u = SLOWEST
     s = 0.0
     while s < PATIENCE:
         position, rate, second = contact(s, gap, u, x, y, ratio, zeta)
@@ -250,8 +250,6 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
         third = shove - loss * second - stiffness * rate
         f = -position - kappa * rate
         slope = -rate - kappa * second
-        if s > 0 and f <= 0:
-            return s, rate
         free = f + a * push + b * shove - 1 / stiffness
         free_rate = slope + a * shove - b * push
         energy = math.sqrt(free_rate * free_rate + stiffness * free * free)

@@ -14,7 +14,7 @@ import xarray as xr
 
 from bouncing_ball_beyond import one_ball
 from bouncing_ball_beyond.balls import Ball, Corrected, H, Rigid, SpringDamper, brief, check_ball
-from bouncing_ball_beyond.one_ball import COLUMNS, PATIENCE, REACH, ROUNDING, STEPS, TURN
+from bouncing_ball_beyond.one_ball import COLUMNS, PATIENCE, REACH, ROUNDING, SLOWEST, STEPS, TURN
 
 FEW = 40
 """Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
@@ -128,9 +128,6 @@ def landings(start, gap, w, x, y, amplitude):
         position, rate, second = flights(t, gap, w, x, y)
         f = np.maximum(position, 0.0)
         step, last = safe_steps(t, f, rate, second, 1 + amplitude, amplitude)
-        down = (position <= 0) & (rate <= 0)
-        step[down] = 0.0
-        last |= down
         rows[0] = t + step
         if last.any():
             third = x + w - t - rate
@@ -200,6 +197,7 @@ def releases(ball, phase, u, amplitude):
     """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
     releases: :func:`.one_ball.release` for arrays.
     """
+    u = np.where(u == 0, SLOWEST, u)
     given = ball.start(u), u, *table_at(phase, amplitude), amplitude
     parameters = np.broadcast_arrays(u, ball.frequency_ratio, ball.zeta, ball.kappa)[1:]
     rows = np.array([0 * u, *given])
@@ -231,9 +229,6 @@ def releases(ball, phase, u, amplitude):
         jerk = ratio * np.sqrt(1 + growth) * bend + steady
         above = np.maximum(f, 0.0)
         step, last = safe_steps(s, above, slope, -second - kappa * third, bend + steady, jerk)
-        over = (f <= 0) & (s > 0)
-        step[over] = 0.0
-        last |= over
         rows[0] = s + step
         done = last | (energy / ratio + steady <= 1 / stiffness) | (s > PATIENCE)
         if done.any():

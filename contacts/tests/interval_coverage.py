@@ -94,7 +94,8 @@ SOFT = partial(of_law, VISCOELASTIC)
 STEEP = partial(of_law, CROSSLEY)
 # Name, true r, the law of it if it is one that is fitted, recording, stated resolution. The method
 # was found with other kinds, but that more exponents were taken after the 20 drops, of which 83 %
-# had been held, and the 12 coefficients with 1 - 0.04 v, 89 %.
+# had been held, and the 12 coefficients with 1 - 0.04 v, 89 %; docs/measured.md has the numbers of
+# other recordings.
 KINDS = [
     (
         "6 impacts heard, 0.4 ms",

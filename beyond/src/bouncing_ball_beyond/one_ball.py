@@ -26,7 +26,7 @@ except ImportError:
 else:
 
     def compiled(function):
-        """The function compiled, and kept for later sessions where a folder can be written to."""
+        """The function compiled, and kept for later runs where a folder can be written to."""
         try:
             return njit(cache=True)(function)
         except RuntimeError:

@@ -239,7 +239,7 @@ def main():
     print(f"\n{agreed} of {run} designs agree with their engines.")
     for engine, names in missing.items():
         print(f"Not run, because it is not installed: {engine} ({names[0]}).")
-    sys.exit(agreed < run)
+    sys.exit(1 if agreed < run else 0)
 
 
 if __name__ == "__main__":

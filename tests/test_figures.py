@@ -186,7 +186,8 @@ def test_line_styles_are_the_stability(name):
         kinds = np.where(branch.stable, "stable", "unstable")
         for phase in PHASES[: 1 if name == "fig03" else 2]:
             for k in range(0, branch.sizes["point"] - 1, 25):
-                x, y = float(branch.amplitude[k]), float(branch[phase][k]) / np.pi
+                x = float(branch.amplitude[k])
+                y = float(branch[phase][k]) / np.pi
                 # A line begins or ends where the kind changes, so that the part beyond decides.
                 beyond = [
                     line
@@ -228,7 +229,8 @@ def test_marks_are_at_the_special_points(name):
 def test_the_period_doublings_of_eq_8_are_marked(name):
     """They are orbits of Eq. 6, at the Λ of Eq. 8."""
     given = drawing.parameters(reference(name))
-    n, r = np.unique(given["n"]), given["restitution"]
+    n = np.unique(given["n"])
+    r = given["restitution"]
     marks = lines_of(of_reference(name), "period doubling, Eq. 8")
     places = np.array([line.get_xydata()[0] for line in marks])
     amplitude = np.unique(places[:, 0])

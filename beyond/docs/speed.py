@@ -213,13 +213,15 @@ def bare_branch(z, to):
             normal = last
         ahead = z + step * tangent
         new = ahead
-        for iterations in range(1, 8):  # noqa: B007 - used behind the loop
+        iterations = 0
+        converged = False
+        while not converged and iterations < 7:
+            iterations += 1
             matrix = np.vstack([slopes(new), normal])
             change = np.linalg.solve(matrix, -np.append(defects(new), normal @ (new - ahead)))
             new = new + change
-            if np.abs(change).max() < 1e-10:
-                break
-        else:
+            converged = np.abs(change).max() < 1e-10
+        if not converged:
             step /= 2
             continue
         z = new

@@ -23,22 +23,28 @@ STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
 
 
-def filled_in(name: str, datasets: Datasets) -> str:
-    """The text of a template, "paper", "supplement" or "figures" (the list of all figures and
-    tables), Markdown. It knows the datasets of all figures, tables and claims by their names.
-    """
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
+def environment(templates: Path) -> jinja2.Environment:
+    """What reads the templates of a folder, with what they can do with a number."""
+    found = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters.update(
+    found.filters.update(
         fixed=fixed, percent=percent, at_most=at_most, short=short, listed=listed, at=at, zip=zip
     )
+    return found
+
+
+def filled_in(name: str, datasets: Datasets) -> str:
+    """The text of a template, "paper", "supplement" or "figures" (the list of all figures and
+    tables), Markdown. It knows the datasets of all figures, tables and claims by their names.
+    """
     judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
-    return environment.get_template(f"{name}.md.j2").render(
+    template = environment(TEMPLATES).get_template(f"{name}.md.j2")
+    return template.render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
         given={key: parameters(data) for key, data in datasets.items()},

@@ -461,6 +461,13 @@ CODE = ("Snakefile", "config", "src", "workflow")
 """What must be committed, so that the commit that a reference names is the code that made it."""
 
 
+def refuse_other_settings(given: Mapping, accepted: Mapping) -> None:
+    """Raise ValueError if the settings of a run are not those of the configuration in git."""
+    changed = [key for key in {**given, **accepted} if given.get(key) != accepted.get(key)]
+    if changed:
+        raise ValueError(f"config/config.yaml has another {', '.join(changed)} than this run")
+
+
 def accept(
     results: str | Path,
     reference: str | Path,

@@ -1,4 +1,5 @@
-# What is wrong with a configuration: the functions that both workflows of this repository share.
+# What is wrong with a configuration, or with the place of results: the functions that both workflows
+# of this repository share.
 
 import math
 import os
@@ -107,9 +108,9 @@ def refuse(files, config, schema, crossed, further=None):
 def refuse_links(checkout):
     """End the run if its results would be written over a checkout, for example through a link."""
     for folder in (Path("results"), Path("results/figures")):
-        place = folder.resolve()
-        linked = place != folder.absolute() and place.is_relative_to(checkout)
-        if linked or place.is_relative_to(checkout / "figures"):
-            sys.exit(f"{folder} is {place}: results must not be written over the checkout")
-        if place.exists() and not place.is_dir():
+        target = folder.resolve()
+        linked = target != folder.absolute() and target.is_relative_to(checkout)
+        if linked or target.is_relative_to(checkout / "figures"):
+            sys.exit(f"{folder} is {target}: results must not be written over the checkout")
+        if target.exists() and not target.is_dir():
             sys.exit(f"{folder} is no folder, but results are written there")

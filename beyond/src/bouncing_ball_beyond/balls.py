@@ -127,7 +127,7 @@ def check_ball(ball):
         raise ValueError(f"ball = {brief(ball)}: must be a ball, such as Rigid(0.7)")
 
 
-def _checked(name, value, low, high, *, low_allowed):
+def checked(name, value, low, high, *, low_allowed):
     """The value as a number or an array; ValueError unless all are finite, from low to high."""
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
@@ -152,7 +152,7 @@ def _check_function(restitution):
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(f"restitution: r(u) fails for an array of complex u ({reason})") from None
-    _checked("restitution at u = 0.5, 1 or 2", r, 0, 1, low_allowed=True)
+    checked("restitution at u = 0.5, 1 or 2", r, 0, 1, low_allowed=True)
     # Differences are wrong by 1e-11 for rounding and by the third derivative of r times 1e-11.
     if not np.allclose(along, across, rtol=1e-4, atol=1e-6):
         raise ValueError("restitution: r(u) must be analytic, without abs, real, sign or the like")
@@ -177,7 +177,7 @@ class Rigid(Ball):
         if callable(self.restitution):
             _check_function(self.restitution)
         else:
-            r = _checked("restitution", self.restitution, 0, 1, low_allowed=True)
+            r = checked("restitution", self.restitution, 0, 1, low_allowed=True)
             object.__setattr__(self, "restitution", r)
 
     def _restitution(self, u):
@@ -366,13 +366,13 @@ class SpringDamper(Ball):
             raise ValueError("restitution, damping_ratio: exactly one of them must be given")
         if self.release not in ("displacement", "force"):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
-        ratio = _checked("frequency_ratio", self.frequency_ratio, 0, np.inf, low_allowed=False)
+        ratio = checked("frequency_ratio", self.frequency_ratio, 0, np.inf, low_allowed=False)
         object.__setattr__(self, "frequency_ratio", ratio)
         if self.damping_ratio is None:
-            r = _checked("restitution", self.restitution, 0, 1, low_allowed=False)
+            r = checked("restitution", self.restitution, 0, 1, low_allowed=False)
             object.__setattr__(self, "restitution", r)
         else:
-            zeta = _checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
+            zeta = checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
             object.__setattr__(self, "damping_ratio", zeta)
 
     def at(self, **values):

@@ -820,7 +820,8 @@ def orbit_of_motion(
         raise ValueError("the orbit of a motion is that of a single ball from one start")
     ends = ends_of(balls, impacts)
     words = in_words(*(ends[name][0] for name in ("kind", "followed", "reason")))
-    k, m = int(ends["impacts"][0]), int(ends["periods"][0])
+    k = int(ends["impacts"][0])
+    m = int(ends["periods"][0])
     if not k:
         raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
     if ends["kind"][0] == LOCKED and not ball.lasts:

@@ -27,7 +27,7 @@ from inspect import signature
 import numpy as np
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.balls import _checked
+from bouncing_ball_beyond.balls import checked
 from bouncing_ball_beyond.laws import ForceLaw
 
 HERTZ = (1, -0.5, -2)
@@ -81,9 +81,9 @@ def law_of_impact(law_of, restitution, duration, speed):
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
     """
-    restitution = _checked("restitution", restitution, 0, 1, low_allowed=False)
-    duration = _checked("duration", duration, 0, np.inf, low_allowed=False)
-    speed = _checked("speed", speed, 0, np.inf, low_allowed=False)
+    restitution = checked("restitution", restitution, 0, 1, low_allowed=False)
+    duration = checked("duration", duration, 0, np.inf, low_allowed=False)
+    speed = checked("speed", speed, 0, np.inf, low_allowed=False)
     r, lasts, v = np.broadcast_arrays(restitution, duration, speed)
     found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
     damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)
@@ -138,7 +138,7 @@ def _given(law, values, impact, of_scales):
 def _parameter(name, value):
     """A parameter that is in its range."""
     low, high, low_allowed = RANGES[name]
-    return _checked(name, value, low, high, low_allowed=low_allowed)
+    return checked(name, value, low, high, low_allowed=low_allowed)
 
 
 def linear(
@@ -399,23 +399,29 @@ def lankarani_nikravesh(
     H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical Design 112 (1990) 369-376, as quoted
     by public code for multibody contacts.
     """
+    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
+    impact = {"restitution": restitution, "duration": duration, "speed": speed}
+
+    def nominal(c):
+        return np.sqrt(np.maximum(1 - 4 * c / 3, 0))
+
+    return _of_start_speed(_lankarani_nikravesh, nominal, values, impact)
+
+
+def _of_start_speed(force, nominal, values, impact):
+    """The law of Hunt and Crossley with C = c/v₀ by its force; ``nominal(c)`` is e."""
     law = partial(
         ForceLaw,
-        _lankarani_nikravesh,
+        force,
         root=2,
         needs=("start_speed",),
         units={"stiffness": HERTZ, "nominal_restitution": NUMBER},
     )
-    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
     return _given(
         law,
         values,
         impact,
-        lambda c, P, v: {
-            "stiffness": v**2 / P**2.5,
-            "nominal_restitution": np.sqrt(np.maximum(1 - 4 * c / 3, 0)) + 0 * v,
-        },
+        lambda c, P, v: {"stiffness": v**2 / P**2.5, "nominal_restitution": nominal(c) + 0 * v},
     )
 
 
@@ -443,24 +449,9 @@ def flores(
     >>> round(float(flores(2000.0, 0.5).signature(3.0).restitution), 3)
     0.47
     """
-    law = partial(
-        ForceLaw,
-        _flores,
-        root=2,
-        needs=("start_speed",),
-        units={"stiffness": HERTZ, "nominal_restitution": NUMBER},
-    )
     values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
     impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(
-        law,
-        values,
-        impact,
-        lambda c, P, v: {
-            "stiffness": v**2 / P**2.5,
-            "nominal_restitution": 8 / (8 + 5 * c) + 0 * v,
-        },
-    )
+    return _of_start_speed(_flores, lambda c: 8 / (8 + 5 * c), values, impact)
 
 
 def _flores(p, v, stiffness, nominal_restitution, start_speed):

@@ -90,18 +90,26 @@ def safe_step(t, f, slope, second, bend, jerk):
     return step, step <= ROUNDING * t
 
 
-@compiled
-def flight(t, gap, w, x, y):
-    """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and Λ sin τ = y.
+def flight_by(functions):
+    """The motion in flight, by the functions of numbers, ``math``, or of arrays, ``numpy``."""
 
-    Written with 1 - cos t and t - sin t, from tan t/2, short flights lose no digits.
-    """
-    half = math.tan(t / 2)
-    sine = 2 * half / (1 + half * half)
-    versine = half * sine
-    position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
-    rate = (w - t) + (y * sine + x * versine)
-    return position, rate, (y - 1) + (x * sine - y * versine)
+    def flight(t, gap, w, x, y):
+        """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and
+        Λ sin τ = y.
+
+        Written with 1 - cos t and t - sin t, from tan t/2, short flights lose no digits.
+        """
+        half = functions.tan(t / 2)
+        sine = 2 * half / (1 + half * half)
+        versine = half * sine
+        position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
+        rate = (w - t) + (y * sine + x * versine)
+        return position, rate, (y - 1) + (x * sine - y * versine)
+
+    return flight
+
+
+flight = compiled(flight_by(math))
 
 
 @compiled
@@ -185,40 +193,47 @@ def landing(start, gap, w, x, y, amplitude):
     return math.nan, math.nan
 
 
-@compiled
-def contact(s, gap, u, x, y, ratio, zeta):
-    """δ, δ′ and δ″ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1.
+def contact_by(functions):
+    """The motion in contact, by the functions of numbers, ``math``, or of arrays, ``numpy``."""
 
-    The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with k = g′ + 2ζϖg,
-    and h = Q + iP to e^{is}::
+    def contact(s, gap, u, x, y, ratio, zeta):
+        """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1,
+        and the height of the table and its velocity.
 
-        h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
+        The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with
+        k = g′ + 2ζϖg, and h = Q + iP to e^{is}::
 
-    Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
-    """
-    loss = 2 * zeta * ratio
-    stiffness = ratio * ratio
-    detuning = (ratio - 1) * (ratio + 1)
-    omega = ratio * math.sqrt((1 - zeta) * (1 + zeta))
-    half = math.tan(s / 2)
-    sine = 2 * half / (1 + half * half)
-    cosine = 1 - half * sine
-    swing = math.tan(omega * s / 2)
-    swung = 2 * swing / (1 + swing * swing)
-    lost = -math.expm1(-zeta * ratio * s)
-    decay = 1 - lost
-    g = decay * swung / omega
-    slope = decay * (1 - swing * swung) - zeta * ratio * g
-    lost += decay * swing * swung - zeta * ratio * g
-    real = lost - half * sine
-    imaginary = sine - g
-    scale = detuning * detuning + loss * loss
-    in_phase = (real * detuning + imaginary * loss) / scale
-    quadrature = (imaginary * detuning - real * loss) / scale
-    position = gap * (1 - lost) - u * g - lost / stiffness + y * in_phase + x * quadrature
-    rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
-    push = y * cosine + x * sine - 1
-    return position, rate, push - loss * rate - stiffness * position
+            h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
+
+        Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
+        """
+        loss = 2 * zeta * ratio
+        stiffness = ratio * ratio
+        detuning = (ratio - 1) * (ratio + 1)
+        omega = ratio * functions.sqrt((1 - zeta) * (1 + zeta))
+        half = functions.tan(s / 2)
+        sine = 2 * half / (1 + half * half)
+        cosine = 1 - half * sine
+        swing = functions.tan(omega * s / 2)
+        swung = 2 * swing / (1 + swing * swing)
+        lost = -functions.expm1(-zeta * ratio * s)
+        decay = 1 - lost
+        g = decay * swung / omega
+        slope = decay * (1 - swing * swung) - zeta * ratio * g
+        lost += decay * swing * swung - zeta * ratio * g
+        real = lost - half * sine
+        imaginary = sine - g
+        scale = detuning * detuning + loss * loss
+        in_phase = (real * detuning + imaginary * loss) / scale
+        quadrature = (imaginary * detuning - real * loss) / scale
+        position = gap * (1 - lost) - u * g - lost / stiffness + y * in_phase + x * quadrature
+        rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
+        return position, rate, y * cosine + x * sine, x * cosine - y * sine
+
+    return contact
+
+
+contact = compiled(contact_by(math))
 
 
 @compiled
@@ -244,9 +259,8 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
         u = SLOWEST
     s = 0.0
     while s < PATIENCE:
-        position, rate, second = contact(s, gap, u, x, y, ratio, zeta)
-        push = second + loss * rate + stiffness * position + 1
-        shove = x * math.cos(s) - y * math.sin(s)
+        position, rate, push, shove = contact(s, gap, u, x, y, ratio, zeta)
+        second = push - 1 - loss * rate - stiffness * position
         third = shove - loss * second - stiffness * rate
         f = -position - kappa * rate
         slope = -rate - kappa * second

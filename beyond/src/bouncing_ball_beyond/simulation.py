@@ -30,6 +30,11 @@ DELICATE = 0.25
 """Contacts whose |ϖ² - 1 + 2iζϖ| is below this are followed on arrays: terms of their closed form
 cancel."""
 
+flights = one_ball.flight_by(np)
+"""The motion in flight, for arrays."""
+contacts = one_ball.contact_by(np)
+"""The motion in contact, for arrays."""
+
 
 class Leaving(NamedTuple):
     """How balls leave the table.
@@ -102,16 +107,6 @@ def table_at(phase, amplitude):
     return amplitude * (1 - half * sine), amplitude * sine
 
 
-def flights(t, gap, w, x, y):
-    """:func:`.one_ball.flight` for arrays."""
-    half = np.tan(t / 2)
-    sine = 2 * half / (1 + half * half)
-    versine = half * sine
-    position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
-    rate = (w - t) + (y * sine + x * versine)
-    return position, rate, (y - 1) + (x * sine - y * versine)
-
-
 @np.errstate(divide="ignore", invalid="ignore")
 def landings(start, gap, w, x, y, amplitude):
     """:func:`.one_ball.landing` for arrays of one shape."""
@@ -164,32 +159,6 @@ def instants(ball, landed, gap, w, x, y, amplitude):
             break
         t += step
     return t, speed
-
-
-def contacts(s, gap, u, x, y, ratio, zeta):
-    """:func:`.one_ball.contact` for arrays: δ, δ′, the height of the table and its velocity."""
-    loss = 2 * zeta * ratio
-    stiffness = ratio * ratio
-    detuning = (ratio - 1) * (ratio + 1)
-    omega = ratio * np.sqrt((1 - zeta) * (1 + zeta))
-    half = np.tan(s / 2)
-    sine = 2 * half / (1 + half * half)
-    cosine = 1 - half * sine
-    swing = np.tan(omega * s / 2)
-    swung = 2 * swing / (1 + swing * swing)
-    lost = -np.expm1(-zeta * ratio * s)
-    decay = 1 - lost
-    g = decay * swung / omega
-    slope = decay * (1 - swing * swung) - zeta * ratio * g
-    lost += decay * swing * swung - zeta * ratio * g
-    real = lost - half * sine
-    imaginary = sine - g
-    scale = detuning * detuning + loss * loss
-    in_phase = (real * detuning + imaginary * loss) / scale
-    quadrature = (imaginary * detuning - real * loss) / scale
-    position = gap * (1 - lost) - u * g - lost / stiffness + y * in_phase + x * quadrature
-    rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
-    return position, rate, y * cosine + x * sine, x * cosine - y * sine
 
 
 @np.errstate(divide="ignore", invalid="ignore")

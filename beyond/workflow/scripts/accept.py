@@ -7,12 +7,8 @@ from bouncing_ball import compare
 from studies.products import CODE, PRODUCTS
 
 options = snakemake.params
-given = options.config
-accepted = options.accepted
-changed = [key for key in {**given, **accepted} if given.get(key) != accepted.get(key)]
 try:
-    if changed:
-        raise ValueError(f"config/config.yaml has another {', '.join(changed)} than this run")
+    compare.refuse_other_settings(options.config, options.accepted)
     files = compare.accept(
         options.results, options.reference, PRODUCTS, options.artifacts, options.names, CODE
     )

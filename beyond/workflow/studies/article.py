@@ -6,10 +6,9 @@ As in the replication, a template has text and names of numbers, and no numbers.
 from decimal import Decimal
 from pathlib import Path
 
-import jinja2
 import numpy as np
 
-from bouncing_ball.article import at_most, fixed, listed, percent, short
+from bouncing_ball.article import environment
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
@@ -17,17 +16,9 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 
 def filled_in(name: str, datasets: Datasets) -> str:
     """The text of a template, "article" or "figures" (the list of all figures), Markdown."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters.update(
-        fixed=fixed, percent=percent, at_most=at_most, short=short, digits=digits, listed=listed
-    )
-    return environment.get_template(f"{name}.md.j2").render(
+    templates = environment(TEMPLATES)
+    templates.filters["digits"] = digits
+    return templates.get_template(f"{name}.md.j2").render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
         given={key: parameters(data) for key, data in datasets.items()},

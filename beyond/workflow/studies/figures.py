@@ -559,7 +559,8 @@ def ext_phase(data: xr.Dataset) -> Figure:
     plane.plot([line, line], [0, top], color=COLOURS[0], label="restitution model")
     for share, colour in zip(data.shown_share.values, COLOURS[1:], strict=False):
         one = data.sel(shown_share=share)
-        across, angle = float(one.line_level), float(one.line_angle)
+        across = float(one.line_level)
+        angle = float(one.line_angle)
         # X cos θ - Y sin θ = C - s.
         ends = [across / np.cos(angle) + y * np.tan(angle) for y in (0, top)]
         plane.plot(ends, [0, top], color=colour, linestyle=DASHES[3])

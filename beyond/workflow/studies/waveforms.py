@@ -70,7 +70,8 @@ def contact_orbits(waveform: Waveform, phase: NDArray, ball: SpringDamper, n: in
     With the responses g and G of δ″ + 2ζϖδ′ + ϖ²δ to a unit impulse and a unit force, and ΛA to the
     table, δ = -ug - G + ΛA.
     """
-    ratio, zeta = ball.frequency_ratio, ball.zeta
+    ratio = ball.frequency_ratio
+    zeta = ball.zeta
     free = ball.signature(1.0).duration
     here = waveform(phase), waveform(phase, 1)
 

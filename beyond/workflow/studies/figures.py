@@ -437,8 +437,9 @@ THIN: Look = {"linewidth": 1.1}
 def ext_laws(data: xr.Dataset) -> Figure:
     """Errors of both models on contacts of five laws, over D + κ as a share of the cycle.
 
-    Above they are divided by those on the linear contact. Below are those themselves, for the
-    period doubling on all contacts, and for the other quantities on the linear one.
+    Above they are divided by those on the linear contact. Below are the errors themselves, of the
+    period doubling and of the apparent restitution, which passes through zero, on all contacts,
+    and of the other quantities on the linear one.
     """
     figure = Figure(figsize=(WHOLE_WIDTH, 6.0))
     rows: list[Any] = [

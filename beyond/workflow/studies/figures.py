@@ -355,9 +355,9 @@ def draw_height(axes: Axes, family: xr.Dataset) -> None:
         colours: Look = {"colors": look["color"], "linewidths": look["linewidth"]}
         lines = axes.contour(r, needed.position, needed, levels=LEVELS, **colours)
         lines.set_clip_path(Path(above), axes.transData)
-    for name in axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)]):
+    for text in axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)]):
         # The name hides the wide line as well.
-        name.set(bbox=ON_LINE["bbox"], zorder=4)
+        text.set(bbox=ON_LINE["bbox"], zorder=4)
     stiff = family.level >= family.jump_ratio
     law = place(family.too_high_lift_by_law)
     draw_levels(axes, too_high.where(stiff), law.where(stiff), TOO_HIGH)

@@ -59,6 +59,7 @@ PARTS = {
     "Beyond the paper": [
         "beyond/README",
         "beyond/article",
+        "beyond/appendix",
         "beyond/figures/*",
         "beyond/docs/first-hour",
         "beyond/docs/orbits",

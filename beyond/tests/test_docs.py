@@ -11,7 +11,7 @@ import bouncing_ball_beyond
 from bouncing_ball_beyond import named_laws
 
 BEYOND = Path(__file__).resolve().parents[1]
-PAGES = sorted([BEYOND / "README.md", *(BEYOND / "docs").glob("*.md")])
+PAGES = sorted([*BEYOND.glob("*.md"), *(BEYOND / "docs").glob("*.md")])
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -324,3 +324,28 @@ def test_thresholds_of_a_law_are_by_its_duration():
     found = error_thresholds(law, **known)["max_height"]
     assert found.ratio == pytest.approx(81.23, abs=5e-3)
     assert law_thresholds(law, amplitude=1.0)["max_height"] == pytest.approx(found.ratio, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["linear", *LAWS])
+def test_trace_and_determinant_of_the_corrected_model(name):
+    """Eqs. C1 and C2 of the appendices, with derivatives of the signature by differences."""
+    ball = SpringDamper(20.0, restitution=0.65) if name == "linear" else LAWS[name]
+    one = orbit(Corrected(ball), amplitude=1.0)
+    psi = one.times[0]
+    v = np.pi + np.cos(psi)
+    h = 1e-4
+    speeds = v + h * np.array([-1, 0, 1])
+    r, _, delay, sigma = ball.signature(speeds)
+    a = 1 - np.sin(psi)
+    leaving = np.diff(r * speeds + sigma * a)
+    falling = np.diff(delay * speeds)
+    g = leaving.sum() / (2 * h)
+    t = falling.sum() / (2 * h)
+    w = -np.sin(psi) - sigma[1] * np.cos(psi)
+    n = v - t * a
+    trace = (v + 2 * np.pi * w - t * (1 + w) + a * (2 * np.pi * g - t * (1 + g))) / n - g
+    determinant = (2 * np.pi * g - g * v - t * (1 + w)) / n
+    assert one.multipliers.sum() == pytest.approx(trace, abs=1e-6)
+    assert one.multipliers.prod() == pytest.approx(determinant, abs=1e-6)
+    doubling = (1 - g) * v + np.pi * (w + (1 + a) * g) - t * (1 + a + w)
+    assert 1 + trace + determinant == pytest.approx(2 * doubling / n, rel=1e-12)

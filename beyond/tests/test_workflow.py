@@ -123,7 +123,8 @@ def used(complete, tmp_path):
 
 
 def test_a_whole_run_makes_every_file(complete):
-    assert complete.made() == files(*FILES) | {"article.md", "figures/README.md"}
+    texts = {"article.md", "appendix.md", "figures/README.md"}
+    assert complete.made() == files(*FILES) | texts
 
 
 def test_every_name_is_a_target(complete):

@@ -18,6 +18,7 @@ STAGES = {stage: list(names) for stage, names in config.items() if isinstance(na
 DATASETS = [name for names in STAGES.values() for name in names]
 FIGURES = [name for name in DATASETS if name not in ("ext_event", "explorer")]
 TABLES = ["ext_orders", "ext_laws"]
+TEXTS = ["article", "appendix", "figures"]
 
 # Settings of the whole run on which the datasets of a stage depend.
 SETTINGS = {

@@ -1,4 +1,4 @@
-# The accepted results in git, figures/ and article.md, are the reference. Only the rule `accept`
+# The accepted results in git, figures/, article.md and appendix.md, are the reference. Only the rule `accept`
 # writes to them. Both rules have no outputs, so that they run whenever they are named.
 
 

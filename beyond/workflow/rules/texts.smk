@@ -1,4 +1,4 @@
-# Tables and the article are written from the datasets.
+# Tables and the article with its appendices are written from the datasets.
 
 
 rule table:
@@ -18,13 +18,14 @@ rule table:
 
 
 rule article:
-    """The article and the list of figures"""
+    """The article, its appendices and the list of figures"""
     input:
         data=expand("results/figures/{name}.nc", name=DATASETS),
-        templates=[package(f"workflow/templates/{name}.md.j2") for name in ("article", "figures")],
+        templates=[package(f"workflow/templates/{name}.md.j2") for name in TEXTS],
         code=code("article"),
     output:
         article="results/article.md",
+        appendix="results/appendix.md",
         figures="results/figures/README.md",
     log:
         "results/logs/article.log",

@@ -1,4 +1,4 @@
-"""The article and the list of figures, from all datasets."""
+"""The article, its appendices and the list of figures, from all datasets."""
 
 import sys
 from pathlib import Path

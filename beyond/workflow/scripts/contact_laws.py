@@ -38,7 +38,10 @@ LINEAR = {"linear": "displacement", "linear, force release": "force"}
 OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
 LAWS = (*LINEAR, *OF_HERTZ)
 CALIBRATIONS = ("orbit on the contact", "orbit of the restitution model")
-QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
+QUANTITIES = (
+    *("max_height", "bounce_velocity", "phase", "apparent_restitution"),
+    *("saddle_node", "period_doubling"),
+)
 BIFURCATIONS = {"saddle_node", "period_doubling"}
 
 # Over the speed the signature is a polynomial on this range of the calibrated speed, up to rounding
@@ -157,6 +160,7 @@ def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDAr
         "max_height": equations.max_height(z),
         "bounce_velocity": (ends.speed + case["amplitude"] * np.cos(ends.leaves))[:, 0],
         "phase": z[:, 0],
+        "apparent_restitution": ends.speed[:, 0] / z[:, 1],
         **contact_values(ball, quantities=BIFURCATIONS & {*quantities}, **given),
     }
     known = Known(by_polynomials(unit), z[:, -1], np.pi / ratios)

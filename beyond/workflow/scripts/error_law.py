@@ -32,6 +32,10 @@ STIFF = np.array([500.0, 1000.0])
 # Two ϖ for the orders: below 100 higher orders contribute, above 10⁴ rounding does.
 TWO_STIFF = np.array([[1000.0], [2000.0]])
 
+# At the saddle-node the error has a term of order 1/2 and one of order 1 with the other sign, whose
+# sum passes through zero at ϖ up to some 10⁴.
+TWO_STIFF_AT_NODE = np.array([[1e5], [2e5]])
+
 
 def stacked(quantities: dict) -> NDArray:
     """The values of the quantities, shape (quantity, ...)."""
@@ -146,7 +150,8 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
     stiff = SpringDamper(TWO_STIFF, damping_ratio=zeta, release=release)
     once, twice = np.moveaxis(np.abs(errors(stiff, amplitude, n)), 2, 0)
     left, _ = left_by_law(stiff, amplitude, n)
-    left_at_node, error = left_at_saddle_node(stiff, n)
+    stiffer = stiff.at(frequency_ratio=TWO_STIFF_AT_NODE)
+    left_at_node, error = left_at_saddle_node(stiffer, n)
     n, zeta, amplitude, rng = random_orbits(parameters["law_samples"], seed + 1, release)
     span = parameters["frequency_ratio"]
     ratio = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), amplitude.size))
@@ -164,6 +169,7 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
         ),
         "node_order": (("quantity", "sample"), np.log2(error[:, 0] / error[:, 1])),
         "order_frequency_ratio": ("pair", TWO_STIFF.ravel()),
+        "node_order_frequency_ratio": ("pair", TWO_STIFF_AT_NODE.ravel()),
         "law_remainder": (
             ("quantity", "law_sample"),
             remains / stacked(law_remainders(impact, amplitude=amplitude, n=n)),

@@ -6,6 +6,7 @@ averages are therefore over many short motions with random starts.
 """
 
 import sys
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -33,16 +34,17 @@ def touch_speeds(ball: Ball, record: NDArray, amplitude: float) -> NDArray:
     return speed - delay - amplitude * (np.cos(phase) - np.cos(phase - delay))
 
 
-def averages(case: dict, parameters: dict, generator: np.random.Generator) -> dict[str, list]:
+def averages(
+    r: float, amplitude: float, ratio: float, parameters: dict, generator: np.random.Generator
+) -> dict[str, list]:
     """Mean square of the closing speed at the touch, its standard error, and slow landings."""
-    amplitude = case["amplitude"]
-    contact = SpringDamper(case["frequency_ratio"], restitution=case["restitution"])
+    contact = SpringDamper(ratio, restitution=r)
     slow = 4 * float(contact.signature(1.0).centroid) * (1 + amplitude)
     size = parameters["balls"]
     phase = generator.uniform(-np.pi, np.pi, size)
     speed = generator.uniform(2, 12, size)
     found: dict[str, list] = {"mean_square": [], "mean_square_error": [], "slow_share": []}
-    for ball in (contact, Rigid(case["restitution"]), Corrected(contact)):
+    for ball in (contact, Rigid(r), Corrected(contact)):
         balls = Balls(ball, np.full(size, amplitude), np.zeros(size), phase, speed)
         _, _, balls = follow(balls, parameters["settling"])
         record, _, _ = follow(balls, parameters["impacts"])
@@ -55,15 +57,18 @@ def averages(case: dict, parameters: dict, generator: np.random.Generator) -> di
 
 
 def ext_event(parameters: dict) -> xr.Dataset:
-    """Mean squares of impact speeds on a contact and in both models, for several cases."""
+    """Mean squares of impact speeds on a contact and in both models, for each r, Λ and ϖ."""
     generator = np.random.default_rng(parameters["seed"])
-    cases = parameters["cases"]
-    found = [averages(case, parameters, generator) for case in cases]
-    names = ("restitution", "amplitude", "frequency_ratio")
+    names = ("ball_restitution", "ball_amplitude", "ball_frequency_ratio")
+    grids = {name: parameters[name] for name in names}
+    found = [averages(*case, parameters, generator) for case in product(*grids.values())]
+    shape = [*map(len, grids.values()), len(MODELS)]
     return xr.Dataset(
-        {key: (("case", "model"), [each[key] for each in found]) for key in found[0]}
-        | {name: ("case", [case[name] for case in cases]) for name in names},
-        {"model": list(MODELS)},
+        {
+            key: ((*names, "model"), np.reshape([each[key] for each in found], shape))
+            for key in found[0]
+        },
+        grids | {"model": list(MODELS)},
     )
 
 

@@ -216,12 +216,13 @@ def exact_contacts(parameters: dict) -> dict[str, tuple]:
     return {name: (shape, values) for name, values in found.items()}
 
 
-def simulated_measurement(given: SimpleNamespace, generator: np.random.Generator) -> dict:
+def simulated_measurement(
+    r: float, given: SimpleNamespace, generator: np.random.Generator
+) -> dict[str, float]:
     """r and D from many simulated measurements: means and standard deviations.
 
     The phase of each impact has a random error, and each impact a random r.
     """
-    r = given.measured_restitution
     share = given.measured_share
     ball = linear(r, 2 * np.pi * share)
     levels_of = amplitudes(r)
@@ -251,6 +252,12 @@ def simulated_measurement(given: SimpleNamespace, generator: np.random.Generator
         "measured_duration": mean[1] / true,
         "measured_duration_error": spread[1] / true,
     }
+
+
+def measurements(given: SimpleNamespace, generator: np.random.Generator) -> dict[str, tuple]:
+    """Simulated measurements of balls with each r."""
+    found = [simulated_measurement(r, given, generator) for r in given.restitution]
+    return {name: ("restitution", [each[name] for each in found]) for name in found[0]}
 
 
 def balls_with(balls: Balls, ball: Ball) -> Balls:
@@ -335,7 +342,7 @@ def ext_phase(parameters: dict) -> xr.Dataset:
         | in_the_plane(parameters)
         | levels(parameters)
         | exact_contacts(parameters)
-        | simulated_measurement(given, generator)
+        | measurements(given, generator)
         | escapes(given, generator)
         | {"counterfeit": counterfeit(parameters), "width_change": width_change(parameters)},
         {

@@ -18,10 +18,11 @@ from scipy.optimize.elementwise import find_minimum, find_root
 
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.restitution import period_doubling, saddle_node
-from bouncing_ball_beyond.balls import SpringDamper
+from bouncing_ball_beyond.balls import Corrected, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import (
     contact_values,
+    exact_errors,
     free_impact,
     law_coefficients,
     law_errors,
@@ -323,6 +324,14 @@ def lines_of(known: Families, levels: NDArray, of_heights: dict, parameters: dic
     }
 
 
+def corrected_at(known: Families, levels: NDArray) -> dict[str, tuple]:
+    """The errors of the corrected model's height at all nodes, for contacts of some ϖ."""
+    ball = SpringDamper(levels[:, np.newaxis, np.newaxis], restitution=known.r[:, np.newaxis])
+    given = {"amplitude": known.amplitude, "n": known.n[:, np.newaxis]}
+    error = exact_errors(ball, simple=Corrected, quantities=["max_height"], **given)["max_height"]
+    return {"corrected_error": (("level", "position"), np.moveaxis(error, 0, 1))}
+
+
 def judged_at(known: Families, ratio: NDArray) -> dict[str, tuple]:
     """The orbits of all nodes on contacts of ϖ, shape (judges, families), and those in the middle
     of the window, which are the Λ at which the contact has an orbit and the restitution model none.
@@ -380,6 +389,7 @@ def ext_map(parameters: dict) -> xr.Dataset:
         "stability_threshold": (("position",), stable),
         "stability_by_law": (("position",), stable_by_law),
         **lines_of(known, levels, heights, parameters),
+        **corrected_at(known, levels),
         **judged_at(known, np.repeat(judged, r.size, axis=1)),
     }
     by_family = {}

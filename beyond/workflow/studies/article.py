@@ -1,4 +1,4 @@
-"""The article and the list of figures: templates filled in from datasets.
+"""The article, its appendices and the list of figures: templates filled in from datasets.
 
 As in the replication, a template has text and names of numbers, and no numbers.
 """
@@ -15,7 +15,7 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 
 
 def filled_in(name: str, datasets: Datasets) -> str:
-    """The text of a template, "article" or "figures" (the list of all figures), Markdown."""
+    """The text of a template, Markdown: "article", "appendix", or "figures", the list of all."""
     templates = environment(TEMPLATES)
     templates.filters["digits"] = digits
     return templates.get_template(f"{name}.md.j2").render(

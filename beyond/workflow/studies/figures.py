@@ -116,8 +116,8 @@ def ext_instant(data: xr.Dataset) -> Figure:
         flight = data[f"flight_{name}"].where(part & near)
         look: Look = {"color": colour, "linestyle": DASHES[1], "linewidth": 1.1}
         top.plot(time, flight, label=f"flight {name}, continued", **look)
-    top.plot(time, data.table, color=TABLE, label="table")
-    top.plot(time, data.ball, color=CONTACT, label="ball")
+    top.plot(time, data.table, color=TABLE, linewidth=2.0, label="table, $w$")
+    top.plot(time, data.ball, color=CONTACT, label=r"ball, $w+\delta$")
     top.plot(time[touching], data.ball[touching], color=CONTACT, linewidth=2.4)
     meeting = float(data.meeting_time)
     low = float(data.meeting_height)
@@ -128,10 +128,11 @@ def ext_instant(data: xr.Dataset) -> Figure:
         axes.axvline(meeting, **GUIDE)
     below.annotate("$t^*$", (meeting, 0), (3, 3), textcoords="offset points")
     depth = float(data.table[touching].max()) - low
-    top.set(ylabel="height", ylim=(low - 0.12 * depth, low + 1.6 * depth))
+    top.set(ylabel=r"height, in units of $g/\Omega^2$")
+    top.set_ylim(low - 0.12 * depth, low + 1.6 * depth)
     top.set_title(title(data, "n", "restitution", "amplitude", "frequency_ratio"))
     top.margins(x=0)
-    below.set(xlabel=r"time since the start of contact $\tau$", ylabel="contact force")
+    below.set(xlabel=r"time since the touch, $\tau-\varphi$", ylabel="force / weight")
     legend_below(figure)
     return figure
 
@@ -143,31 +144,6 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 LAW: Look = {"color": COLOURS[4], "linewidth": 1.2, "linestyle": DASHES[2]}
 """What the error law leaves."""
-
-AT_NODE: Mapping[str, Look] = {
-    "restitution at the saddle-node": {
-        "color": COLOURS[0],
-        "linewidth": 1.8,
-        "linestyle": (0, (1, 1.2)),
-    },
-    "error law at the saddle-node": {
-        "color": COLOURS[4],
-        "linewidth": 1.8,
-        "linestyle": (0, (3, 1.2, 1, 1.2)),
-    },
-}
-"""Errors at the saddle-node of the restitution model."""
-
-
-def panels_by_quantity(data: xr.Dataset, height: float) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity; one may be left over."""
-    figure, slots = panels(height, rows=2, columns=3, sharex=True, sharey=True)
-    for axes in slots.flat:
-        axes.set(yscale="log", ylabel="relative error")
-    found = dict(zip(data["quantity"].values.tolist(), slots.flat, strict=False))
-    for quantity, axes in found.items():
-        axes.set_title(TITLES[quantity])
-    return figure, found
 
 
 def with_zero(x: np.ndarray, size: np.ndarray, zero: float) -> tuple[np.ndarray, np.ndarray]:
@@ -194,38 +170,44 @@ def with_zero(x: np.ndarray, size: np.ndarray, zero: float) -> tuple[np.ndarray,
 def ext_orders(data: xr.Dataset) -> Figure:
     """Errors of both models and what the error law leaves, along ϖ, with their orders in 1/ϖ.
 
-    The panel of the height has them at the saddle-node of the restitution model, too.
+    The last panel has those of the height at the saddle-node of the restitution model.
     """
-    figure, found = panels_by_quantity(data, 4.6)
+    figure, slots = panels(3.9, rows=2, columns=4, sharex=True, sharey=True)
+    first, second, third, beside, *others, at_node = slots.flat
+    panels_of = first, second, third, *others
     ratio = data.frequency_ratio
     orbit = data.sel(place="orbit")
     zeros = {"restitution": data.error_zero, "corrected": data.corrected_error_zero}
-    for quantity, axes in found.items():
+    for quantity, axes in zip(data["quantity"].values.tolist(), panels_of, strict=True):
         part = orbit.sel(quantity=quantity)
-        notes = []
+        orders = []
         for order, (model, look) in enumerate(MODELS.items(), 1):
             error = part.relative_error.sel(model=model).values
             zero = float(zeros[model].sel(quantity=quantity))
-            axes.plot(*with_zero(ratio.values, error, zero), label=model, **look)
+            axes.plot(*with_zero(ratio.values, error, zero), label=f"{model} model", **look)
             draw_slope(axes, ratio, error, order)
-            notes.append((part.order.sel(model=model), look))
-        axes.plot(ratio, part.law_left, label="what the error law leaves", **LAW)
-        notes.append((part.law_order, LAW))
-        if quantity == "max_height":
-            node = data.sel(place="saddle-node", quantity=quantity)
-            at_node = (node.node_error, node.node_order, 0.5), (node.law_left, node.law_order, 1.5)
-            for (name, look), (left, measured, slope) in zip(AT_NODE.items(), at_node, strict=True):
-                axes.plot(ratio, left, label=name, **look)
-                draw_slope(axes, ratio, left.values, slope)
-                notes.append((measured, look))
-        note_orders(axes, notes)
+            orders.append((part.order.sel(model=model), look))
+        axes.plot(ratio, part.law_left, label="left by the\nerror law", **LAW)
+        note_orders(axes, [*orders, (part.law_order, LAW)])
+        axes.set_title(TITLES[quantity])
+    node = data.sel(place="saddle-node", quantity="max_height")
+    rigid = MODELS["restitution"]
+    for left, slope, look in ((node.node_error, 0.5, rigid), (node.law_left, 1.5, LAW)):
+        at_node.plot(ratio, left, **look)
+        draw_slope(at_node, ratio, left.values, slope)
+    note_orders(at_node, [(node.node_order, rigid), (node.law_order, LAW)])
+    at_node.set_title(r"height at $\Lambda=C$")
+    for axes in (*panels_of, at_node):
+        axes.set(yscale="log", ylabel="relative error")
         along_ratio(axes, ratio)
+        axes.set_xticks([1, 100, 10000])
         # Errors are below 1 but next to a phase of 0; the orders have the room above.
-        axes.set_ylim(1e-11, 1e6)
-    given = title(data, "n", "restitution", "amplitude")
-    orders = f"orders of {data.sizes['sample']} random orbits, median (and the middle 90 %)"
-    figure.suptitle(f"{given}; {orders}", fontsize="medium")
-    legend_below(figure, columns=3)
+        axes.set_ylim(1e-11, 1e4)
+    beside.set_axis_off()
+    figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")
+    lines, names = first.get_legend_handles_labels()
+    slopes = sample(**GUIDE)
+    beside.legend([*lines, slopes], [*names, "slopes of the\norders expected"], loc="center")
     return figure
 
 
@@ -239,10 +221,10 @@ def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:
     texts = []
     for order, _ in orders:
         low, middle, high = order.quantile(QUANTILES).values
-        texts.append(f"{middle:.2f} ({low:.2f} to {high:.2f})".replace("-", "−"))
+        texts.append(f"{middle:.2f} ({low:.2f} to {high:.2f})")
     lines = [sample(**look) for _, look in orders]
     place: Look = {"loc": "upper right", "fontsize": 6.5, "borderaxespad": 0, "labelspacing": 0.2}
-    axes.legend(lines, texts, handlelength=2.6, **place)
+    axes.legend(lines, texts, handlelength=2.2, **place)
 
 
 # Map
@@ -257,7 +239,7 @@ LEVELS = (15, 20, 25, 30, 40, 50, 60, 70, 80, 90)
 """Contours of the ϖ from which on the height is right, where it leaves the tolerance downwards."""
 
 EXACT: Look = {"color": "black", "linewidth": 0.8}
-BY_LAW: Look = {"color": "#7fb2d9", "linewidth": 2.6}
+BY_LAW: Look = {"color": COLOURS[4], "linewidth": 2.6}
 JUMP: Look = {"color": "black", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}
 ON_LINE: Look = {
     "ha": "center",
@@ -272,8 +254,11 @@ TOO_HIGH = {200.0: 0.2, 1000.0: 0.13}
 ROOM = 0.012
 """The least place of a line with a name, half the height of the name."""
 
-NOT_BY_RULE = "0.92"
-NOT_BY_PAPER = "0.8"
+NOT_ENOUGH: Mapping[str, Look] = {
+    "rule of thumb": {"facecolor": "0.86"},
+    "paper": {"facecolor": "0.86", "hatch": "/////", "edgecolor": "0.6"},
+}
+"""Where the ϖ of each judge is not enough."""
 
 
 def places(position: xr.DataArray) -> xr.DataArray:
@@ -304,8 +289,8 @@ def ext_map(data: xr.Dataset) -> Figure:
         column[2].set_xlabel("restitution coefficient $r$")
     given = parameters(data)
     percent = f"{100 * given['tolerance']:g} %"
-    ranges = "$\\Lambda$ from saddle-node (0)\nto period doubling (1)"
-    answers = "it is stable", f"it is as high, within {percent}"
+    ranges = "position of $\\Lambda$ from saddle-node (0)\nto period doubling (1), arcsine scale"
+    answers = "STABLE", f"AS HIGH WITHIN {percent}"
     for axes, answer in zip(slots[:2, 0], answers, strict=True):
         axes.set_yticks(places(xr.DataArray([*POSITIONS])), [f"{each:g}" for each in POSITIONS])
         axes.set_ylim(0, np.pi / 2)
@@ -313,13 +298,14 @@ def ext_map(data: xr.Dataset) -> Figure:
     below = slots[2, 0]
     below.set_yticks(np.sqrt(BELOW), [f"{each:g}" for each in BELOW])
     below.set_ylim(np.sqrt(BELOW[-1]), 0)
-    below.set_ylabel("it has no orbit either\n$\\Lambda$ below saddle-node,\nas a share of it")
+    below.set_ylabel("NO ORBIT EITHER\n$1-\\Lambda/\\Lambda_{SN}$,\nsquare-root scale")
+    rule, paper = NOT_ENOUGH.values()
     entries = {
         r"$\varpi$ from which on, exactly": sample(**EXACT),
         "by the error law": sample(**BY_LAW),
         "the error of the height changes its sign": sample(**JUMP),
-        r"$\varpi=1/(n\varepsilon)$ is not enough": Patch(facecolor=NOT_BY_RULE),
-        rf"$\varpi={given['paper']:g}$ of the paper is not enough": Patch(facecolor=NOT_BY_PAPER),
+        r"$\varpi=1/(n\varepsilon)$ is not enough": Patch(linewidth=0, **rule),
+        rf"$\varpi={given['paper']:g}$ of the paper is not enough": Patch(linewidth=0, **paper),
     }
     legend_below(figure, entries, columns=3)
     return figure
@@ -369,7 +355,9 @@ def draw_height(axes: Axes, family: xr.Dataset) -> None:
         colours: Look = {"colors": look["color"], "linewidths": look["linewidth"]}
         lines = axes.contour(r, needed.position, needed, levels=LEVELS, **colours)
         lines.set_clip_path(Path(above), axes.transData)
-    axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)])
+    for text in axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)]):
+        # The name hides the wide line as well.
+        text.set(bbox=ON_LINE["bbox"], zorder=4)
     stiff = family.level >= family.jump_ratio
     law = place(family.too_high_lift_by_law)
     draw_levels(axes, too_high.where(stiff), law.where(stiff), TOO_HIGH)
@@ -397,10 +385,10 @@ def label_points(lines: ContourSet) -> Iterator[np.ndarray]:
 
 def shade(axes: Axes, family: xr.Dataset, lines: xr.DataArray, edge: float) -> None:
     """Shade what lies between an edge and the line of each ϖ that is judged."""
-    for judge, colour in (("rule of thumb", NOT_BY_RULE), ("paper", NOT_BY_PAPER)):
+    for judge, look in NOT_ENOUGH.items():
         ratio = float(family.judged_ratio.sel(judge=judge))
         line = lines.sel(level=ratio, method="nearest")
-        axes.fill_between(family.restitution, line, edge, color=colour, linewidth=0, zorder=0)
+        axes.fill_between(family.restitution, line, edge, linewidth=0, zorder=0, **look)
 
 
 def draw_levels(
@@ -449,12 +437,16 @@ THIN: Look = {"linewidth": 1.1}
 def ext_laws(data: xr.Dataset) -> Figure:
     """Errors of both models on contacts of five laws, over D + κ as a share of the cycle.
 
-    Above they are divided by those on the linear contact. Below are those themselves, for the
-    period doubling on all contacts, and for the other quantities on the linear one.
+    Above they are divided by those on the linear contact. Below are the errors themselves, of the
+    period doubling and of the apparent restitution, which passes through zero, on all contacts,
+    and of the other quantities on the linear one.
     """
     figure = Figure(figsize=(WHOLE_WIDTH, 6.0))
-    rows: list[Any] = [[f"{model} {name}" for name in SHORT_TITLES] for model in MODELS]
-    slots = figure.subplot_mosaic([*rows, ["doubling", "doubling", "linear", "linear"]])
+    rows: list[Any] = [
+        [f"{model} {name}" for name in SHORT_TITLES for _ in range(3)] for model in MODELS
+    ]
+    bottom = ("period_doubling", "apparent_restitution", "linear")
+    slots = figure.subplot_mosaic([*rows, [name for name in bottom for _ in range(4)]])
     given = parameters(data)
     share = 1 / (2 * given["n"] * data.centroid_ratio)
     quotients = data.relative_error / data.relative_error.sel(law="linear")
@@ -470,18 +462,19 @@ def ext_laws(data: xr.Dataset) -> Figure:
                 axes.tick_params(labelleft=False)
             axes.set_title(words if model == "restitution" else "")
         first.set_ylabel(f"{model} model:\nerror / that on the\nlinear contact")
-    draw_doubling(slots["doubling"], data, share)
-    ends = draw_linear(slots["linear"], data, share)
+    for name in bottom[:2]:
+        draw_on_all(slots[name], data.sel(quantity=name), share)
+    draw_linear(slots["linear"], data, share)
     for axes in slots.values():
         axes.set(xscale="log", xlim=(share.min(), share.max()))
-    for name in ("doubling", "linear"):
-        slots[name].set_xlabel(r"share of the cycle, $(D+\kappa)/(2\pi n)$")
-    slots["linear"].sharey(slots["doubling"])
-    slots["linear"].tick_params(labelleft=False)
+    for name in bottom:
+        slots[name].set_xlabel(r"share $(D+\kappa)/(2\pi n)$")
+        slots[name].set_ylim(1e-7, 1)
+        slots[name].tick_params(labelleft=name == bottom[0])
+    slots[bottom[0]].set_ylabel("relative error")
     figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")
     # The places of names depend on the layout.
     figure.draw_without_rendering()
-    name_at_right(slots["linear"], ends)
     for model in MODELS:
         last = quotients.sel(model=model, quantity="saddle_node").isel(centroid_ratio=0)
         names = [
@@ -492,49 +485,32 @@ def ext_laws(data: xr.Dataset) -> Figure:
     return figure
 
 
-def draw_doubling(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> None:
-    """The errors of the period doubling on all contacts, which leave the panel at their zeros."""
-    per_cycle = float(share[0] * data.centroid_ratio[0])
-    part = data.sel(quantity="period_doubling")
-    for law, model in np.ndindex(data.sizes["law"], data.sizes["model"]):
+def draw_on_all(axes: Axes, part: xr.Dataset, share: xr.DataArray) -> None:
+    """The errors of a quantity on all contacts, which leave the panel at their zeros."""
+    per_cycle = float(share[0] * part.centroid_ratio[0])
+    for law, model in np.ndindex(part.sizes["law"], part.sizes["model"]):
         one = part.isel(law=law, model=model)
         known = one.relative_error.notnull().values
-        ratio = data.centroid_ratio.values[known]
+        ratio = part.centroid_ratio.values[known]
         ratio, error = with_zero(ratio, one.relative_error.values[known], float(one.law_error_zero))
         axes.plot(per_cycle / ratio, error, **THIN | LAWS[str(one.law.values)])
-    axes.set(yscale="log", ylabel="relative error", title=TITLES["period_doubling"])
-    axes.set_ylim(0.3 * float(data.relative_error.min()), 1)
-    beside: Look = {"textcoords": "offset points", "fontsize": 7}
-    stiffest = part.relative_error.isel(centroid_ratio=-1)
-    for law in ("hunt-crossley", "kuwabara-kono"):
-        place = float(share[-1]), float(stiffest.sel(model="restitution", law=law))
-        colour = str(LAWS[law]["color"])
-        axes.annotate(LAW_NAMES[law], place, (3, 1.5), color=colour, va="bottom", **beside)
-    for model, names in (("restitution", "linear and Tsuji"), ("corrected", "corrected model")):
-        place = float(share[-1]), float(stiffest.sel(model=model, law="linear"))
-        axes.annotate(names, place, (16, 0), va="top", **beside)
+    axes.set(yscale="log", title=TITLES[str(part["quantity"].values)])
 
 
-def draw_linear(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> list[tuple[str, float, str]]:
-    """Errors on the linear contact, with slopes 1 and 2 above; names of the lines at the right."""
-    ends = []
+def draw_linear(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> None:
+    """Errors on the linear contact, with slopes 1 and 2 above."""
     for quantity, look in QUANTITIES.items():
         for model in MODELS:
             error = data.relative_error.sel(model=model, law="linear", quantity=quantity)
-            axes.plot(share, error, **THIN | look)
-            ends.append((SHORT_TITLES[quantity], float(error[0]), str(look["color"])))
+            name = SHORT_TITLES[quantity] if model == "restitution" else None
+            axes.plot(share, error, label=name, **THIN | look)
     for slope in (1, 2):
         axes.plot(share, 6 * share**slope, **GUIDE)
     axes.set(yscale="log", title="linear contact")
-    middle = data.sizes["centroid_ratio"] // 2
-    for model, offset in zip(MODELS, ((-4, 6), (4, -10)), strict=True):
-        some = data.relative_error.sel(model=model, law="linear", quantity=[*SHORT_TITLES])
-        least, most = (float(each[middle]) for each in (some.min("quantity"), some.max("quantity")))
-        above = model == "restitution"
-        place = float(share[middle]), most if above else least
-        look = {"ha": "right" if above else "left", "fontsize": 7}
-        axes.annotate(f"{model} model", place, offset, textcoords="offset points", **look)
-    return ends
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    beside: Look = {"fontsize": 7, "transform": axes.transAxes}
+    axes.text(0.03, 0.93, "restitution model", **beside)
+    axes.text(0.5, 0.12, "corrected model", **beside)
 
 
 # What a phase tells
@@ -557,7 +533,7 @@ def ext_phase(data: xr.Dataset) -> Figure:
     line = float(data.restitution_line)
     top = 1.08 * float(data.touch_y.max())
     plane.plot([line, line], [0, top], color=COLOURS[0], label="restitution model")
-    for share, colour in zip(data.shown_share.values, COLOURS[1:], strict=False):
+    for share, colour, marker in zip(data.shown_share.values, COLOURS[1:], "osD^", strict=False):
         one = data.sel(shown_share=share)
         across = float(one.line_level)
         angle = float(one.line_angle)
@@ -565,7 +541,7 @@ def ext_phase(data: xr.Dataset) -> Figure:
         ends = [across / np.cos(angle) + y * np.tan(angle) for y in (0, top)]
         plane.plot(ends, [0, top], color=colour, linestyle=DASHES[3])
         name = f"$D/(2\\pi)$ = {100 * share:g} %"
-        plane.plot(one.touch_x, one.touch_y, "o", color=colour, markersize=3, label=name)
+        plane.plot(one.touch_x, one.touch_y, marker, color=colour, markersize=3.5, label=name)
     given = parameters(data)
     plane.set(
         xlabel=r"$X=\Lambda\,\cos\,\varphi$", ylabel=r"$Y=\Lambda\,\sin\,\varphi$", ylim=(0, top)

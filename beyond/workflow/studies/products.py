@@ -42,6 +42,7 @@ PRODUCTS = [
         EXPLORING,
     ),
     text("article.md", DATASETS, partial(article.filled_in, "article"), WRITING),
+    text("appendix.md", DATASETS, partial(article.filled_in, "appendix"), WRITING),
     text("figures/README.md", DATASETS, partial(article.filled_in, "figures"), WRITING),
 ]
 """All files that follow from datasets, and how."""

@@ -86,6 +86,7 @@ VARIABLES = datasets.VARIABLES | {
     "order_frequency_ratio": Variable(
         "two frequency ratios between which the orders are measured", "ϖ"
     ),
+    "node_order_frequency_ratio": Variable("the same at the saddle-node", "ϖ"),
     "law_remainder": Variable(
         "remainder of the error law over its scale and small parameter",
         "|e - E|/(S η)",
@@ -134,6 +135,9 @@ VARIABLES = datasets.VARIABLES | {
     "saddle_node_law": Variable("the same by the error law", "-s/C"),
     "period_doubling_error": Variable("relative error of the amplitude of the period doubling"),
     "period_doubling_law": Variable("the same by the error law"),
+    "corrected_error": Variable(
+        "relative error of the height in the corrected model at this frequency ratio", floor=1e-2
+    ),
     "judged_ratio": Variable("frequency ratio that is tried", "ϖ"),
     "judged_error": Variable("relative error of the height at this frequency ratio", floor=1e-2),
     "judged_multiplier": Variable(

@@ -426,11 +426,12 @@ SHORT_TITLES = {
 """The quantities whose errors on other contacts are near to those on the linear one."""
 
 QUANTITIES: Mapping[str, Look] = {
-    "max_height": {"color": COLOURS[0], "linestyle": DASHES[0]},
-    "bounce_velocity": {"color": COLOURS[1], "linestyle": DASHES[1]},
-    "phase": {"color": COLOURS[2], "linestyle": DASHES[2]},
-    "saddle_node": {"color": COLOURS[3], "linestyle": DASHES[3]},
+    "max_height": {"marker": "o"},
+    "bounce_velocity": {"marker": "s"},
+    "phase": {"marker": "^"},
+    "saddle_node": {"marker": "x"},
 }
+"""Marks, because colours tell contacts apart."""
 THIN: Look = {"linewidth": 1.1}
 
 
@@ -503,7 +504,8 @@ def draw_linear(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> None:
         for model in MODELS:
             error = data.relative_error.sel(model=model, law="linear", quantity=quantity)
             name = SHORT_TITLES[quantity] if model == "restitution" else None
-            axes.plot(share, error, label=name, **THIN | look)
+            apart: Look = {"markersize": 3.5, "markevery": 0.1}
+            axes.plot(share, error, label=name, **THIN | LAWS["linear"] | apart | look)
     for slope in (1, 2):
         axes.plot(share, 6 * share**slope, **GUIDE)
     axes.set(yscale="log", title="linear contact")

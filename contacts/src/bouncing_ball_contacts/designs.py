@@ -21,8 +21,9 @@ from bouncing_ball_contacts.schemes import (
     Impulse,
     Impulsive,
     Law,
+    Trials,
     drop,
-    offsets,
+    nearby,
 )
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
@@ -45,8 +46,8 @@ WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
-_COARSE = offsets(21)
-_FINE = offsets(401)
+_COARSE = nearby(3, 21)
+_FINE = nearby(9, 201)
 # Steps in a contact without damping: first those that most designs need, then finer ones, in groups
 # because a group costs as much as its finest one.
 _STEPS = (
@@ -295,10 +296,10 @@ class Problem:
         """Return contacts by their undamped depths in m and ratios of damping."""
         return self.engine.of_depth(depth, ratio, self.bounce.impact_speed)
 
-    def drops(self, law: Law, step: Array | float, at: Array = _COARSE) -> Drops:
+    def drops(self, law: Law, step: Array | float, trials: Trials = _COARSE) -> Drops:
         """Return the drops of contacts at time steps in s."""
         scheme = self.engine.scheme_of(law)
-        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, at)
+        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, trials)
 
     def outcome(self, law: Law, step: float) -> Outcome:
         """Return what one contact does at a time step in s."""
@@ -520,59 +521,61 @@ def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
     or be lost by the engine.
     """
     per_step = problem.bounce.impact_speed * step / math.pi
-    deepest = problem.engine.deepest * problem.bounce.size
-    best = None
+    stiffer = None
+    nearest = None
     for counts in _AT_STEP:
-        tried = _tried(problem, counts * per_step, step, deepest)
-        if tried is None:
+        depth, error, ratio = _tried(problem, counts * per_step, step)
+        for i in np.flatnonzero(error <= tolerance):
+            row = problem.row(problem.law(depth[i], ratio[i]), step)
+            if row.outcome.deviation(problem.target) > tolerance:
+                continue
+            before = depth[i - 1] if i else stiffer
+            if before is None:
+                return row
+            return _between(problem, before, depth[i], step, tolerance) or row
+        if not depth.size:
             break
-        if best is None or tried[1].min() < best[1].min():
-            best = tried
-        if np.any(tried[1] <= tolerance):
-            break
-    if best is None or best[1].min() > 2 * tolerance:
+        stiffer = depth[-1]
+        best = int(np.argmin(error))
+        if nearest is None or error[best] < nearest[0]:
+            nearest = (error[best], problem.law(depth[best], ratio[best]))
+    if nearest is None or nearest[0] > 2 * tolerance:
         return None
-    depth, error, ratio = best
-    good = np.flatnonzero(error <= tolerance)
-    i = int(good[0]) if good.size else int(np.argmin(error))
-    if good.size and i > 0:
-        # Between the last contact that fails and the first one that does not.
-        between = np.geomspace(depth[i - 1], depth[i], 7)[1:]
-        finer = _tried(problem, between, step, deepest)
-        if finer is not None and np.any(finer[1] <= tolerance):
-            depth, error, ratio = finer
-            i = int(np.flatnonzero(error <= tolerance)[0])
-    row = problem.row(problem.law(depth[i], ratio[i]), step)
-    # The tolerance holds over all instants, and not only over those of the search.
-    if good.size and row.outcome.deviation(problem.target) > tolerance and i + 1 < len(depth):
-        row = problem.row(problem.law(depth[i + 1], ratio[i + 1]), step)
-    return row
+    return problem.row(nearest[1], step)
 
 
-def _tried(
-    problem: Problem, depth: Array, step: float, deepest: float
-) -> tuple[Array, Array, Array] | None:
+def _between(
+    problem: Problem, fails: float, holds: float, step: float, tolerance: float
+) -> Row | None:
+    """Return the stiffest of some contacts between two depths that is within the tolerance."""
+    depth, error, ratio = _tried(problem, np.geomspace(fails, holds, 7)[1:-1], step)
+    for i in np.flatnonzero(error <= tolerance):
+        row = problem.row(problem.law(depth[i], ratio[i]), step)
+        if row.outcome.deviation(problem.target) <= tolerance:
+            return row
+    return None
+
+
+def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, Array]:
     """Return those depths that work, with the errors of r and the ratios of damping."""
     steps = np.full(depth.shape, step)
     ratio = problem.ratios(depth, steps)
     law = problem.law(depth, ratio)
     found = problem.drops(law, steps)
-    seen = found.depth.max(axis=-1) < deepest
+    seen = found.depth.max(axis=-1) < problem.engine.deepest * problem.bounce.size
     seen &= law.rest(problem.bounce.load) < problem.bounce.size
-    if not seen.any():
-        return None
     return depth[seen], found.error(problem.target)[seen], ratio[seen]
 
 
 def _impulse(problem: Problem, step: float) -> Row:
     """Return the restitution by number with which the mean r is the wanted one at a step in s."""
     numbers = np.linspace(0.0, 1.0, 21)
-    law = Impulse(np.zeros(21), numbers)
+    law = Impulse(numbers)
     speed = problem.bounce.impact_speed
     mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _COARSE).mean
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
     each = _rounded(math.sqrt(best))
-    found = problem.outcome(Impulse(np.asarray(0.0), np.asarray(each**2)), step)
+    found = problem.outcome(Impulse(np.asarray(each**2)), step)
     return Row(_rounded(step), math.nan, found, {"restitution": each})
 
 
@@ -634,7 +637,7 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
         slow = bounce.slower(math.sqrt(0.1))
         if math.isnan(row.stiffness):
             e = row.parameters["restitution"] ** 2
-            law: Law = Impulse(np.asarray(0.0), np.asarray(e))
+            law: Law = Impulse(np.asarray(e))
             slower = replace(problem, bounce=slow).outcome(law, row.step)
         else:
             slower = replace(problem, bounce=slow).of_parameters(row.parameters, row.step)

@@ -19,7 +19,7 @@ from bouncing_ball_contacts.designs import (
     design,
 )
 from bouncing_ball_contacts.engines import Engine, Impulse, engine_named
-from bouncing_ball_contacts.schemes import Impedance, Law, Linear, offsets
+from bouncing_ball_contacts.schemes import Impedance, Law, Linear
 from bouncing_ball_contacts.units import Refused, in_si, positive, show
 
 # With as many steps in a contact each scheme is within 0.003 of its limit of short steps.
@@ -279,7 +279,7 @@ class _Pair:
 
     def mean(self, step: float) -> float:
         """Return the mean r."""
-        return float(self.problem.drops(self.law(step), step, offsets(15)).mean)
+        return float(self.problem.drops(self.law(step), step).mean)
 
 
 def _without_gravity(problem: Problem) -> Problem:

@@ -109,6 +109,8 @@ MISTAKES = {
     f"{BALL} --pick nothing": "none of this answer",
     f"{BALL} --pick impulse": "none of this answer",
     f"{BALL} --time-step 1ms --pick impulse --engine drake": "no impulse is written for drake",
+    "design --mass 1 --restitution 0.5 --radius 0.05 --time-step 1ms --engine pybullet --one-body "
+    "--pick impulse": "has none alone",
     f"{BALL} --gravity 0": "not positive",
     f"{BALL} --friction slippery": "does not begin",
     f"{BALL} --one-body --engine mujoco": "averages solimp",

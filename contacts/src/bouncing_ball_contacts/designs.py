@@ -23,7 +23,9 @@ from bouncing_ball_contacts.schemes import (
     Law,
     Trials,
     drop,
+    exact,
     nearby,
+    offsets,
 )
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
@@ -46,6 +48,8 @@ WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
+# For the mean r, for the search of a contact, and for what a row shows.
+_MEAN = exact(offsets(21))
 _COARSE = nearby(3, 21)
 _FINE = nearby(9, 201)
 # Steps in a contact without damping: first those that most designs need, then finer ones, in groups
@@ -301,9 +305,9 @@ class Problem:
         scheme = self.engine.scheme_of(law)
         return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, trials)
 
-    def outcome(self, law: Law, step: float) -> Outcome:
+    def outcome(self, law: Law, step: float, trials: Trials = _FINE) -> Outcome:
         """Return what one contact does at a time step in s."""
-        found = self.drops(law, step, _FINE)
+        found = self.drops(law, step, trials)
         mass = self.bounce.reduced_mass
         r = found.restitution
         rest = float(law.rest(self.bounce.load)) if self.bounce.load else 0.0
@@ -323,13 +327,13 @@ class Problem:
         written = engine.of_one(combined) if self.one_body else engine.of_each(combined)
         parameters = {name: _rounded(value) for name, value in written.items()}
         stiffness = float(law.stiffness) * self.bounce.reduced_mass
-        return Row(step, stiffness, self.of_parameters(parameters, step), parameters)
+        outcome = self.outcome(self.law_of(parameters, step), step)
+        return Row(step, stiffness, outcome, parameters)
 
-    def of_parameters(self, parameters: Mapping[str, Any], step: float) -> Outcome:
-        """Return what written parameters do at a time step in s."""
+    def law_of(self, parameters: Mapping[str, Any], step: float) -> Law:
+        """Return the contact of written parameters at a time step in s."""
         other = self.engine.defaults if self.one_body else parameters
-        combined = self.engine.combined(parameters, other)
-        return self.outcome(self.engine.read(combined, self.setting(step)), step)
+        return self.engine.read(self.engine.combined(parameters, other), self.setting(step))
 
     def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
         """Return the ratios of damping with which the mean r is the target.
@@ -347,7 +351,7 @@ class Problem:
         x_before = x
         y_before = np.full(x.shape, np.nan)
         for _ in range(12):
-            r = self.drops(self.law(depth, x), step).mean
+            r = self.drops(self.law(depth, x), step, _MEAN).mean
             y = np.log(np.maximum(r, 1e-3)) - goal
             best = np.where(np.abs(y) < least, x, best)
             least = np.minimum(np.abs(y), least)
@@ -454,6 +458,8 @@ def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:
         raise Refused(f"row {pick!r} is none of this answer: {', '.join(map(repr, rows))}")
     if name == IMPULSE and not text_of(f"{problem.engine.name}-impulse"):
         raise Refused(f"no impulse is written for {problem.engine.name}: only for pybullet")
+    if name == IMPULSE and problem.one_body:
+        raise Refused("pybullet multiplies the restitution of both bodies: one body has none alone")
     return name
 
 
@@ -521,27 +527,25 @@ def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
     or be lost by the engine.
     """
     per_step = problem.bounce.impact_speed * step / math.pi
+    rows = []
     stiffer = None
-    nearest = None
     for counts in _AT_STEP:
         depth, error, ratio = _tried(problem, counts * per_step, step)
-        for i in np.flatnonzero(error <= tolerance):
-            row = problem.row(problem.law(depth[i], ratio[i]), step)
-            if row.outcome.deviation(problem.target) > tolerance:
-                continue
-            before = depth[i - 1] if i else stiffer
-            if before is None:
-                return row
-            return _between(problem, before, depth[i], step, tolerance) or row
         if not depth.size:
             break
+        # The tolerance holds over all trials, and not only over those of the search.
+        for i in dict.fromkeys([*np.flatnonzero(error <= tolerance), np.argmin(error)]):
+            row = problem.row(problem.law(depth[i], ratio[i]), step)
+            rows.append(row)
+            if row.outcome.deviation(problem.target) <= tolerance:
+                before = depth[i - 1] if i else stiffer
+                finer = before and _between(problem, before, depth[i], step, tolerance)
+                return finer or row
         stiffer = depth[-1]
-        best = int(np.argmin(error))
-        if nearest is None or error[best] < nearest[0]:
-            nearest = (error[best], problem.law(depth[best], ratio[best]))
-    if nearest is None or nearest[0] > 2 * tolerance:
+    nearest = min(rows, key=lambda row: row.outcome.deviation(problem.target), default=None)
+    if nearest is None or nearest.outcome.deviation(problem.target) > 2 * tolerance:
         return None
-    return problem.row(nearest[1], step)
+    return nearest
 
 
 def _between(
@@ -572,7 +576,7 @@ def _impulse(problem: Problem, step: float) -> Row:
     numbers = np.linspace(0.0, 1.0, 21)
     law = Impulse(numbers)
     speed = problem.bounce.impact_speed
-    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _COARSE).mean
+    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _MEAN).mean
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
     each = _rounded(math.sqrt(best))
     found = problem.outcome(Impulse(np.asarray(each**2)), step)
@@ -625,36 +629,23 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
         )
     elif is_wanted and row.outcome.deviation(problem.target) > tolerance:
         found.append(f"r is {low:.3f} to {high:.3f}: no damping of this contact is nearer")
+    law = problem.law_of(row.parameters, row.step)
     sinks = row.outcome.depth[1]
     if sinks > problem.engine.deepest * bounce.size:
         found.append(f"{problem.engine.name} loses a body that sinks more than its radius")
-    if _steps_in_contact(problem, row) > MOST_STEPS:
+    if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:
         found.append(
             f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
             "not computed, and change r by less than 0.001"
         )
     if bounce.load:
         slow = bounce.slower(math.sqrt(0.1))
-        if math.isnan(row.stiffness):
-            e = row.parameters["restitution"] ** 2
-            law: Law = Impulse(np.asarray(e))
-            slower = replace(problem, bounce=slow).outcome(law, row.step)
-        else:
-            slower = replace(problem, bounce=slow).of_parameters(row.parameters, row.step)
+        slower = replace(problem, bounce=slow).outcome(law, row.step)
         if slower.deviation(bounce.restitution) > max(tolerance, 2 * row.outcome.error):
             found.append(f"from a tenth of the height r is {slower.around}")
     if bounce.friction:
         found.append(problem.engine.friction)
     return found
-
-
-def _steps_in_contact(problem: Problem, row: Row) -> float:
-    if math.isnan(row.stiffness):
-        return 0.0
-    setting = problem.setting(row.step)
-    other = problem.engine.defaults if problem.one_body else row.parameters
-    law = problem.engine.read(problem.engine.combined(row.parameters, other), setting)
-    return float(law.duration(problem.bounce.impact_speed)) / row.step
 
 
 @dataclass(frozen=True, repr=False)

@@ -108,6 +108,23 @@ def test_without_a_penetration_it_is_a_tenth_of_the_radius():
     assert "a tenth of the radius" in str(found)
 
 
+def test_a_body_of_several_points_is_a_cube():
+    """It was called a solid ball of steel."""
+    found = design(Bounce(mass="1 kg", restitution=0.8, points=4), "mujoco", "2 ms")
+    assert "a solid cube of steel (--radius or --density), half height 25.2 mm" in str(found)
+    assert "radius" not in found.notes[0] and found.bounce.size**3 * 8 * 7850 == pytest.approx(1)
+
+
+def test_implicit_steps_that_damp_too_much_are_said_so():
+    """Drake has r = 0.971 at most with k = 866 kN/m at 20 µs, and said nothing."""
+    wanted = Bounce(mass="1 kg", restitution=0.99, radius="5 cm")
+    found = design(wanted, "drake", "20 us")
+    most = found.row.outcome.restitution[1]
+    assert found.parameters["relaxation_time"] == 0
+    assert f"r is still {most:.3f} at most, because the steps damp" in repr(found)
+    assert "at most" not in repr(design(wanted, "drake", "5 us"))
+
+
 def test_a_step_at_which_no_spring_works_is_said_so():
     """5 g at r = 0.95 and 10 ms once lay 877 mm deep in Drake."""
     bounce = Bounce(mass="5 g", restitution=0.95, drop_height="1 m")

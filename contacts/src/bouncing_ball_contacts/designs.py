@@ -34,6 +34,7 @@ from bouncing_ball_contacts.units import (
     in_si,
     positive,
     show,
+    span,
     within,
 )
 
@@ -93,7 +94,8 @@ class Bounce:
         At most one of them: the depth that must not be exceeded, or the contact itself. By default
         the penetration is at most a tenth of the radius and a fifth of the drop height.
     points : int
-        The number of contact points that share the force, 4 for the face of a box.
+        The number of contact points that share the force, 4 for the face of a box. Without a radius
+        a body with several points is a cube.
     other_mass : Quantity, optional
         Of a second free body, in an impact without gravity.
     friction : Quantity, optional
@@ -161,7 +163,9 @@ class Bounce:
         if self.points > 1:
             shown["points"] = str(self.points)
         if self.other_mass is not None and self.speed is None:
-            raise Refused("two free bodies need the speed with which they approach each other")
+            raise Refused(
+                "two free bodies need the speed at which they approach each other: --speed '2 m/s'"
+            )
         first = {name: shown[name] for name in ("mass", "restitution") if name in shown}
         object.__setattr__(self, "given", first | shown)
 
@@ -192,11 +196,17 @@ class Bounce:
 
     @property
     def size(self) -> float:
-        """The radius of the body in m, by its density if no radius is given."""
+        """The radius of the body in m, or half the height of a box; by its density if not given."""
         if self.radius is not None:
             return float(self.radius)
         density = density_of("steel") if self.density is None else self.density
-        return float((3 * self.mass / (4 * math.pi * density)) ** (1 / 3))
+        shape = 4 * math.pi / 3 if self.points == 1 else 8.0
+        return float((self.mass / (shape * density)) ** (1 / 3))
+
+    @property
+    def size_name(self) -> str:
+        """What the size is."""
+        return "radius" if self.points == 1 else "half height"
 
     @property
     def reduced_radius(self) -> float:
@@ -221,9 +231,10 @@ class Bounce:
             found.append("a drop from 1 m (--drop-height or --speed)")
         if self.radius is None:
             of = "steel (--radius or --density)" if self.density is None else "this density"
-            found.append(f"a solid ball of {of}, radius {show(self.size, 'm')}")
+            body = "ball" if self.points == 1 else "cube"
+            found.append(f"a solid {body} of {of}, {self.size_name} {show(self.size, 'm')}")
         if (self.penetration, self.stiffness, self.contact_time) == (None, None, None):
-            by = "a tenth of the radius"
+            by = f"a tenth of the {self.size_name}"
             if self.limit < self.size / 10:
                 by = "a fifth of the drop height"
             found.append(f"it may sink {show(self.limit, 'm')}, {by} (--penetration)")
@@ -339,7 +350,7 @@ class Problem:
         """Return the ratios of damping with which the mean r is the target.
 
         The secant rule in ln r, within a bracket: ln r is nearly linear in the ratio. Where the
-        steps alone damp more, the ratio is 0. Contacts that do not get there keep their best ratio.
+        steps or gravity alone take more, the ratio is 0.
         """
         goal = math.log(self.target)
         x = np.full(np.shape(depth), 0.05 - goal / 4) if start is None else start
@@ -373,7 +384,7 @@ class Problem:
             inside = (guess > low) & (guess < np.minimum(high, 4 * x + 0.3))
             x = np.where(inside, guess, middle)
             x = np.where(least < _LN_R, best, x)
-        return np.where(high < 1e-5, 0.0, best)
+        return np.where((low == 0) & (least > _LN_R), 0.0, best)
 
 
 def _rounded(value: Any) -> Any:
@@ -594,13 +605,13 @@ def _too_long(
     if YOURS not in rows:
         return [
             f"at {show(step, 's')} no spring works in {problem.engine.name}: none keeps r within "
-            f"{2 * tolerance:g} and lies less deep than the radius of {show(bounce.size, 'm')}, "
-            f"because {way}; {what}"
+            f"{2 * tolerance:g} and lies less deep than the {bounce.size_name} of "
+            f"{show(bounce.size, 'm')}, because {way}; {what}"
         ]
     sinks = rows[YOURS].outcome.depth[1]
     found = []
     if sinks > bounce.limit:
-        how = f"{100 * sinks / bounce.size:.0f} % of its radius"
+        how = f"{100 * sinks / bounce.size:.0f} % of its {bounce.size_name}"
         if sinks > bounce.size:
             how = "its centre passes the surface"
         reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
@@ -621,6 +632,7 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
     """Return what a user of a row has to know."""
     bounce = problem.bounce
     found = []
+    law = problem.law_of(row.parameters, row.step)
     low, mean, high = row.outcome.restitution
     if bounce.restitution < LEAST_RESTITUTION:
         found.append(
@@ -628,11 +640,18 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
             f"rises {mean**2:.1g} of its height"
         )
     elif is_wanted and row.outcome.deviation(problem.target) > tolerance:
-        found.append(f"r is {low:.3f} to {high:.3f}: no damping of this contact is nearer")
-    law = problem.law_of(row.parameters, row.step)
+        found.append(f"r is {span(low, high)}: no damping of this contact is nearer")
+    # Half of the last printed digit.
+    if float(law.damping) == 0 and mean < problem.target - 5e-4:
+        found.append(
+            f"this contact has no damping, and r is still {mean:.3f} at most, because the steps damp "
+            "by themselves: a shorter step has more"
+        )
     sinks = row.outcome.depth[1]
     if sinks > problem.engine.deepest * bounce.size:
-        found.append(f"{problem.engine.name} loses a body that sinks more than its radius")
+        found.append(
+            f"{problem.engine.name} loses a body that sinks more than its {bounce.size_name}"
+        )
     if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:
         found.append(
             f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "

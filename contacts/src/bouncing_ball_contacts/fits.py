@@ -39,7 +39,7 @@ from scipy import special
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
 
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
@@ -603,15 +603,14 @@ class Fit:
     def lines(self) -> list[str]:
         """The answer, line by line."""
         v = self.impacts.speed
-        low, high = self.interval
         title = self.recording.head.get("title", self.recording.name)
-        span = f"{v.min():.3g} to {v.max():.3g} m/s"
-        interval = f"{low:.4f} to {high:.4f}"
+        speeds = span(v.min(), v.max(), form="g")
+        interval = span(*self.interval, 4)
         if self.without_scatter is not None:
-            low, high = self.without_scatter
-            interval += f" if impacts scatter, {low:.4f} to {high:.4f} if they do not"
+            still = span(*self.without_scatter, 4)
+            interval += f" if impacts scatter, {still} if they do not"
         return [
-            f"{title}: {len(v)} impacts at {span}, from {self.recording.kind}",
+            f"{title}: {len(v)} impacts at {speeds} m/s, from {self.recording.kind}",
             f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {interval}",
             f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}",
             *(["", *aligned(self.table)] if self.laws else []),
@@ -757,7 +756,7 @@ def fit(
         notes.append(f"{at:.3g} m/s is outside of the measured speeds")
     is_known = known is not None
     if not is_known:
-        notes.append("no errors are given: a law can only deviate by more than the scatter")
+        notes.append("no errors are given: a law can only be said to deviate")
     laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
     if laws and all(each.probability < REJECTED for each in laws):
         notes.append("no law fits: r is that of a smooth curve")

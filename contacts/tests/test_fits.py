@@ -63,7 +63,8 @@ def test_few_readings_have_an_interval_for_each_assumption():
     """One interval for both covered 99.8 % of recordings without scatter, 4.5 times too wide."""
     times = np.array([0.0, 0.7323, 1.3192, 1.7874, 2.1634, 2.4636])
     found = fit(Recording("heard", "flights", (np.diff(times),)))
-    (low, high), (least, most) = found.interval, found.without_scatter
+    low, high = found.interval
+    least, most = found.without_scatter
     assert low < least < 0.8 < most < high and 3 * (most - least) < high - low
     assert f"if impacts scatter, {least:.4f} to {most:.4f} if they do not" in str(found)
     # Speeds after an impact depend on no other reading, so that the assumption changes nothing.

@@ -644,8 +644,8 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
     # Half of the last printed digit.
     if float(law.damping) == 0 and mean < problem.target - 5e-4:
         found.append(
-            f"this contact has no damping, and r is still {mean:.3f} at most, because the steps damp "
-            "by themselves: a shorter step has more"
+            f"this contact has no damping, and r is still {mean:.3f} at most, because the steps "
+            "damp by themselves: a shorter step has more"
         )
     sinks = row.outcome.depth[1]
     if sinks > problem.engine.deepest * bounce.size:

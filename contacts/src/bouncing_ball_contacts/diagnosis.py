@@ -450,7 +450,9 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
     def mean(value: float) -> float:
         return pair.changed(name, of(value)).mean(step)
 
-    bracket = _shares(mean, target) if rises else _damped(mean, target, _start(pair, name))
+    bracket: tuple[float, float] | None = (1e-4, 1.0)
+    if not rises:
+        bracket = _damped(mean, target, _start(pair, name))
     if bracket is None:
         return None
     low, high = bracket
@@ -473,13 +475,6 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
 def _start(pair: _Pair, name: str) -> float:
     given = abs(pair.one[name][1] if name == "solref" else pair.one[name])
     return float(given) if given > 0 else 1.0
-
-
-def _shares(mean: Callable[[float], float], target: float) -> tuple[float, float] | None:
-    """Return the bounds of a parameter between 0 and 1 with which r rises."""
-    if mean(1.0) < target - TOLERANCE:
-        return None
-    return 1e-4, 1.0
 
 
 def _damped(

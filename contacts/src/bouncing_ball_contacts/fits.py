@@ -34,7 +34,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import special
+from scipy import linalg, optimize, special
 
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
 from bouncing_ball_contacts.recordings import Recording, read
@@ -152,18 +152,7 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     if not speeds:
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
-    return Impacts(np.concatenate(speeds), np.concatenate(logs), _block_diagonal(blocks))
-
-
-def _block_diagonal(blocks: list[Array]) -> Array:
-    found = np.zeros((sum(len(each) for each in blocks), sum(each.shape[1] for each in blocks)))
-    row = 0
-    column = 0
-    for each in blocks:
-        found[row : row + len(each), column : column + each.shape[1]] = each
-        row += len(each)
-        column += each.shape[1]
-    return found
+    return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
 
 
 @dataclass(frozen=True)
@@ -278,17 +267,16 @@ def _estimate(curves: Curves, y: Array, by_share: Array) -> Estimate:
     weights = weights / weights.sum()
     centre = float(np.sum(weights * beta))
     spread = math.sqrt(float(np.sum(weights * (curves.deviation**2 + (beta - centre) ** 2))))
-    ends = []
-    for level in ((1 - _LEVEL) / 2, (1 + _LEVEL) / 2):
-        # Less than 1/49 of any distribution is further from its mean than seven deviations.
-        low = centre - 7 * spread
-        high = centre + 7 * spread
-        for _ in range(50):
-            at = (low + high) / 2
-            below = np.sum(weights * special.ndtr((at - beta) / curves.deviation))
-            low, high = (low, at) if below > level else (at, high)
-        ends.append(low + middle)
-    return Estimate(centre + middle, ends[0], ends[1], float(np.sum(weights * slope)))
+
+    def below(at: float) -> float:
+        """Return the probability that β is less."""
+        return float(np.sum(weights * special.ndtr((at - beta) / curves.deviation)))
+
+    # Less than 1/49 of any distribution is further from its mean than seven deviations.
+    bracket = centre - 7 * spread, centre + 7 * spread
+    low = optimize.brentq(lambda at: below(at) - (1 - _LEVEL) / 2, *bracket) + middle
+    high = optimize.brentq(lambda at: below(at) - (1 + _LEVEL) / 2, *bracket) + middle
+    return Estimate(centre + middle, low, high, float(np.sum(weights * slope)))
 
 
 def estimates(curves: Curves, y: Array) -> tuple[Estimate, Estimate | None]:
@@ -407,7 +395,7 @@ class Judged:
 
 
 def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
-    """Return the parameter of a law with the least squares, by a golden section in ln a."""
+    """Return the parameter of a law with the least squares, by a search in ln a."""
     whiten = np.linalg.inv(root)
 
     def miss(log_a: float) -> float:
@@ -416,14 +404,9 @@ def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
     most = law.most / float(v.max()) ** law.speed
     grid = np.linspace(math.log(1e-5), math.log(most), 60)
     i = int(np.argmin([miss(each) for each in grid]))
-    low = grid[max(i - 1, 0)]
-    high = grid[min(i + 1, len(grid) - 1)]
-    share = (math.sqrt(5) - 1) / 2
-    for _ in range(30):
-        one = high - share * (high - low)
-        two = low + share * (high - low)
-        low, high = (low, two) if miss(one) < miss(two) else (one, high)
-    return math.exp((low + high) / 2)
+    around = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
+    found = optimize.minimize_scalar(miss, bounds=around, method="bounded", options={"xatol": 1e-7})
+    return math.exp(found.x)
 
 
 def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[Judged]:

@@ -120,7 +120,8 @@ def test_implicit_steps_that_damp_too_much_are_said_so():
     wanted = Bounce(mass="1 kg", restitution=0.99, radius="5 cm")
     found = design(wanted, "drake", "20 us")
     most = found.row.outcome.restitution[1]
-    assert found.parameters["relaxation_time"] == 0
+    # Drake refuses the whole number 0.
+    assert found.parameters["relaxation_time"] == 0 and "float(0)" in found.snippet
     assert f"r is still {most:.3f} at most, because the steps damp" in repr(found)
     assert "at most" not in repr(design(wanted, "drake", "5 us"))
 

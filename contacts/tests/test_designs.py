@@ -270,7 +270,7 @@ def largest_deviation(found, change):
     combined = problem.engine.combined(found.parameters, found.parameters)
     trials = exact(offsets(101))
     deviations = []
-    for of_mass, of_stiffness, of_step in product((1 - change, 1.0, 1 + change), repeat=3):
+    for of_mass, of_stiffness, of_step in product((1 - change, 1 + change), repeat=3):
         step = of_step * found.row.step
         setting = problem.setting(step)
         law = problem.engine.read(combined, replace(setting, mass=of_mass * setting.mass))
@@ -280,7 +280,7 @@ def largest_deviation(found, change):
 
 
 def test_a_design_keeps_its_tolerance_if_mass_stiffness_and_step_are_off_by_half_a_percent():
-    """Of these 200 requests 64 did not, before a design was for its neighbours as well."""
+    """Of these 200 requests 88 did not, before a design was for its neighbours as well."""
     rng = np.random.default_rng(11)
     for _ in range(200):
         wanted, name, step = random_request(rng)
@@ -290,12 +290,14 @@ def test_a_design_keeps_its_tolerance_if_mass_stiffness_and_step_are_off_by_half
         assert largest_deviation(found, 0.005) <= allowed + 5e-4, (wanted, name, step)
 
 
-def test_a_lucky_step_is_not_taken():
-    """Two balls of 10 g in LAMMPS: r was 0.800 ± 0.000, and 0.1 % beside it ± 0.030."""
+def test_a_lucky_stiffness_is_not_promised():
+    """Two balls of 10 g in LAMMPS: at 0.1 ms r is 0.800 ± 0.000, and 0.1 % beside it ± 0.028."""
     wanted = Bounce(mass="10 g", other_mass="10 g", restitution=0.8, speed="1 m/s")
-    found = design(wanted, "lammps", "0.1 ms")
-    assert found.row.outcome.error > 0.005
-    assert largest_deviation(found, 0.001) <= 0.0205
+    problem = Problem(wanted, ENGINES["lammps"])
+    depth = np.array([13.11e-4 / math.pi])
+    law = problem.law(depth, problem.ratios(depth, np.array([1e-4])))
+    exactly = problem.outcome(law, 1e-4, exact(offsets(401)))
+    assert exactly.error < 1e-3 and problem.outcome(law, 1e-4).error > 0.02
 
 
 def test_a_fine_step_in_a_compliant_contact_keeps_its_damping():

@@ -2,13 +2,16 @@
 
 import math
 import re
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
-from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS
+from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Problem
 from bouncing_ball_contacts.engines import engine_named
+from bouncing_ball_contacts.schemes import exact, offsets
 
 STEPPED = [name for name, row in ENGINES.items() if row.fixed_steps]
 BALL = dict(mass="50 g", restitution=0.8, drop_height="1 m", radius="30 mm")
@@ -103,6 +106,24 @@ def test_without_a_penetration_it_is_a_tenth_of_the_radius():
     found = design(Bounce(mass="50 g", restitution=0.8), "mujoco")
     assert 0.098 * found.bounce.size <= found.row.outcome.depth[1] <= 0.1 * found.bounce.size
     assert "a tenth of the radius" in str(found)
+
+
+def test_a_body_of_several_points_is_a_cube():
+    """It was called a solid ball of steel."""
+    found = design(Bounce(mass="1 kg", restitution=0.8, points=4), "mujoco", "2 ms")
+    assert "a solid cube of steel (--radius or --density), half height 25.2 mm" in str(found)
+    assert "radius" not in found.notes[0] and found.bounce.size**3 * 8 * 7850 == pytest.approx(1)
+
+
+def test_implicit_steps_that_damp_too_much_are_said_so():
+    """Drake has r = 0.971 at most with k = 866 kN/m at 20 µs, and said nothing."""
+    wanted = Bounce(mass="1 kg", restitution=0.99, radius="5 cm")
+    found = design(wanted, "drake", "20 us")
+    most = found.row.outcome.restitution[1]
+    # Drake refuses the whole number 0.
+    assert found.parameters["relaxation_time"] == 0 and "float(0)" in found.snippet
+    assert f"r is still {most:.3f} at most, because the steps damp" in repr(found)
+    assert "at most" not in repr(design(wanted, "drake", "5 us"))
 
 
 def test_a_step_at_which_no_spring_works_is_said_so():
@@ -230,6 +251,53 @@ def test_a_random_ball_bounces_as_wanted():
         outcome = design(wanted, name).row.outcome
         assert outcome.deviation(r) <= 0.02, (name, r, mass)
         assert outcome.depth[1] <= wanted.limit
+
+
+def random_request(rng):
+    """Return a bounce of a ball or of two, the name of an engine, and a step in s."""
+    mass = float(10 ** rng.uniform(-5, 3))
+    bodies = {"drop_height": float(10 ** rng.uniform(-1, 0.7))}
+    if rng.random() < 0.3:
+        other = mass * float(10 ** rng.uniform(-1, 1))
+        bodies = {"speed": float(10 ** rng.uniform(-0.3, 0.7)), "other_mass": other}
+    wanted = Bounce(mass=mass, restitution=float(rng.uniform(0.05, 0.98)), **bodies)
+    return wanted, str(rng.choice(STEPPED)), float(10 ** rng.uniform(-4.7, -2))
+
+
+def largest_deviation(found, change):
+    """Return that of r of a design if mass, stiffness and step are off by the relative change."""
+    problem = Problem(found.bounce, ENGINES[found.engine])
+    combined = problem.engine.combined(found.parameters, found.parameters)
+    trials = exact(offsets(101))
+    deviations = []
+    for of_mass, of_stiffness, of_step in product((1 - change, 1 + change), repeat=3):
+        step = of_step * found.row.step
+        setting = problem.setting(step)
+        law = problem.engine.read(combined, replace(setting, mass=of_mass * setting.mass))
+        law = replace(law, stiffness=of_stiffness * law.stiffness)
+        deviations.append(problem.drops(law, step, trials).error(problem.target))
+    return max(deviations)
+
+
+def test_a_design_keeps_its_tolerance_if_mass_stiffness_and_step_are_off_by_half_a_percent():
+    """Of these 200 requests 88 did not, before a design was for its neighbours as well."""
+    rng = np.random.default_rng(11)
+    for _ in range(200):
+        wanted, name, step = random_request(rng)
+        found = design(wanted, name, step)
+        allowed = max(0.02, found.row.outcome.deviation(wanted.restitution))
+        # Half of the last printed digit.
+        assert largest_deviation(found, 0.005) <= allowed + 5e-4, (wanted, name, step)
+
+
+def test_a_lucky_stiffness_is_not_promised():
+    """Two balls of 10 g in LAMMPS: at 0.1 ms r is 0.800 ± 0.000, and 0.1 % beside it ± 0.028."""
+    wanted = Bounce(mass="10 g", other_mass="10 g", restitution=0.8, speed="1 m/s")
+    problem = Problem(wanted, ENGINES["lammps"])
+    depth = np.array([13.11e-4 / math.pi])
+    law = problem.law(depth, problem.ratios(depth, np.array([1e-4])))
+    exactly = problem.outcome(law, 1e-4, exact(offsets(401)))
+    assert exactly.error < 1e-3 and problem.outcome(law, 1e-4).error > 0.02
 
 
 def test_a_fine_step_in_a_compliant_contact_keeps_its_damping():

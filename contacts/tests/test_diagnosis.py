@@ -68,6 +68,27 @@ def test_the_least_change_has_the_wanted_restitution(engine, parameters, step):
     assert f"{found.change.name} = " in str(found)
 
 
+def test_a_least_change_outside_of_the_tolerance_is_said_so():
+    found = asked(0.5, "mujoco", {"solref": "-1e5 -200"}, "2 ms")
+    assert found.change.outcome.deviation(0.5) > 0.02
+    assert "which leaves the tolerance of 0.02." in str(found)
+    # Then the design of this step is named, which does not.
+    assert any("no damping of this contact keeps r within 0.02" in each for each in found.reasons)
+    assert "leaves the tolerance" not in str(asked(0.5, "mujoco", {"solref": "-1e4 -50"}, "1 ms"))
+    assert "With --restitution there is a least change" in str(asked(None, "mujoco", {}, "2 ms"))
+
+
+def test_steps_that_damp_too_much_are_named_with_the_most_and_the_impulse():
+    """PyBullet has its restitution without a spring at every step."""
+    spring = {"contactStiffness": 1e5, "contactDamping": 30}
+    found = asked(0.8, "pybullet", spring, "1/240", body={"radius": "5 cm"})
+    reason = found.reasons[-1]
+    most = asked(None, "pybullet", {**spring, "contactDamping": 0}, "1/240").outcome.restitution[1]
+    assert f"damps by itself: r is {most:.2f}" in reason and " at most" in reason
+    impulse = design(found.bounce, "pybullet", "1/240", pick="impulse")
+    assert f"restitution = {impulse.parameters['restitution']:.6g} without a spring" in reason
+
+
 def test_the_defaults_of_mujoco_do_not_bounce():
     found = asked(0.8, "mujoco", None, "2 ms")
     assert found.outcome.restitution[2] < 0.05

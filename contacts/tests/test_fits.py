@@ -19,7 +19,7 @@ SPEC.loader.exec_module(coverage)
 VERDICTS = {
     "croquet": ("deviates", "deviates", "deviates"),
     "membrane_heavy": ("compatible", "compatible", "incompatible"),
-    "membrane_light": ("compatible", "compatible", "incompatible"),
+    "membrane_light": ("undecided", "undecided", "undecided"),
     "thin_drop": ("incompatible", "incompatible", "compatible"),
     "viscous_drop": ("incompatible", "incompatible", "incompatible"),
     "metallic_glass": ("compatible", "deviates", "deviates"),
@@ -28,7 +28,6 @@ VERDICTS = {
 
 @pytest.mark.parametrize("name", VERDICTS)
 def test_the_verdicts_on_published_experiments(name):
-    """Those of the tests that were used before, by points left out and extrapolated."""
     found = {law.law: law.verdict for law in fit(name).laws}
     assert tuple(found[law] for law in LAWS) == VERDICTS[name]
 
@@ -58,6 +57,20 @@ def test_intervals_hold_the_truth(kind):
     assert held >= 24
     assert width < 10 * spread
     assert rejected <= 3
+
+
+def test_few_readings_have_an_interval_for_each_assumption():
+    """One interval for both covered 99.8 % of recordings without scatter, 4.5 times too wide."""
+    times = np.array([0.0, 0.7323, 1.3192, 1.7874, 2.1634, 2.4636])
+    found = fit(Recording("heard", "flights", (np.diff(times),)))
+    low, high = found.interval
+    least, most = found.without_scatter
+    assert low < least < 0.8 < most < high and 3 * (most - least) < high - low
+    assert f"if impacts scatter, {least:.4f} to {most:.4f} if they do not" in str(found)
+    # Speeds after an impact depend on no other reading, so that the assumption changes nothing.
+    pairs = np.column_stack([[1.0, 2.0, 3.0, 4.0], [0.806, 1.597, 2.412, 3.203]])
+    alone = fit(Recording("filmed", "speeds", (pairs,)))
+    assert alone.without_scatter is None and "if impacts" not in str(alone)
 
 
 def test_an_exact_recording_has_a_narrow_interval():
@@ -128,7 +141,7 @@ def test_errors_of_times_enter_the_flights_on_both_sides():
 def test_weights_are_those_of_a_distribution():
     impacts = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64, 0.5]),)))
     curves = curves_of(impacts, errors_of(impacts, None), 3.0)
-    weights, _, _ = curves.posterior(impacts.log_r[:, None])
+    weights, _, _ = curves.posterior(impacts.log_r)
     assert weights.sum() == pytest.approx(1.0)
     assert curves.errors.shapes.shape[1:] == (3, 3)
 
@@ -142,6 +155,9 @@ def test_intervals_are_read_and_shown(tmp_path):
     light = fit(file, intervals=True, mass="2.7 g", diameter="40 mm")
     assert light.intervals[1].split()[2] == "0.87500"
     assert float(light.intervals[1].split()[3]) < -0.01
+    file.write_text("time [s]\n0\n0.9\n1.7\n2.4\n3\n")
+    with pytest.raises(Refused, match="times, which rise, and no intervals"):
+        fit(file, intervals=True)
     file.write_text("drop height (cm),rebound height (cm)\n20,13\n50,32\n")
     with pytest.raises(Refused, match="no column of intervals"):
         fit(file, intervals=True)

@@ -4,7 +4,7 @@ import pint
 import pytest
 
 from bouncing_ball_contacts import Bounce, Refused
-from bouncing_ball_contacts.units import density_of, in_si, show
+from bouncing_ball_contacts.units import density_of, in_si, show, span
 
 REGISTRY = pint.UnitRegistry()
 
@@ -72,6 +72,13 @@ def test_a_text_that_is_no_quantity_is_refused_in_one_line(given, unit, said):
 )
 def test_a_number_is_shown_without_powers_of_ten(value, unit, expected):
     assert show(value, unit) == expected
+
+
+def test_the_ends_of_a_range_are_told_apart():
+    assert span(0.1, 0.6) == "0.100 to 0.600"
+    assert span(0.60012, 0.60041) == "0.6001 to 0.6004"
+    assert span(0.6, 0.6) == "0.600 to 0.600"
+    assert span(1.23412, 1.23441, form="g") == "1.2341 to 1.2344"
 
 
 def test_a_material_is_a_density():

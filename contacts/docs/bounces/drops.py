@@ -241,6 +241,7 @@ ENGINES = {
     "rapier": rapier,
     "mujoco": of_contact("mujoco"),
     "lammps": of_contact("lammps"),
+    "genesis": of_contact("genesis"),
 }
 
 

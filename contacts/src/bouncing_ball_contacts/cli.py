@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -103,8 +104,12 @@ def _write_script(found: Design, path: str | None) -> None:
         return
     from bouncing_ball_contacts.scripts import drop_script
 
+    text = drop_script(found)
+    imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
+    if Path(path).stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
+        raise Refused(f"a script named {Path(path).name} hides the module of the engine: rename it")
     try:
-        Path(path).write_text(drop_script(found), "utf-8")
+        Path(path).write_text(text, "utf-8")
     except OSError as error:
         raise Refused(f"{path} cannot be written: {error.strerror}") from None
 

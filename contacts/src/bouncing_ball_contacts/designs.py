@@ -21,7 +21,10 @@ from bouncing_ball_contacts.schemes import (
     Impulse,
     Impulsive,
     Law,
+    Trials,
     drop,
+    exact,
+    nearby,
     offsets,
 )
 from bouncing_ball_contacts.units import (
@@ -31,6 +34,7 @@ from bouncing_ball_contacts.units import (
     in_si,
     positive,
     show,
+    span,
     within,
 )
 
@@ -45,8 +49,10 @@ WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
-_COARSE = offsets(21)
-_FINE = offsets(401)
+# For the mean r, for the search of a contact, and for what a row shows.
+_MEAN = exact(offsets(21))
+_COARSE = nearby(3, 21)
+_FINE = nearby(9, 201)
 # Steps in a contact without damping: first those that most designs need, then finer ones, in groups
 # because a group costs as much as its finest one.
 _STEPS = (
@@ -88,7 +94,8 @@ class Bounce:
         At most one of them: the depth that must not be exceeded, or the contact itself. By default
         the penetration is at most a tenth of the radius and a fifth of the drop height.
     points : int
-        The number of contact points that share the force, 4 for the face of a box.
+        The number of contact points that share the force, 4 for the face of a box. Without a radius
+        a body with several points is a cube.
     other_mass : Quantity, optional
         Of a second free body, in an impact without gravity.
     friction : Quantity, optional
@@ -156,7 +163,9 @@ class Bounce:
         if self.points > 1:
             shown["points"] = str(self.points)
         if self.other_mass is not None and self.speed is None:
-            raise Refused("two free bodies need the speed with which they approach each other")
+            raise Refused(
+                "two free bodies need the speed at which they approach each other: --speed '2 m/s'"
+            )
         first = {name: shown[name] for name in ("mass", "restitution") if name in shown}
         object.__setattr__(self, "given", first | shown)
 
@@ -187,11 +196,17 @@ class Bounce:
 
     @property
     def size(self) -> float:
-        """The radius of the body in m, by its density if no radius is given."""
+        """The radius of the body in m, or half the height of a box; by its density if not given."""
         if self.radius is not None:
             return float(self.radius)
         density = density_of("steel") if self.density is None else self.density
-        return float((3 * self.mass / (4 * math.pi * density)) ** (1 / 3))
+        shape = 4 * math.pi / 3 if self.points == 1 else 8.0
+        return float((self.mass / (shape * density)) ** (1 / 3))
+
+    @property
+    def size_name(self) -> str:
+        """What the size is."""
+        return "radius" if self.points == 1 else "half height"
 
     @property
     def reduced_radius(self) -> float:
@@ -216,9 +231,10 @@ class Bounce:
             found.append("a drop from 1 m (--drop-height or --speed)")
         if self.radius is None:
             of = "steel (--radius or --density)" if self.density is None else "this density"
-            found.append(f"a solid ball of {of}, radius {show(self.size, 'm')}")
+            body = "ball" if self.points == 1 else "cube"
+            found.append(f"a solid {body} of {of}, {self.size_name} {show(self.size, 'm')}")
         if (self.penetration, self.stiffness, self.contact_time) == (None, None, None):
-            by = "a tenth of the radius"
+            by = f"a tenth of the {self.size_name}"
             if self.limit < self.size / 10:
                 by = "a fifth of the drop height"
             found.append(f"it may sink {show(self.limit, 'm')}, {by} (--penetration)")
@@ -295,14 +311,14 @@ class Problem:
         """Return contacts by their undamped depths in m and ratios of damping."""
         return self.engine.of_depth(depth, ratio, self.bounce.impact_speed)
 
-    def drops(self, law: Law, step: Array | float, at: Array = _COARSE) -> Drops:
+    def drops(self, law: Law, step: Array | float, trials: Trials = _COARSE) -> Drops:
         """Return the drops of contacts at time steps in s."""
         scheme = self.engine.scheme_of(law)
-        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, at)
+        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, trials)
 
-    def outcome(self, law: Law, step: float) -> Outcome:
+    def outcome(self, law: Law, step: float, trials: Trials = _FINE) -> Outcome:
         """Return what one contact does at a time step in s."""
-        found = self.drops(law, step, _FINE)
+        found = self.drops(law, step, trials)
         mass = self.bounce.reduced_mass
         r = found.restitution
         rest = float(law.rest(self.bounce.load)) if self.bounce.load else 0.0
@@ -322,19 +338,19 @@ class Problem:
         written = engine.of_one(combined) if self.one_body else engine.of_each(combined)
         parameters = {name: _rounded(value) for name, value in written.items()}
         stiffness = float(law.stiffness) * self.bounce.reduced_mass
-        return Row(step, stiffness, self.of_parameters(parameters, step), parameters)
+        outcome = self.outcome(self.law_of(parameters, step), step)
+        return Row(step, stiffness, outcome, parameters)
 
-    def of_parameters(self, parameters: Mapping[str, Any], step: float) -> Outcome:
-        """Return what written parameters do at a time step in s."""
+    def law_of(self, parameters: Mapping[str, Any], step: float) -> Law:
+        """Return the contact of written parameters at a time step in s."""
         other = self.engine.defaults if self.one_body else parameters
-        combined = self.engine.combined(parameters, other)
-        return self.outcome(self.engine.read(combined, self.setting(step)), step)
+        return self.engine.read(self.engine.combined(parameters, other), self.setting(step))
 
     def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
         """Return the ratios of damping with which the mean r is the target.
 
         The secant rule in ln r, within a bracket: ln r is nearly linear in the ratio. Where the
-        steps alone damp more, the ratio is 0. Contacts that do not get there keep their best ratio.
+        steps or gravity alone take more, the ratio is 0.
         """
         goal = math.log(self.target)
         x = np.full(np.shape(depth), 0.05 - goal / 4) if start is None else start
@@ -346,7 +362,7 @@ class Problem:
         x_before = x
         y_before = np.full(x.shape, np.nan)
         for _ in range(12):
-            r = self.drops(self.law(depth, x), step).mean
+            r = self.drops(self.law(depth, x), step, _MEAN).mean
             y = np.log(np.maximum(r, 1e-3)) - goal
             best = np.where(np.abs(y) < least, x, best)
             least = np.minimum(np.abs(y), least)
@@ -368,7 +384,7 @@ class Problem:
             inside = (guess > low) & (guess < np.minimum(high, 4 * x + 0.3))
             x = np.where(inside, guess, middle)
             x = np.where(least < _LN_R, best, x)
-        return np.where(high < 1e-5, 0.0, best)
+        return np.where((low == 0) & (least > _LN_R), 0.0, best)
 
 
 def _rounded(value: Any) -> Any:
@@ -453,6 +469,8 @@ def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:
         raise Refused(f"row {pick!r} is none of this answer: {', '.join(map(repr, rows))}")
     if name == IMPULSE and not text_of(f"{problem.engine.name}-impulse"):
         raise Refused(f"no impulse is written for {problem.engine.name}: only for pybullet")
+    if name == IMPULSE and problem.one_body:
+        raise Refused("pybullet multiplies the restitution of both bodies: one body has none alone")
     return name
 
 
@@ -520,59 +538,59 @@ def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
     or be lost by the engine.
     """
     per_step = problem.bounce.impact_speed * step / math.pi
-    deepest = problem.engine.deepest * problem.bounce.size
-    best = None
+    rows = []
+    stiffer = None
     for counts in _AT_STEP:
-        tried = _tried(problem, counts * per_step, step, deepest)
-        if tried is None:
+        depth, error, ratio = _tried(problem, counts * per_step, step)
+        if not depth.size:
             break
-        if best is None or tried[1].min() < best[1].min():
-            best = tried
-        if np.any(tried[1] <= tolerance):
-            break
-    if best is None or best[1].min() > 2 * tolerance:
+        # The tolerance holds over all trials, and not only over those of the search.
+        for i in dict.fromkeys([*np.flatnonzero(error <= tolerance), np.argmin(error)]):
+            row = problem.row(problem.law(depth[i], ratio[i]), step)
+            rows.append(row)
+            if row.outcome.deviation(problem.target) <= tolerance:
+                before = depth[i - 1] if i else stiffer
+                finer = before and _between(problem, before, depth[i], step, tolerance)
+                return finer or row
+        stiffer = depth[-1]
+    nearest = min(rows, key=lambda row: row.outcome.deviation(problem.target), default=None)
+    if nearest is None or nearest.outcome.deviation(problem.target) > 2 * tolerance:
         return None
-    depth, error, ratio = best
-    good = np.flatnonzero(error <= tolerance)
-    i = int(good[0]) if good.size else int(np.argmin(error))
-    if good.size and i > 0:
-        # Between the last contact that fails and the first one that does not.
-        between = np.geomspace(depth[i - 1], depth[i], 7)[1:]
-        finer = _tried(problem, between, step, deepest)
-        if finer is not None and np.any(finer[1] <= tolerance):
-            depth, error, ratio = finer
-            i = int(np.flatnonzero(error <= tolerance)[0])
-    row = problem.row(problem.law(depth[i], ratio[i]), step)
-    # The tolerance holds over all instants, and not only over those of the search.
-    if good.size and row.outcome.deviation(problem.target) > tolerance and i + 1 < len(depth):
-        row = problem.row(problem.law(depth[i + 1], ratio[i + 1]), step)
-    return row
+    return nearest
 
 
-def _tried(
-    problem: Problem, depth: Array, step: float, deepest: float
-) -> tuple[Array, Array, Array] | None:
+def _between(
+    problem: Problem, fails: float, holds: float, step: float, tolerance: float
+) -> Row | None:
+    """Return the stiffest of some contacts between two depths that is within the tolerance."""
+    depth, error, ratio = _tried(problem, np.geomspace(fails, holds, 7)[1:-1], step)
+    for i in np.flatnonzero(error <= tolerance):
+        row = problem.row(problem.law(depth[i], ratio[i]), step)
+        if row.outcome.deviation(problem.target) <= tolerance:
+            return row
+    return None
+
+
+def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, Array]:
     """Return those depths that work, with the errors of r and the ratios of damping."""
     steps = np.full(depth.shape, step)
     ratio = problem.ratios(depth, steps)
     law = problem.law(depth, ratio)
     found = problem.drops(law, steps)
-    seen = found.depth.max(axis=-1) < deepest
+    seen = found.depth.max(axis=-1) < problem.engine.deepest * problem.bounce.size
     seen &= law.rest(problem.bounce.load) < problem.bounce.size
-    if not seen.any():
-        return None
     return depth[seen], found.error(problem.target)[seen], ratio[seen]
 
 
 def _impulse(problem: Problem, step: float) -> Row:
     """Return the restitution by number with which the mean r is the wanted one at a step in s."""
     numbers = np.linspace(0.0, 1.0, 21)
-    law = Impulse(np.zeros(21), numbers)
+    law = Impulse(numbers)
     speed = problem.bounce.impact_speed
-    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _COARSE).mean
+    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _MEAN).mean
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
     each = _rounded(math.sqrt(best))
-    found = problem.outcome(Impulse(np.asarray(0.0), np.asarray(each**2)), step)
+    found = problem.outcome(Impulse(np.asarray(each**2)), step)
     return Row(_rounded(step), math.nan, found, {"restitution": each})
 
 
@@ -587,13 +605,13 @@ def _too_long(
     if YOURS not in rows:
         return [
             f"at {show(step, 's')} no spring works in {problem.engine.name}: none keeps r within "
-            f"{2 * tolerance:g} and lies less deep than the radius of {show(bounce.size, 'm')}, "
-            f"because {way}; {what}"
+            f"{2 * tolerance:g} and lies less deep than the {bounce.size_name} of "
+            f"{show(bounce.size, 'm')}, because {way}; {what}"
         ]
     sinks = rows[YOURS].outcome.depth[1]
     found = []
     if sinks > bounce.limit:
-        how = f"{100 * sinks / bounce.size:.0f} % of its radius"
+        how = f"{100 * sinks / bounce.size:.0f} % of its {bounce.size_name}"
         if sinks > bounce.size:
             how = "its centre passes the surface"
         reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
@@ -614,6 +632,7 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
     """Return what a user of a row has to know."""
     bounce = problem.bounce
     found = []
+    law = problem.law_of(row.parameters, row.step)
     low, mean, high = row.outcome.restitution
     if bounce.restitution < LEAST_RESTITUTION:
         found.append(
@@ -621,37 +640,31 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
             f"rises {mean**2:.1g} of its height"
         )
     elif is_wanted and row.outcome.deviation(problem.target) > tolerance:
-        found.append(f"r is {low:.3f} to {high:.3f}: no damping of this contact is nearer")
+        found.append(f"r is {span(low, high)}: no damping of this contact is nearer")
+    # Half of the last printed digit.
+    if float(law.damping) == 0 and mean < problem.target - 5e-4:
+        found.append(
+            f"this contact has no damping, and r is still {mean:.3f} at most, because the steps "
+            "damp by themselves: a shorter step has more"
+        )
     sinks = row.outcome.depth[1]
     if sinks > problem.engine.deepest * bounce.size:
-        found.append(f"{problem.engine.name} loses a body that sinks more than its radius")
-    if _steps_in_contact(problem, row) > MOST_STEPS:
+        found.append(
+            f"{problem.engine.name} loses a body that sinks more than its {bounce.size_name}"
+        )
+    if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:
         found.append(
             f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
             "not computed, and change r by less than 0.001"
         )
     if bounce.load:
         slow = bounce.slower(math.sqrt(0.1))
-        if math.isnan(row.stiffness):
-            e = row.parameters["restitution"] ** 2
-            law: Law = Impulse(np.asarray(0.0), np.asarray(e))
-            slower = replace(problem, bounce=slow).outcome(law, row.step)
-        else:
-            slower = replace(problem, bounce=slow).of_parameters(row.parameters, row.step)
+        slower = replace(problem, bounce=slow).outcome(law, row.step)
         if slower.deviation(bounce.restitution) > max(tolerance, 2 * row.outcome.error):
             found.append(f"from a tenth of the height r is {slower.around}")
     if bounce.friction:
         found.append(problem.engine.friction)
     return found
-
-
-def _steps_in_contact(problem: Problem, row: Row) -> float:
-    if math.isnan(row.stiffness):
-        return 0.0
-    setting = problem.setting(row.step)
-    other = problem.engine.defaults if problem.one_body else row.parameters
-    law = problem.engine.read(problem.engine.combined(row.parameters, other), setting)
-    return float(law.duration(problem.bounce.impact_speed)) / row.step
 
 
 @dataclass(frozen=True, repr=False)

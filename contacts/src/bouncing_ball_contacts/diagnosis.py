@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts.designs import (
+    IMPULSE,
     LEAST_RESTITUTION,
     TOLERANCE,
     Bounce,
@@ -18,14 +19,16 @@ from bouncing_ball_contacts.designs import (
     Quantity,
     design,
 )
-from bouncing_ball_contacts.engines import Engine, Impulse, engine_named
-from bouncing_ball_contacts.schemes import Impedance, Law, Linear, offsets
+from bouncing_ball_contacts.engines import Engine, engine_named, text_of
+from bouncing_ball_contacts.schemes import Impedance, Implicit, Impulse, Law, Linear
 from bouncing_ball_contacts.units import Refused, in_si, positive, show
 
 # With as many steps in a contact each scheme is within 0.003 of its limit of short steps.
 _SHORT = 1000
 # Fewer steps than these are named as a reason.
 _FEW = 10
+# Parameters from 0 to 1 with which r rises.
+_SHARES = ("e", "coefficientRestitution", "restitution", "soft_erp")
 
 
 @dataclass(frozen=True)
@@ -82,13 +85,19 @@ class Diagnosis:
             value = _typed(self.change.value)
             lines.append(
                 f"Least change: {self.change.name} = {value}{step} gives r = "
-                f"{self.change.outcome.around}."
+                f"{self.change.outcome.around}{self._misses(wanted)}."
             )
+        if wanted is None:
+            lines.append("With --restitution there is a least change, for the r that is wanted.")
         lines.append(f"Given: {', '.join(_pairs(self.parameters))}; {self._given()}.")
         row = engine_named(self.engine)
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
         return lines
+
+    def _misses(self, wanted: float) -> str:
+        misses = self.change is not None and self.change.outcome.deviation(wanted) > TOLERANCE
+        return f", which leaves the tolerance of {TOLERANCE:g}" if misses else ""
 
     def _given(self) -> str:
         return ", ".join(f"{name} {value}" for name, value in self.bounce.given.items())
@@ -150,8 +159,7 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
         raise Refused(f"{name} = {number:g} is negative")
     if name == engine.names[0] and number == 0:
         raise Refused(f"{name} = 0 is no contact")
-    shares = ("e", "coefficientRestitution", "restitution", "soft_erp")
-    if name in shares and number > 1:
+    if name in _SHARES and number > 1:
         raise Refused(f"{name} = {number:g} is not between 0 and 1")
     return number
 
@@ -241,8 +249,9 @@ def diagnose(
     change = None
     if bounce.restitution is not None and outcome.deviation(bounce.restitution) > TOLERANCE:
         change = _least_change(pair, step)
-        if change is None or not math.isclose(change.step, step):
-            reasons += (_another(problem, step),)
+        keeps = change is not None and change.outcome.deviation(bounce.restitution) <= TOLERANCE
+        if change is None or not keeps or not math.isclose(change.step, step):
+            reasons += (_another(pair, step),)
     return Diagnosis(
         engine=row.name,
         bounce=bounce,
@@ -279,7 +288,7 @@ class _Pair:
 
     def mean(self, step: float) -> float:
         """Return the mean r."""
-        return float(self.problem.drops(self.law(step), step, offsets(15)).mean)
+        return float(self.problem.drops(self.law(step), step).mean)
 
 
 def _without_gravity(problem: Problem) -> Problem:
@@ -328,7 +337,7 @@ def _reasons(
     if ratio >= 1:
         yield f"the damping ratio of {ratio:.3g} is that of a contact without oscillation"
     if outcome.depth[1] > bounce.size:
-        yield f"it sinks deeper than its radius of {show(bounce.size, 'm')}"
+        yield f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}"
     if isinstance(law, Impedance):
         yield from _of_mujoco(pair, step, law)
     if bounce.restitution is not None:
@@ -388,19 +397,28 @@ def _per_mass(pair: _Pair) -> Iterator[tuple[str, _Pair]]:
         yield damping, pair.changed(damping, pair.one[damping] / mass)
 
 
-def _another(problem: Problem, step: float) -> str:
+def _another(pair: _Pair, step: float) -> str:
     """Return what has r at this step if no damping of the given contact has it."""
+    problem = pair.problem
+    engine = problem.engine
+    text = f"no damping of this contact keeps r within {TOLERANCE:g} at this step"
+    if isinstance(engine.scheme, Implicit) and not isinstance(pair.law(step), Impulse):
+        name = engine.names[1]
+        most = pair.changed(name, 1.0 if name in _SHARES else 0.0).mean(step)
+        text += f", which damps by itself: r is {most:.3f} at most"
     try:
-        found = design(problem.bounce, problem.engine.name, step)
+        found = design(problem.bounce, engine.name, step)
     except Refused:
-        return "no damping of this contact has the wanted r at this step"
+        return text
     row = found.row
-    values = ", ".join(f"{name} = {_typed(value)}" for name, value in row.parameters.items())
+    values = ", ".join(_pairs(row.parameters))
     at = "" if math.isclose(row.step, step, rel_tol=1e-4) else f", at {show(row.step, 's')}"
-    return (
-        f"no damping of this contact has the wanted r at this step; {values} has "
-        f"{row.outcome.around}{at}"
-    )
+    text += f"; {values} has {row.outcome.around}{at}"
+    if text_of(f"{engine.name}-impulse") and IMPULSE in found.rows:
+        impulse = found.rows[IMPULSE]
+        text += f"; {', '.join(_pairs(impulse.parameters))} without a spring has "
+        text += f"{impulse.outcome.around}"
+    return text
 
 
 def _least_change(pair: _Pair, step: float) -> Change | None:
@@ -421,7 +439,7 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
     """Return the value of the parameter with the wanted r at a step; None if none has it."""
     problem = pair.problem
     target = max(float(problem.bounce.restitution), LEAST_RESTITUTION)
-    rises = name in ("e", "coefficientRestitution", "restitution", "soft_erp")
+    rises = name in _SHARES
 
     def of(value: float) -> Any:
         if name != "solref":
@@ -432,7 +450,9 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
     def mean(value: float) -> float:
         return pair.changed(name, of(value)).mean(step)
 
-    bracket = _shares(mean, target) if rises else _damped(mean, target, _start(pair, name))
+    bracket: tuple[float, float] | None = (1e-4, 1.0)
+    if not rises:
+        bracket = _damped(mean, target, _start(pair, name))
     if bracket is None:
         return None
     low, high = bracket
@@ -455,13 +475,6 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
 def _start(pair: _Pair, name: str) -> float:
     given = abs(pair.one[name][1] if name == "solref" else pair.one[name])
     return float(given) if given > 0 else 1.0
-
-
-def _shares(mean: Callable[[float], float], target: float) -> tuple[float, float] | None:
-    """Return the bounds of a parameter between 0 and 1 with which r rises."""
-    if mean(1.0) < target - TOLERANCE:
-        return None
-    return 1e-4, 1.0
 
 
 def _damped(

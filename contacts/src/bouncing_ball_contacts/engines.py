@@ -329,7 +329,7 @@ def _read_pybullet(p: Parameters, at: Setting) -> Law:
     damper = p.get("contactDamping", -1)
     if spring <= 0 or damper < 0:
         e = p.get("restitution", 0.0)
-        return Impulse(np.asarray(0.0), np.asarray(e))
+        return Impulse(np.asarray(e))
     return Linear(
         np.asarray(spring * at.points / at.mass), np.asarray(damper * at.points / at.mass)
     )

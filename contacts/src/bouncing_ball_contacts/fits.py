@@ -10,41 +10,36 @@ of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - c v, and 
 that changes at low speeds only. The slope s has a normal prior of the width 0.25, because measured
 slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
 enters the flights on both of its sides. φ is the share of the scatter between impacts in the
-variance of ln r; its size σ has a log-normal prior about 0.006. If the errors of the readings are
-given, σ² (1 - φ) is known.
+variance of ln r; its size σ has a log-normal prior about 0.006, which is wide. If the errors of the
+readings are given, σ² (1 - φ) is known.
 
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
-does. The interval therefore holds the β that a test does not reject (G. Elliott, U. K. Müller and
-M. W. Watson, Econometrica 83, 2015, 771-811)::
+does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
+scatter, and for weights of φ that are proportional to φ, if they do. The first one is left out if
+the impacts contradict it (it is less than 1/20 as likely as the second one) or if both are alike.
 
-    Σ_φ λ_φ Σ_(q, σ) p(φ, q, σ | y) exp(-(β - m)²/(2 d²)) ≥ 1
-
-p is the posterior for equal weights of the φ, m and d are mean and deviation of β for each φ, q and
-σ. The weights λ_φ follow from simulated recordings at the same speeds, so that the interval holds
-the truth in 95 % whatever φ is. Where that is not possible, because it holds it in more than 98 %
-without scatter, it may hold it in 92 % with scatter. The interval is never shorter than the
-probable error, 50 %, without scatter.
-
-A law is judged by how much worse it fits than a parabola in ln v, for each φ and σ by the χ²
-distribution of the difference, averaged over them. Scatter alone, which both have, therefore
-rejects no law. Without given errors a systematic error of the measurement does not show in the
-scatter: a law is then not called incompatible, but said to deviate.
+A law is judged by how much worse it fits than a parabola in ln v, for each φ: by the F
+distribution, of whose probabilities the largest one counts among those φ that are at least 1/20 as
+likely as the likeliest one, or by the χ² distribution if the errors are known, averaged over φ.
+Scatter alone, which the parabola has as well, therefore rejects no law. Without given errors a
+systematic error of the measurement does not show in the scatter: a law is then not called
+incompatible, but said to deviate.
 """
 
 import functools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import special
+from scipy import linalg, optimize, special
 
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
 
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
@@ -54,15 +49,13 @@ _SHARES = np.array([0.0, 0.01, 0.05, 0.2, 0.5, 1.0])
 _SHARES_GIVEN = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.94, 0.985])
 # σ, with the middle and the width of the prior of ln σ.
 _SIZE = 0.006
-_SIZE_WIDTH = 1.2
+_SIZE_WIDTH = 2.0
 _LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
-_AT_LEAST = 0.92
-_AT_MOST = 0.98
-_PROBABLE = 0.5
-_SIMULATED = 160
-# Whether a simulated recording is held is a step of the weights, smoothed over this part of ln λ.
-_SMOOTH = 0.05
+# What is less likely than this, compared with something else, is left out.
+_UNLIKELY = 0.05
+# Intervals are alike if the narrower one is more than this part of the other one.
+_ALIKE = 0.8
 REJECTED = 0.005
 """A law with a smaller probability is rejected."""
 ACCEPTED = 0.05
@@ -159,30 +152,19 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     if not speeds:
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
-    return Impacts(np.concatenate(speeds), np.concatenate(logs), _block_diagonal(blocks))
-
-
-def _block_diagonal(blocks: list[Array]) -> Array:
-    found = np.zeros((sum(len(each) for each in blocks), sum(each.shape[1] for each in blocks)))
-    row = 0
-    column = 0
-    for each in blocks:
-        found[row : row + len(each), column : column + each.shape[1]] = each
-        row += len(each)
-        column += each.shape[1]
-    return found
+    return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
 
 
 @dataclass(frozen=True)
 class Errors:
     """Covariances σ² V of ln r by shares and sizes: V (share, n, n), σ (share, size).
 
-    ``share_prior`` (share) and ``size_prior`` (share, size) are logarithms of their weights.
+    ``shares`` are the φ, and ``size_prior`` (share, size) has logarithms of weights.
     """
 
+    shares: Array
     shapes: Array
     sizes: Array
-    share_prior: Array
     size_prior: Array
 
 
@@ -206,11 +188,10 @@ def errors_of(impacts: Impacts, known: float | Array | None) -> Errors:
         size = np.geomspace(_LEAST, _MOST, 28 + (n if n > 11 else 0))
         sizes = np.tile(size, (len(shares), 1))
         prior = -0.5 * (np.log(sizes / _SIZE) / _SIZE_WIDTH) ** 2
-        return Errors(shapes, sizes, np.zeros(len(shares)), prior)
+        return Errors(shares, shapes, sizes, prior)
     given = 1.0 if isinstance(known, np.ndarray) else known
     sizes = given * math.sqrt(unit) / np.sqrt(1 - shares)[:, None]
-    # Beside given errors a large scatter is less likely than a small one.
-    return Errors(shapes, sizes, 0.5 * np.log(1 - shares), np.zeros_like(sizes))
+    return Errors(shares, shapes, sizes, np.zeros_like(sizes))
 
 
 @dataclass(frozen=True)
@@ -234,20 +215,15 @@ class Curves:
         return np.sqrt(self.spread[..., 0, 0])
 
     def posterior(self, y: Array) -> tuple[Array, Array, Array]:
-        """Return weights of sum 1, β and s for ln r of recordings, of the shape (n, recordings)."""
+        """Return weights of sum 1, β and s for ln r of a recording; all shares are alike."""
         normal = self.project @ y
         squares = np.sum((self.whiten @ y) ** 2, axis=1)
-        variance = self.errors.sizes[:, None, :, None] ** 2
-        best = self.spread @ normal[:, :, None] / variance[..., None, :]
-        explained = np.sum(best * normal[:, :, None], axis=-2)
-        logs = self.log_weight[..., None] - (squares[:, None, None] - explained) / (2 * variance)
-        weights = np.exp(logs - logs.max(axis=(0, 1, 2)))
-        return weights / weights.sum(axis=(0, 1, 2)), best[..., 0, :], best[..., 1, :]
-
-    def near(self, weights: Array, beta: Array, at: Array | float) -> Array:
-        """Return Σ p exp(-z²/2) over exponents and sizes, z = (at - β)/d."""
-        z = (at - beta) / self.deviation[..., None]
-        return np.sum(weights * np.exp(-0.5 * z * z), axis=(1, 2))
+        variance = self.errors.sizes[:, None, :] ** 2
+        best = (self.spread @ normal[:, :, None, :, None])[..., 0] / variance[..., None]
+        explained = np.sum(best * normal[:, :, None], axis=-1)
+        logs = self.log_weight - (squares[:, None, None] - explained) / (2 * variance)
+        weights = np.exp(logs - logs.max())
+        return weights / weights.sum(), best[..., 0], best[..., 1]
 
 
 def curves_of(impacts: Impacts, errors: Errors, at: float) -> Curves:
@@ -261,8 +237,8 @@ def curves_of(impacts: Impacts, errors: Errors, at: float) -> Curves:
     information = project @ np.swapaxes(columns, 1, 2)
     prior = np.diag([0.0, _SLOPE**-2])
     precision = information[:, :, None] / errors.sizes[:, None, :, None, None] ** 2 + prior
-    logs = errors.share_prior - 0.5 * np.linalg.slogdet(errors.shapes)[1]
-    logs = logs[:, None] + errors.size_prior - n * np.log(errors.sizes)
+    determinants = np.linalg.slogdet(errors.shapes)[1]
+    logs = errors.size_prior - 0.5 * determinants[:, None] - n * np.log(errors.sizes)
     return Curves(
         errors=errors,
         columns=columns,
@@ -273,91 +249,55 @@ def curves_of(impacts: Impacts, errors: Errors, at: float) -> Curves:
     )
 
 
-def _without_scatter(curves: Curves, weights: Array, beta: Array, at: float) -> Array:
-    """Return the probability that β is below a value if there is no scatter."""
-    below = special.ndtr((at - beta[0]) / curves.deviation[0][..., None])
-    # Where scatter is certain the weight of its absence may be 0.
-    total = np.maximum(np.sum(weights[0], axis=(0, 1)), 1e-300)
-    return np.sum(weights[0] * below, axis=(0, 1)) / total
+@dataclass(frozen=True)
+class Estimate:
+    """The mean of β, the ends of its interval of 95 %, and the mean of s."""
+
+    value: float
+    low: float
+    high: float
+    slope: float
 
 
-def balance(curves: Curves, weights: Array) -> tuple[Array, Array]:
-    """Return ln λ, and the parts of simulated recordings that are held, by their shares.
-
-    ``weights`` are those of the recording, of whose likely sizes the simulated ones are.
-    """
-    random = np.random.default_rng(0)
-    n = curves.whiten.shape[-1]
-    noise = random.normal(size=(n, _SIMULATED))
-    chance = random.random(_SIMULATED)
-    near = []
-    probable = []
-    for share, root in enumerate(np.linalg.inv(curves.whiten)):
-        likely = np.cumsum(weights[share].sum(axis=(0, 2)))
-        index = np.searchsorted(likely[:-1], chance * likely[-1])
-        size = curves.errors.sizes[share][index]
-        found, beta, _ = curves.posterior(root @ noise * size)
-        near.append(curves.near(found, beta, 0.0))
-        below = _without_scatter(curves, found, beta, 0.0)
-        probable.append(np.abs(below - 0.5) < _PROBABLE / 2)
-    is_near = np.array(near)
-    is_probable = np.array(probable)
-    logs = np.full(len(near), 2.0)
-    for gain in np.repeat([10.0, 4.0, 1.0], [60, 50, 40]):
-        test = np.exp(logs) @ is_near
-        with np.errstate(divide="ignore"):
-            passed = special.expit(np.log(test) / _SMOOTH)
-        held = np.mean(np.where(is_probable, 1.0, passed), axis=-1)
-        # Where too many are held without scatter, fewer with it are enough.
-        wanted = np.clip(_AT_LEAST + _AT_MOST - held.max(), _AT_LEAST, _LEVEL)
-        logs = logs + gain * (wanted - held)
-    return logs, held
-
-
-def _likely(curves: Curves, weights: Array) -> Curves:
-    """Return the curves with those sizes of errors that have a weight, and their neighbours."""
-    of_size = weights.max(axis=(0, 1, 3))
-    likely = np.flatnonzero(of_size > 1e-6 * of_size.max())
-    kept = slice(max(likely[0] - 3, 0), likely[-1] + 4)
-    sizes = curves.errors.sizes[:, kept]
-    errors = replace(curves.errors, sizes=sizes, size_prior=curves.errors.size_prior[:, kept])
-    spread = curves.spread[:, :, kept]
-    return replace(curves, errors=errors, spread=spread, log_weight=curves.log_weight[:, :, kept])
-
-
-def interval(curves: Curves, y: Array) -> tuple[float, float, float, float]:
-    """Return the mean of β, the ends of its interval, and the mean of s, of a recording."""
+def _estimate(curves: Curves, y: Array, by_share: Array) -> Estimate:
+    """Return what a recording says if its shares have these weights."""
     middle = float(np.mean(y))
-    weights, _, _ = curves.posterior(y[:, None] - middle)
-    # Other sizes are not needed, and cost time in the simulated recordings.
-    curves = _likely(curves, weights)
-    weights, beta, slope = curves.posterior(y[:, None] - middle)
+    weights, beta, slope = curves.posterior(y - middle)
+    weights = weights * by_share[:, None, None]
+    weights = weights / weights.sum()
     centre = float(np.sum(weights * beta))
-    logs, _ = balance(curves, weights)
-    spread = math.sqrt(float(np.sum(weights[..., 0] * curves.deviation**2)))
-    scale = spread + math.sqrt(float(np.sum(weights * (beta - centre) ** 2)))
+    spread = math.sqrt(float(np.sum(weights * (curves.deviation**2 + (beta - centre) ** 2))))
 
-    def holds(at: float) -> bool:
-        if abs(float(_without_scatter(curves, weights, beta, at)[0]) - 0.5) < _PROBABLE / 2:
-            return True
-        return float(np.exp(logs) @ curves.near(weights, beta, at)[:, 0]) >= 1
+    def below(at: float) -> float:
+        """Return the probability that β is less."""
+        return float(np.sum(weights * special.ndtr((at - beta) / curves.deviation)))
 
-    ends = []
-    for side in (-scale, scale):
-        steps = np.concatenate([[0.0], np.geomspace(1e-3, 20, 60)])
-        last = max(i for i, step in enumerate(steps) if i == 0 or holds(centre + side * step))
-        low = steps[last]
-        high = steps[min(last + 1, len(steps) - 1)]
-        for _ in range(12):
-            step = (low + high) / 2
-            low, high = (step, high) if holds(centre + side * step) else (low, step)
-        ends.append(centre + side * low + middle)
-    return centre + middle, ends[0], ends[1], float(np.sum(weights * slope))
+    # Less than 1/49 of any distribution is further from its mean than seven deviations.
+    bracket = centre - 7 * spread, centre + 7 * spread
+    low = optimize.brentq(lambda at: below(at) - (1 - _LEVEL) / 2, *bracket) + middle
+    high = optimize.brentq(lambda at: below(at) - (1 + _LEVEL) / 2, *bracket) + middle
+    return Estimate(centre + middle, low, high, float(np.sum(weights * slope)))
+
+
+def estimates(curves: Curves, y: Array) -> tuple[Estimate, Estimate | None]:
+    """Return what a recording says if impacts scatter, and if they do not.
+
+    The second one is None if the impacts contradict it, or if it says the same.
+    """
+    shares = curves.errors.shares
+    likelihood = curves.posterior(y - np.mean(y))[0].sum(axis=(1, 2))
+    scattering = _estimate(curves, y, shares)
+    if likelihood[0] < _UNLIKELY * float(shares @ likelihood) / shares.sum():
+        return scattering, None
+    still = _estimate(curves, y, np.where(shares == 0, 1.0, 0.0))
+    if still.high - still.low > _ALIKE * (scattering.high - scattering.low):
+        return scattering, None
+    return scattering, still
 
 
 def scatter_of(impacts: Impacts, curves: Curves) -> float:
     """Return the root mean square of the errors of r about the likeliest smooth curve."""
-    weights, beta, slope = curves.posterior((impacts.log_r - np.mean(impacts.log_r))[:, None])
+    weights, beta, slope = curves.posterior(impacts.log_r - np.mean(impacts.log_r))
     best = np.unravel_index(int(np.argmax(weights)), weights.shape)
     level, steep = curves.columns[best[1]]
     curve = np.mean(impacts.log_r) + beta[best] * level + slope[best] * steep
@@ -455,7 +395,7 @@ class Judged:
 
 
 def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
-    """Return the parameter of a law with the least squares, by a golden section in ln a."""
+    """Return the parameter of a law with the least squares, by a search in ln a."""
     whiten = np.linalg.inv(root)
 
     def miss(log_a: float) -> float:
@@ -464,14 +404,9 @@ def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
     most = law.most / float(v.max()) ** law.speed
     grid = np.linspace(math.log(1e-5), math.log(most), 60)
     i = int(np.argmin([miss(each) for each in grid]))
-    low = grid[max(i - 1, 0)]
-    high = grid[min(i + 1, len(grid) - 1)]
-    share = (math.sqrt(5) - 1) / 2
-    for _ in range(30):
-        one = high - share * (high - low)
-        two = low + share * (high - low)
-        low, high = (low, two) if miss(one) < miss(two) else (one, high)
-    return math.exp((low + high) / 2)
+    around = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
+    found = optimize.minimize_scalar(miss, bounds=around, method="bounded", options={"xatol": 1e-7})
+    return math.exp(found.x)
 
 
 def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[Judged]:
@@ -481,10 +416,9 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
     n = len(y)
     x = np.log(v) - np.mean(np.log(v))
     powers = np.column_stack([np.ones_like(x), x, x**2])
-    posterior, _, _ = curves.posterior((y - np.mean(y))[:, None])
+    posterior, _, _ = curves.posterior(y - np.mean(y))
     # A law is judged with all sizes of errors alike.
-    likelihood = posterior[..., 0].sum(axis=1) * np.exp(-curves.errors.size_prior)
-    likelihood = likelihood / likelihood.sum()
+    likelihood = posterior.sum(axis=1) * np.exp(-curves.errors.size_prior)
     share, size = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
     shapes = curves.errors.shapes
     sizes = curves.errors.sizes
@@ -493,20 +427,23 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
     further = shape.shape[1] - 1
     likely = shapes[share] * sizes[share, size] ** 2
     root = np.linalg.cholesky(likely)
-    heavy = np.nonzero(likelihood > 1e-4)
-    covariances = shapes[heavy[0]] * sizes[heavy][:, None, None] ** 2
-    weights = likelihood[heavy] / likelihood[heavy].sum()
-    smooth = _rest(covariances, shape, y)
+    of_share = likelihood.sum(axis=1)
+    smooth = _rest(shapes, shape, y)
+    left = n - shape.shape[1]
     judged = []
     for name, law in LAWS.items():
         a = _least_squares(law, v, y, root)
         fitted = law.log_r(a, v)
         slope = (law.log_r(a * 1.001, v) - law.log_r(a * 0.999, v)) / (0.002 * a)
         misfit = y - fitted
-        worse = np.maximum(_rest(covariances, slope[:, None], misfit) - smooth, 0.0)
+        worse = np.maximum(_rest(shapes, slope[:, None], misfit) - smooth, 0.0)
         probability = math.nan
-        if further:
-            probability = float(weights @ special.chdtrc(further, worse))
+        if further and is_known:
+            chances = special.chdtrc(further, worse / sizes[:, 0] ** 2)
+            probability = float(of_share @ chances / of_share.sum())
+        elif further and left:
+            chances = special.fdtrc(further, left, worse / further / (smooth / left))
+            probability = float(chances[of_share > _UNLIKELY * of_share.max()].max())
         r = impacts.restitution
         errors = r - np.exp(fitted)
         inverse = np.linalg.inv(likely)
@@ -608,13 +545,18 @@ def _verdict(probability: float, some_rejected: bool, is_known: bool) -> str:
 
 @dataclass(frozen=True, repr=False)
 class Fit:
-    """r at a speed with its 95 % interval, the laws, and what else is known of the recording."""
+    """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
+
+    ``without_scatter`` is the interval if impacts do not scatter; None if it is the same, or if the
+    impacts contradict it. ``scatter`` is the root mean square of the deviations of single impacts.
+    """
 
     recording: Recording
     impacts: Impacts
     speed: float
     restitution: float
     interval: tuple[float, float]
+    without_scatter: tuple[float, float] | None
     scatter: float
     slope: float
     laws: tuple[Judged, ...]
@@ -644,13 +586,16 @@ class Fit:
     def lines(self) -> list[str]:
         """The answer, line by line."""
         v = self.impacts.speed
-        low, high = self.interval
         title = self.recording.head.get("title", self.recording.name)
-        span = f"{v.min():.3g} to {v.max():.3g} m/s"
+        speeds = span(v.min(), v.max(), form="g")
+        interval = span(*self.interval, 4)
+        if self.without_scatter is not None:
+            still = span(*self.without_scatter, 4)
+            interval += f" if impacts scatter, {still} if they do not"
         return [
-            f"{title}: {len(v)} impacts at {span}, from {self.recording.kind}",
-            f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {low:.4f} to {high:.4f}; "
-            f"r goes as v^{self.slope:+.3f}, and impacts scatter about it by {self.scatter:.4f}",
+            f"{title}: {len(v)} impacts at {speeds} m/s, from {self.recording.kind}",
+            f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {interval}",
+            f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}",
             *(["", *aligned(self.table)] if self.laws else []),
             *self.timed,
             *(f"! {note}" for note in self.notes),
@@ -687,7 +632,7 @@ class Fit:
         return aligned([["v in m/s", "r", "ratio", "by drag"], *rows])
 
     def __repr__(self) -> str:
-        return "\n".join(self.lines[:2])
+        return "\n".join(self.lines[:3])
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
@@ -697,8 +642,8 @@ class Fit:
             "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in line) + "</tr>"
             for line in self.table
         )
-        first, second, *_ = self.lines
-        return f"<p>{escape(first)}</p><p>{escape(second)}</p><table>{rows}</table>"
+        lines = "".join(f"<p>{escape(line)}</p>" for line in self.lines[:3])
+        return f"{lines}<table>{rows}</table>"
 
     def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
         """Return the bounce at this speed, with the contact time of the recording if it has one.
@@ -722,6 +667,10 @@ class Fit:
     def design(self, engine: str = "generic", time_step: Quantity = None, **more: Any) -> Design:
         """Return the design of an engine for this bounce; ``more`` belongs to the bounce."""
         return design(self.bounce(**more), engine, time_step)
+
+
+def _of_logs(estimate: Estimate) -> tuple[float, float]:
+    return min(math.exp(estimate.low), 1.0), min(math.exp(estimate.high), 1.0)
 
 
 def fit(
@@ -785,19 +734,19 @@ def fit(
         unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s"}
         known = positive("resolution", stated, unit.get(recording.kind, ""))
     curves = curves_of(impacts, errors_of(impacts, known), at)
-    centre, low, high, slope = interval(curves, impacts.log_r)
+    scattering, still = estimates(curves, impacts.log_r)
     if not 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max():
         notes.append(f"{at:.3g} m/s is outside of the measured speeds")
     is_known = known is not None
     if not is_known:
-        notes.append("no errors are given: a law can only deviate by more than the scatter")
+        notes.append("no errors are given: a law can only be said to deviate")
     laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
     if laws and all(each.probability < REJECTED for each in laws):
         notes.append("no law fits: r is that of a smooth curve")
     durations = recording.durations
     if contact_time is not None:
         durations = np.array([positive("contact time", contact_time, "s")])
-    restitution = min(math.exp(centre), 1.0)
+    restitution = min(math.exp(scattering.value), 1.0)
     times: list[Timed] = []
     if durations is not None:
         times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)
@@ -806,9 +755,10 @@ def fit(
         impacts=impacts,
         speed=at,
         restitution=restitution,
-        interval=(math.exp(low), min(math.exp(high), 1.0)),
+        interval=_of_logs(scattering),
+        without_scatter=None if still is None else _of_logs(still),
         scatter=scatter_of(impacts, curves),
-        slope=slope,
+        slope=scattering.slope,
         laws=tuple(laws),
         times=tuple(times),
         mass=kilograms,

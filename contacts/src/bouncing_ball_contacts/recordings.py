@@ -181,6 +181,8 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
             raise Refused(f"{name} has no column of intervals")
         # A list without a heading is one of intervals as well.
         times = columns.pop("time", np.empty(0))
+        if "interval" not in columns and np.all(np.diff(times[np.isfinite(times)]) > 0):
+            raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
         columns.setdefault("interval", times)
     return _measured(name, columns, head, table)
 

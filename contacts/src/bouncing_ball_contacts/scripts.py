@@ -4,7 +4,7 @@ import math
 
 from bouncing_ball_contacts.designs import Design
 from bouncing_ball_contacts.engines import filled, text_of
-from bouncing_ball_contacts.units import Refused
+from bouncing_ball_contacts.units import Refused, span
 
 # The scripts of engines with several contacts are the same.
 _FAMILIES = {
@@ -96,8 +96,8 @@ def drop_script(design: Design) -> str:
     texts["steps"] = str(steps)
     # At this step the ball is in contact.
     texts["fall"] = str(math.ceil(fall / row.step) + 1)
-    texts["rise"] = f"{low**2 * gap:.3g} to {high**2 * gap:.3g}"
-    texts["leave"] = f"{low:.3f} to {high:.3f}"
+    texts["rise"] = span(low**2 * gap, high**2 * gap, form="g")
+    texts["leave"] = span(low, high)
     texts["recipe"] = design.snippet
     ball, box = _SHAPES.get(family, ("", ""))
     texts["shape"] = filled(box if bounce.points > 1 else ball, texts)

@@ -137,7 +137,9 @@ def within(name: str, value: Any, low: float, high: float) -> float:
     """Return a number without a unit, which may be in per cent, and refuse it outside a range."""
     number = in_si(name, value, "")
     if not low <= number <= high:
-        raise Refused(f"{name} = {number:g} is not between {low:g} and {high:g}")
+        is_share = high == 1 < number <= 100
+        meant = f"; {number:g} % is written {number / 100:g} or '{number:g} %'" if is_share else ""
+        raise Refused(f"{name} = {number:g} is not between {low:g} and {high:g}{meant}")
     return number
 
 
@@ -148,6 +150,13 @@ def density_of(value: Any) -> float:
     if isinstance(value, str) and not re.search(r"\d", value):
         raise Refused(f"density: {value!r} is none of {', '.join(DENSITIES)}, and no number")
     return positive("density", value, "kg/m^3")
+
+
+def span(low: float, high: float, digits: int = 3, form: str = "f") -> str:
+    """Return both ends of a range with as many digits as tell them apart: ``0.6001 to 0.6004``."""
+    while low != high and f"{low:.{digits}{form}}" == f"{high:.{digits}{form}}" and digits < 9:
+        digits += 1
+    return f"{low:.{digits}{form}} to {high:.{digits}{form}}"
 
 
 def show(value: float, unit: str, digits: int = 3) -> str:

@@ -115,6 +115,12 @@ CASES = [
 ]
 
 
+def in_words(parameters):
+    if parameters is None:
+        return "defaults"
+    return ", ".join(f"{name} = {value}" for name, value in parameters.items())
+
+
 def main():
     wrong = 0
     print("| engine | ball | table | r | engine | at rest, mm | engine |")
@@ -132,7 +138,7 @@ def main():
         agrees = low - 1e-3 <= r <= high + 1e-3
         agrees &= bool(np.isclose(rest, found.outcome.rest, rtol=0.02))
         wrong += not agrees
-        texts = [name, str(one), str(other or "defaults"), f"{low:.4f} to {high:.4f}", f"{r:.4f}"]
+        texts = [name, in_words(one), in_words(other), f"{low:.4f} to {high:.4f}", f"{r:.4f}"]
         texts += [f"{found.outcome.rest * 1e3:.4g}", f"{rest * 1e3:.4g}"]
         print(f"| {' | '.join(texts)} |{'' if agrees else ' (differs)'}", flush=True)
     sys.exit(wrong > 0)

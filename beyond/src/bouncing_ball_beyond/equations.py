@@ -105,10 +105,9 @@ class OrbitEquations:
 
     def rows(self, which) -> "OrbitEquations":
         """The equations of some of the rows, by an index, a slice or a mask of them."""
-        arrays = {name: each for name, each in self.ball.parameters.items() if np.ndim(each)}
         return replace(
             self,
-            ball=self.ball.at(**{name: each[which] for name, each in arrays.items()}),
+            ball=self.ball.rows(which),
             periods=_some(self.periods, which),
             amplitude=_some(self.amplitude, which),
         )
@@ -116,8 +115,7 @@ class OrbitEquations:
     @cached_property
     def _beside_impacts(self) -> tuple[Ball, NDArray]:
         """The ball and Λ as columns, which go beside arrays of the shape (rows, k)."""
-        arrays = {name: each for name, each in self.ball.parameters.items() if np.ndim(each)}
-        ball = self.ball.at(**{name: each[:, np.newaxis] for name, each in arrays.items()})
+        ball = self.ball.rows(np.s_[:, np.newaxis])
         return ball, np.asarray(self.amplitude, float)[..., np.newaxis]
 
     def at(self, values) -> tuple[Ball, NDArray]:
@@ -277,8 +275,7 @@ class OrbitEquations:
     def _during(self, z) -> Callable[[NDArray], Impact]:
         """The contacts of orbits as a function of T, shape (rows, k, times)."""
         x, ball, amplitude = self.split(z)
-        arrays = {name: each for name, each in ball.parameters.items() if np.ndim(each)}
-        beside = ball.at(**{name: each[..., np.newaxis] for name, each in arrays.items()})
+        beside = ball.rows(np.s_[..., np.newaxis])
         given = x[..., 0, np.newaxis], x[..., 1, np.newaxis]
         return lambda t: beside.contact(*given, t, np.asarray(amplitude)[..., np.newaxis])
 

@@ -421,10 +421,9 @@ def shortest_contacts(
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     """The equations of one row alone, with numbers in place of arrays."""
-    arrays = {name: each for name, each in equations.ball.parameters.items() if np.ndim(each)}
     return replace(
         equations,
-        ball=equations.ball.at(**{name: float(each[i]) for name, each in arrays.items()}),
+        ball=equations.ball.rows(i),
         periods=int(np.ravel(equations.periods)[i if np.ndim(equations.periods) else 0]),
         amplitude=float(np.ravel(equations.amplitude)[i if np.ndim(equations.amplitude) else 0]),
     )

@@ -474,24 +474,24 @@ def releases(ball, phase, u, amplitude):
     releases: :func:`.one_ball.release` for arrays of one shape, (n,), and for all ϖ and ζ.
     """
     u = np.where(u == 0, SLOWEST, u)
-    given = np.array([ball.start(u), u, *table_at(phase, amplitude), amplitude])
-    parameters = np.broadcast_arrays(u, ball.frequency_ratio, ball.zeta, ball.kappa)[1:]
+    given = [ball.start(u), u, *table_at(phase, amplitude), amplitude]
+    rows = np.array([0 * u, *given])
+    given = np.broadcast_arrays(*given, ball.frequency_ratio, ball.zeta, ball.kappa)
     closed = has_closed_form(ball)
-    motion = contacts if closed else _by_doubling
+    of_time = contacts if closed else _by_doubling
     fewest = FEW if closed else 1
     duration = np.full(u.shape, np.inf)
     speed = np.full(u.shape, np.nan)
     left = np.arange(u.size)
-    rows = np.array([0 * u, *given])
     while left.size >= fewest:
         s, gap, u, x, y, amplitude = rows
         ratio = ball.frequency_ratio
         zeta = ball.zeta
         kappa = ball.kappa
         resonant = 0.0 if closed else 1.0 * _resonates(ratio, zeta)
-        position, rate, push, shove = motion(s, gap, u, x, y, 1.0, ratio, zeta)
+        motion = of_time(s, gap, u, x, y, 1.0, ratio, zeta)
         f, slope, second, third, bend, jerk, lasts = bounds(
-            position, rate, push, shove, amplitude, ratio, zeta, kappa, resonant
+            motion, amplitude, ratio, zeta, kappa, resonant
         )
         above = np.maximum(f, 0.0)
         step, last = safe_steps(s, above, slope, -second - kappa * third, bend, jerk)
@@ -502,14 +502,13 @@ def releases(ball, phase, u, amplitude):
         if done.any():
             released = left[last]
             duration[released] = rows[0, last]
-            speed[released] = (rate + step * (second + step * third / 2))[last]
+            speed[released] = (motion[1] + step * (second + step * third / 2))[last]
             (going,) = (~done).nonzero()
             left = left[going]
             rows = rows.take(going, axis=1)
             ball = ball.rows(going)
     for i in left:
-        found = one_ball.release(*given[:, i], *(each[i] for each in parameters))
-        duration[i], speed[i] = found
+        duration[i], speed[i] = one_ball.release(*(each[i] for each in given))
     return duration, speed
 
 

@@ -176,7 +176,7 @@ class _System:
         ``derivatives`` are those of the legs at z and, if impacts have a T, on both sides of z.
         """
         if border is None:
-            value, gradient = value_and_gradient(self.equations, self.kind, z[np.newaxis])
+            value, gradient, _ = value_and_gradient(self.equations, self.kind, z[np.newaxis])
             return value[0], gradient[0], None, None
         size = len(border.v)
         matrix = np.zeros((size + 1, size + 1))
@@ -236,7 +236,7 @@ class _System:
             except np.linalg.LinAlgError:
                 break
             z = z + step
-            small = np.abs(step).max() < tolerance * (1 + np.abs(z).max())
+            small = np.all(np.abs(step) < tolerance * (1 + np.abs(z)))
             if small and abs(value) < ZERO:
                 return _Point(z, tangent, new, bent)
         raise OrbitNotFound(f"no {self.kind} is found: Newton's method does not converge")

@@ -21,7 +21,7 @@ FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
 
 ROUNDING = 4 * np.finfo(float).eps
-"""Rounding errors of the equations, relative to the largest unknown."""
+"""Rounding errors of the equations, relative to their largest terms."""
 
 DENSE = 16
 """Systems of more legs are halved: libraries of linear algebra start threads for large matrices."""
@@ -526,8 +526,8 @@ def newton(
         By default the parameter is fixed.
     iterations : int
     tolerance : float
-        The largest last step relative to 1 + |z|. Steps fall quadratically, so that the error after
-        one of 1e-11 is that of rounding.
+        The largest last step of an unknown relative to 1 + |z|. Steps fall quadratically, so that
+        the error after one of 1e-11 is that of rounding.
 
     Returns
     -------
@@ -545,12 +545,14 @@ def newton(
         solution = solve_bordered(linear.derivatives, right, border, border_right)
         step = solution[..., 0]
         z = z + step
-        size = np.abs(z).max(axis=1)
         defect = np.abs(linear.legs).max(axis=(1, 2))
+        moved = (np.abs(step) / (1 + np.abs(z))).max(axis=1)
+        # Lengths in the equations are of the size of Λ, or of the times and the speeds.
+        _, amplitude = equations.at(z[:, equations.size :])
+        size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
         # Steps become small, or they are made of nothing but rounding errors of the equations.
-        found = np.abs(step).max(axis=1) < tolerance * (1 + size)
-        found |= defect < ROUNDING * (1 + size)
-        if (found | np.isnan(size)).all():
+        found = (moved < tolerance) | (defect < ROUNDING * (1 + size))
+        if (found | np.isnan(moved)).all():
             break
     # Far away, where times have no digits left, steps are small as well.
     found &= defect < 1e-7

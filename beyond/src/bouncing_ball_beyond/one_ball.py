@@ -219,8 +219,9 @@ contact = contact_by(math)
 def bounds_by(functions):
     """The bounds of the search for a release, by the functions of numbers or of arrays."""
 
-    def bounds(position, rate, push, shove, amplitude, ratio, zeta, kappa, resonant):
-        r"""f = -δ - κδ′ in a contact, -f′ and f″, K and J, and whether the contact lasts for ever.
+    def bounds(motion, amplitude, ratio, zeta, kappa, resonant):
+        r"""f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
+        what :func:`contact` returns.
 
         What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² =
         F′² + ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
@@ -230,6 +231,7 @@ def bounds_by(functions):
         Next to the resonance, where ``resonant`` is 1 and not 0, F is all of f besides 1/ϖ², and
         forced by l = Λ√(1 + κ²) at most, so that e grows by 2l/ϖ at most in a time of 2/ϖ.
         """
+        position, rate, push, shove = motion
         loss = 2 * zeta * ratio
         stiffness = ratio * ratio
         detuning = (ratio - 1) * (ratio + 1)
@@ -267,16 +269,16 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
         u = SLOWEST
     s = 0.0
     while s < PATIENCE:
-        position, rate, push, shove = contact(s, gap, u, x, y, 1.0, ratio, zeta)
+        motion = contact(s, gap, u, x, y, 1.0, ratio, zeta)
         f, slope, second, third, bend, jerk, lasts = bounds(
-            position, rate, push, shove, amplitude, ratio, zeta, kappa, 0.0
+            motion, amplitude, ratio, zeta, kappa, 0.0
         )
         if lasts:
             break
         step, last = safe_step(s, max(f, 0.0), slope, -second - kappa * third, bend, jerk)
         s += step
         if last:
-            return s, rate + step * (second + step * third / 2)
+            return s, motion[1] + step * (second + step * third / 2)
     return math.inf, math.nan
 
 

@@ -12,6 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
 
+GUESSED = 1e-4
+"""The last step to a guess, over the speed: it is solved by the secant method to the square of it,
+which Newton's method needs next to a saddle-node, where phases are as the roots of speeds."""
+
 
 class OrbitNotFound(ValueError):
     """There is no such orbit, or it is not found: one line with what was looked for, and why."""
@@ -301,7 +305,7 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
             before = excess
             u = u + step
             psi = side * np.arccos(np.clip((u - np.pi * periods) / amplitude, -1, 1))
-            if np.all(np.abs(step) < 1e-7 * u):
+            if np.all(np.abs(step) < GUESSED * u):
                 break
     # The impacts of a corrected ball are at the centroids themselves.
     touch = psi if isinstance(ball, Corrected) else psi - np.where(known, centroid, 0.0)
@@ -570,11 +574,15 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     x = x[(x[..., 1] > 0).all(axis=1) & lasting & (equations.ends(z).flight > 0).all(axis=1)]
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
-    first = x[..., 1].round(6).argmax(axis=1)[:, np.newaxis] + np.arange(k)
+    # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.
+    rank = x[..., 1].round(6) - 1e-8 * (x[..., 0] % (2 * np.pi))
+    first = rank.argmax(axis=1)[:, np.newaxis] + np.arange(k)
     x = np.take_along_axis(np.concatenate([x, later], axis=1), first[..., np.newaxis], axis=1)
     x[..., 0] -= 2 * np.pi * np.floor(x[:, :1, 0] / (2 * np.pi) + 1e-9)
     for j in range(1, k):
-        again = np.abs(np.roll(x, j, axis=1) - x)[..., 1:].max(axis=(1, 2)) < 1e-7
+        change = np.roll(x, j, axis=1) - x
+        change[..., 0] -= 2 * np.pi * np.round(change[..., 0] / (2 * np.pi))
+        again = np.abs(change).max(axis=(1, 2)) < 1e-7
         x = x[~again] if k % j == 0 else x
     rows = x.reshape(len(x), equations.size)
     rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]

@@ -373,7 +373,8 @@ def turns_back(slope, value, ends, *, first: bool = False) -> NDArray:
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
-    samples = int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
+    longest = np.max(ends, initial=0.0, where=np.isfinite(ends))
+    samples = int(np.clip(32 * longest / (2 * np.pi), 32, 2000)) + 1
     times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
     slopes = slope(times)
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)

@@ -12,10 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
 
-GUESSED = 1e-4
-"""The last step to a guess, over the speed: it is solved by the secant method to the square of it,
-which Newton's method needs next to a saddle-node, where phases are as the roots of speeds."""
-
 
 class OrbitNotFound(ValueError):
     """There is no such orbit, or it is not found: one line with what was looked for, and why."""
@@ -305,7 +301,7 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
             before = excess
             u = u + step
             psi = side * np.arccos(np.clip((u - np.pi * periods) / amplitude, -1, 1))
-            if np.all(np.abs(step) < GUESSED * u):
+            if np.all(np.abs(step) < 1e-7 * u):
                 break
     # The impacts of a corrected ball are at the centroids themselves.
     touch = psi if isinstance(ball, Corrected) else psi - np.where(known, centroid, 0.0)

@@ -190,7 +190,7 @@ def test_all_digits_near_resonance_and_critical_damping(ratio, zeta):
     """Values and all first derivatives of contacts against 60 digits, from short to long."""
     with mpmath.workdps(60):
         step = mpmath.mpf(10) ** -18
-        for own_time in (1e-6, 0.8, 3.0, 9.0):
+        for own_time in (1e-6, 0.8, 3.0, np.pi, 9.0):
             given = [own_time / ratio, 0.7, -0.1 / ratio, 1.3, 1.8, 1.0, ratio, zeta]
             found = np.array(in_contact(*given))
             expected = sixty_digits(*given)

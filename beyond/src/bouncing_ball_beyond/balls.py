@@ -9,6 +9,7 @@ imaginary part H f′(x).
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -32,7 +33,16 @@ DELICATE = 0.25
 flights = one_ball.flight_by(np)
 """The motion in flight, for arrays."""
 
-contacts = one_ball.contact_by(np)
+
+def sin(x):
+    """The sine, which numpy finds faster for many real numbers by the tangent of x/2."""
+    if np.iscomplexobj(x):
+        return np.sin(x)
+    half = np.tan(x / 2)
+    return 2 * half / (1 + half * half)
+
+
+contacts = one_ball.contact_by(SimpleNamespace(sin=sin, sqrt=np.sqrt, expm1=np.expm1))
 """The motion in contact, for arrays."""
 
 bounds = one_ball.bounds_by(np)

@@ -236,7 +236,7 @@ class _System:
             except np.linalg.LinAlgError:
                 break
             z = z + step
-            small = np.all(np.abs(step) < tolerance * (1 + np.abs(z)))
+            small = np.all(np.abs(step) < tolerance * self.equations.sizes(z[np.newaxis]))
             if small and abs(value) < ZERO:
                 return _Point(z, tangent, new, bent)
         raise OrbitNotFound(f"no {self.kind} is found: Newton's method does not converge")

@@ -130,6 +130,12 @@ class OrbitEquations:
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
         return x, *self.at(z[:, self.size :])
 
+    def sizes(self, z) -> NDArray:
+        """1 + the largest unknown of the impacts, and 1 + |p| of parameters, shape (rows, N)."""
+        sizes = 1 + np.abs(z)
+        sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
+        return sizes
+
     def following(self, x) -> NDArray:
         """For each impact the next one; after the last the first, m periods later."""
         following = np.concatenate([x[:, 1:], x[:, :1]], axis=1)
@@ -373,8 +379,7 @@ def turns_back(slope, value, ends, *, first: bool = False) -> NDArray:
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
-    longest = np.max(ends, initial=0.0, where=np.isfinite(ends))
-    samples = int(np.clip(32 * longest / (2 * np.pi), 32, 2000)) + 1
+    samples = int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
     times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
     slopes = slope(times)
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
@@ -527,7 +532,7 @@ def newton(
         By default the parameter is fixed.
     iterations : int
     tolerance : float
-        The largest last step of an unknown relative to 1 + |z|. Steps fall quadratically, so that
+        The largest last step, in units of `OrbitEquations.sizes`. Steps fall quadratically, so that
         the error after one of 1e-11 is that of rounding.
 
     Returns
@@ -547,7 +552,7 @@ def newton(
         step = solution[..., 0]
         z = z + step
         defect = np.abs(linear.legs).max(axis=(1, 2))
-        moved = (np.abs(step) / (1 + np.abs(z))).max(axis=1)
+        moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
         # Lengths in the equations are of the size of Λ, or of the times and the speeds.
         _, amplitude = equations.at(z[:, equations.size :])
         size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])

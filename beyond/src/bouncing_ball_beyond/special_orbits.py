@@ -228,7 +228,7 @@ def special_near(
         size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
         finite &= size < LONG
         z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)
-        small = np.all(np.abs(step) < 1e-11 * (1 + np.abs(z[left])), axis=1)
+        small = np.all(np.abs(step) < 1e-11 * part.sizes(z[left]), axis=1)
         found[left] = finite & small
         left = left[finite & ~small]
         if left.size == 0:

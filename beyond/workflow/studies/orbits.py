@@ -10,7 +10,7 @@ from scipy.optimize.elementwise import find_root
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
 from bouncing_ball_beyond.continuation import follow
-from bouncing_ball_beyond.equations import OrbitEquations, solved_or_nan
+from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 
@@ -126,7 +126,7 @@ def solved(
         gradient = np.stack([conditions(z + step).imag / H for step in steps], axis=-1)
         matrix = np.concatenate([jacobian, gradient], axis=1)
         values = np.concatenate([residuals, conditions(z)], axis=1)
-        z = z - solved_or_nan(matrix, values[..., np.newaxis])[..., 0]
+        z = z - np.linalg.solve(matrix, values[..., np.newaxis])[..., 0]
     return z
 
 

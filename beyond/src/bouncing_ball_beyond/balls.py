@@ -9,7 +9,6 @@ imaginary part H f′(x).
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -33,16 +32,7 @@ DELICATE = 0.25
 flights = one_ball.flight_by(np)
 """The motion in flight, for arrays."""
 
-
-def sin(x):
-    """The sine, which numpy finds faster for many real numbers by the tangent of x/2."""
-    if np.iscomplexobj(x):
-        return np.sin(x)
-    half = np.tan(x / 2)
-    return 2 * half / (1 + half * half)
-
-
-contacts = one_ball.contact_by(SimpleNamespace(sin=sin, sqrt=np.sqrt, expm1=np.expm1))
+contacts = one_ball.contact_by(np)
 """The motion in contact, for arrays."""
 
 bounds = one_ball.bounds_by(np)
@@ -240,28 +230,77 @@ def table_at(phase, amplitude):
     return amplitude * (1 - half * sine), amplitude * sine
 
 
+def sin_cos(x):
+    """Sine and cosine, which numpy finds faster for many real numbers by the tangent of x/2."""
+    if np.iscomplexobj(x) or np.size(x) < 200:
+        return np.sin(x), np.cos(x)
+    half = np.tan(x / 2)
+    sin = 2 * half / (1 + half * half)
+    return sin, 1 - half * sin
+
+
 def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     """δ and δ′ a time s after an impact has started at the time τ, from δ = gap and δ′ = -u.
 
     They solve δ″ + 2ζϖδ′ + ϖ²δ = -g + Λ sin(τ + s), Eq. 11.
     """
-    x = amplitude * np.cos(tau)
-    y = amplitude * np.sin(tau)
     near = s * s * ((ratio - 1) * (ratio - 1) + zeta * zeta)
     critical = s * s * ratio * ratio * (1 - zeta * zeta)
-    # This is also true for ζ > 1.
-    delicate = (np.abs(near) < 1) | (np.real(critical) < 1)
-    given = s, gap, u, x, y, gravity, ratio, zeta
+    delicate = (np.abs(near) < 1) | (np.abs(critical) < 1)
+    given = s, tau, gap, u, amplitude, gravity, ratio, zeta
     if not np.any(delicate):
-        return contacts(*given)[:2]
+        return _closed_form(*given)
     if np.all(delicate):
-        return _by_doubling(*given)[:2]
+        return _doubled(*given)
     given = np.broadcast_arrays(*given)
     delicate = np.broadcast_to(delicate, given[0].shape)
     with np.errstate(all="ignore"):  # of the closed form where it is not used
-        position, rate, _, _ = (np.asarray(each) for each in contacts(*given))
-    position[delicate], rate[delicate], _, _ = _by_doubling(*(each[delicate] for each in given))
+        position, rate = (np.asarray(each) for each in _closed_form(*given))
+    position[delicate], rate[delicate] = _doubled(*(each[delicate] for each in given))
     return position[()], rate[()]
+
+
+def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """Eqs. 12 and 13: a decaying oscillation about a steady one, a sin(τ + s) + b cos(τ + s)."""
+    stiffness = ratio * ratio
+    decay = zeta * ratio
+    scale = amplitude / ((stiffness - 1) * (stiffness - 1) + 4 * decay * decay)
+    a = scale * (stiffness - 1)
+    b = -2 * scale * decay
+    rest = -gravity / stiffness
+    sin_start, cos_start = sin_cos(tau)
+    sin_end, cos_end = sin_cos(tau + s)
+    c = gap - rest - a * sin_start - b * cos_start
+    d = -u - a * cos_start + b * sin_start + decay * c
+    cosine, sine = _decaying(s, ratio, zeta)
+    position = c * cosine + d * sine
+    rate = (d - decay * c) * cosine - (stiffness * (1 - zeta * zeta) * c + decay * d) * sine
+    return position + rest + a * sin_end + b * cos_end, rate + a * cos_end - b * sin_end
+
+
+def _decaying(s, ratio, zeta):
+    """e^{-ζϖs} cos ωs and e^{-ζϖs} sin(ωs)/ω with ω = ϖ√(1 - ζ²), which is imaginary for ζ > 1."""
+    over = np.real(zeta) > 1
+    square = (1 - zeta) * (1 + zeta)
+    omega = ratio * np.sqrt(np.where(over, 0.75, square))
+    envelope = np.exp(-np.where(over, 0.5, zeta) * ratio * s)
+    sin, cos = sin_cos(omega * s)
+    cosine = envelope * cos
+    sine = envelope * sin / omega
+    if not np.any(over):
+        return cosine, sine
+    root = np.sqrt(np.where(over, -square, 0.75))
+    slow = np.exp(-ratio * s / (zeta + root))
+    fast = np.exp(-ratio * s * (zeta + root))
+    cosine = np.where(over, (slow + fast) / 2, cosine)
+    return cosine, np.where(over, (slow - fast) / (2 * ratio * root), sine)
+
+
+def _doubled(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """δ and δ′ by :func:`_by_doubling`."""
+    x = amplitude * np.cos(tau)
+    y = amplitude * np.sin(tau)
+    return _by_doubling(s, gap, u, x, y, gravity, ratio, zeta)[:2]
 
 
 def _by_doubling(s, gap, u, x, y, gravity, ratio, zeta):

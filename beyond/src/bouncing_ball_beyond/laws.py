@@ -227,15 +227,14 @@ class ForceLaw(Ball):
         """
         u = np.asarray(u)[..., np.newaxis]
         law = self.at(**{name: np.asarray(x)[..., np.newaxis] for name, x in self.values.items()})
-        speeds = u * np.concatenate([1 + SHIFT * SHIFTS, np.ones(7)])
-        # An impact lasts some three times P/u: u²/3P would stop the ball in about this time.
-        load = SHIFT * np.real(u * u / (3 * law.depth(u)))
-        loads = load * np.concatenate([np.zeros(6), SHIFTS, [0.0]])
-        _, impact = law.first_impact(0.0, speeds, 0.0, loads)
-        impulse = speeds + impact.speed + loads * impact.duration
-        by_speed = impulse[..., :6] @ WEIGHTS / (SHIFT * u[..., 0])
-        by_load = impulse[..., 6:12] @ WEIGHTS / load[..., 0]
-        gap, speed, duration = (x[..., 12] for x in (impact.gap, impact.speed, impact.duration))
+        speeds = u * np.append(1 + SHIFT * SHIFTS, 1.0)
+        impact = law.first_impact(0.0, speeds, 0.0, 0.0)[1]
+        by_speed = (speeds + impact.speed)[..., :6] @ WEIGHTS / (SHIFT * u[..., 0])
+        gap, speed, duration = (x[..., 6] for x in (impact.gap, impact.speed, impact.duration))
+        # A load that would stop the ball, within a duration of the contact, after it has left.
+        load = SHIFT * np.real(speed / duration)[..., np.newaxis]
+        loaded = law.first_impact(0.0, u, 0.0, load * SHIFTS)[1]
+        by_load = (loaded.speed + load * SHIFTS * loaded.duration) @ WEIGHTS / load[..., 0]
         r = speed / u[..., 0]
         centroid = r * (duration - gap / speed) / (1 + r)
         return Signature(r, duration, centroid, by_load - centroid * by_speed)

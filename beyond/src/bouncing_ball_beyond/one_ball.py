@@ -184,23 +184,23 @@ def contact_by(functions):
             h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
 
         Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
+        Numbers are real: complex steps lose theirs where a tangent has a pole.
         """
         loss = 2 * zeta * ratio
         stiffness = ratio * ratio
         detuning = (ratio - 1) * (ratio + 1)
         omega = ratio * functions.sqrt((1 - zeta) * (1 + zeta))
-        sine = functions.sin(s)
-        half = functions.sin(s / 2)
-        versine = 2 * half * half
-        cosine = 1 - versine
-        half = functions.sin(omega * s / 2)
-        swung = 2 * half * half
+        half = functions.tan(s / 2)
+        sine = 2 * half / (1 + half * half)
+        cosine = 1 - half * sine
+        swing = functions.tan(omega * s / 2)
+        swung = 2 * swing / (1 + swing * swing)
         lost = -functions.expm1(-zeta * ratio * s)
         decay = 1 - lost
-        g = decay * functions.sin(omega * s) / omega
-        slope = decay * (1 - swung) - zeta * ratio * g
-        lost = lost + decay * swung - zeta * ratio * g
-        real = lost - versine
+        g = decay * swung / omega
+        slope = decay * (1 - swing * swung) - zeta * ratio * g
+        lost += decay * swing * swung - zeta * ratio * g
+        real = lost - half * sine
         imaginary = sine - g
         scale = detuning * detuning + loss * loss
         in_phase = (real * detuning + imaginary * loss) / scale

@@ -1,5 +1,6 @@
 """Branches and cascades against closed forms, the replication, simulation and universal ratios."""
 
+import mpmath
 import numpy as np
 import pytest
 from integrated import around, leg
@@ -151,6 +152,87 @@ def test_cascades_are_complete_up_to_64_impacts(ball):
     # Between two doublings orbits are stable; one with a multiplier of 1 or -1 is at each end.
     for each in branches:
         assert each.stable[1:-1].all() and each.admissible[1:-1].all()
+
+
+@mpmath.workdps(30)
+def hessian_of_action(psi):
+    """det ∂²W of an elastic ball with impacts at π/2 ∓ ψ and flights of 6π ± 2ψ, at Λ = ψ/sin ψ.
+
+    W(τ₁, τ₂) is the action of both flights. It is stationary at orbits, and the determinant is zero
+    where a multiplier is 1.
+    """
+    amplitude = psi / mpmath.sin(psi)
+
+    def flight(begin, end):
+        z, z_end = (amplitude * mpmath.sin(tau) for tau in (begin, end))
+        time = end - begin
+        return (z_end - z) ** 2 / (2 * time) - (z + z_end) * time / 2 - time**3 / 24
+
+    def action(first, second):
+        return flight(first, second) + flight(second, first + 12 * mpmath.pi)
+
+    place = mpmath.pi / 2 - psi, mpmath.pi / 2 + psi + 6 * mpmath.pi
+    assert all(abs(mpmath.diff(action, place, by)) < 1e-20 for by in ((1, 0), (0, 1)))
+    orders = ((2, 0), (1, 1), (0, 2))
+    first, mixed, second = (mpmath.diff(action, place, by) for by in orders)
+    return float(first * second - mixed**2)
+
+
+def test_an_elastic_cascade_ends_where_its_orbits_lose_their_symmetry():
+    """A pitchfork: beyond it there are two more orbits, each the other one in reversed time."""
+    psi = brentq(hessian_of_action, 1.5, 1.7, xtol=1e-13)
+    place = psi / np.sin(psi)
+    assert place == pytest.approx(1.58947842974, abs=1e-11)
+    doubling = limits(Rigid(1.0), n=3).period_doubling
+    below, above = (follow(doubling, to=place + d).orbits[-1] for d in (-1e-4, 1e-4))
+    assert below.stable and not above.stable
+    assert (place - below.amplitude) / (above.amplitude - below.amplitude) == pytest.approx(
+        (1 - below.turn) / (above.turn - below.turn), abs=1e-3
+    )
+    (only,) = cascade(doubling, to=3.0)
+    assert only.special == () and only.impacts == 2
+    assert "near amplitude = 1.59 a multiplier passes 1 without a saddle-node" in only.end
+    assert len(orbits(Rigid(1.0), impacts=2, periods=6, amplitude=1.58)) == 1
+    found = orbits(Rigid(1.0), impacts=2, periods=6, amplitude=1.6)
+    symmetric, *both = sorted(found, key=lambda each: each.stable)
+    assert not symmetric.stable and [each.stable for each in both] == [True, True]
+    # Reversed, an impact at τ is one at π - τ with the same speed.
+    before, after = ([each.times[i] % (2 * np.pi) for i in (0, 1)] for each in both)
+    assert sorted((np.pi - tau) % (2 * np.pi) for tau in before) == pytest.approx(sorted(after))
+    branches = cascade(follow(both[0], to=3.0).first("period doubling"), to=3.0, impacts=8)
+    assert [each.special[-1].kind for each in branches] == 2 * ["period doubling"]
+
+
+def test_a_branch_along_the_frequency_ratio_takes_steps_in_proportion_to_it():
+    start = orbit(SpringDamper(2.0, restitution=0.85), amplitude=1.0)
+    up = follow(start, along="frequency_ratio", to=1e6)
+    down = follow(up.orbits[-1], to=2.0)
+    assert up.end == "frequency_ratio = 1000000 is reached" and len(up) < 100 and len(down) < 100
+    assert down.orbits[-1].phase == pytest.approx(start.phase, abs=1e-10)
+    # As digits allow, each orbit is that which is found at its ϖ, whatever the size of this number.
+    for each in (up.orbits[-1], up.orbits[-9], down.orbits[9]):
+        alone = orbit(each.ball, amplitude=1.0)
+        assert abs(each.times - alone.times).max() < 1e-11
+        assert abs(each.speeds - alone.speeds).max() < 1e-11
+
+
+def test_a_refined_branch_has_no_corners():
+    start = orbit(Rigid(0.5), amplitude=1.4)
+    branch = follow(start, to=1.1)
+    fine = branch.refined()
+    assert len(fine) > 2 * len(branch)
+    assert fine.special == branch.special and fine.end == branch.end
+    # On this branch Λ cos φ = π/3.
+    phases = fine.z[:, 0]
+    assert np.abs(fine.values * np.cos(phases) - np.pi / 3).max() < 1e-11
+    assert np.abs(np.diff(phases)).max() < 0.05
+    assert set(branch.values) <= set(fine.values)
+
+
+def test_limits_are_shown_in_a_line():
+    text = repr(limits(Rigid(0.5)))
+    assert text == "Limits: saddle-node Λ = 1.047197551, period doubling Λ = 1.526823701"
+    assert repr(limits(Rigid(1.0))) == "Limits: saddle-node None, period doubling Λ = 1"
 
 
 def test_a_doubled_branch_ends_where_it_is_told_to():

@@ -7,18 +7,36 @@ gives derivatives with all digits: if x has the imaginary part H = 1e-30, then f
 imaginary part H f′(x).
 """
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from bouncing_ball_beyond import one_ball
+from bouncing_ball_beyond.one_ball import PATIENCE, REACH, ROUNDING, SLOWEST
+
 H = 1e-30
 """The imaginary part of a complex step."""
 
-PATIENCE = 100 * 2 * np.pi
-"""A contact without a release within this time, 100 periods of the table, is a lasting one."""
+FEW = 40
+"""Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
+scalar ones."""
+
+UNDERDAMPED = 0.99
+"""Contacts with a larger ζ have no closed form here."""
+
+DELICATE = 0.25
+"""Nor have those whose |ϖ² - 1 + 2iζϖ| is below this, where terms of the closed form cancel."""
+
+flights = one_ball.flight_by(np)
+"""The motion in flight, for arrays."""
+
+contacts = one_ball.contact_by(np)
+"""The motion in contact, for arrays."""
+
+bounds = one_ball.bounds_by(np)
+"""The bounds of the search for a release, for arrays."""
 
 
 class Impact(NamedTuple):
@@ -74,6 +92,11 @@ class Ball:
         new = object.__new__(type(self))
         vars(new).update(vars(self), **values)
         return new
+
+    def rows(self, which):
+        """The same ball with x[which] in place of each parameter x that is an array."""
+        arrays = {name: x[which] for name, x in self.parameters.items() if np.ndim(x)}
+        return self.at(**arrays) if arrays else self
 
     @property
     def kappa(self):
@@ -200,7 +223,14 @@ def damping_of(restitution):
     return -log / np.sqrt(np.pi**2 + log * log)
 
 
-def _sin_cos(x):
+def table_at(phase, amplitude):
+    """Λ cos τ and Λ sin τ, the velocity and the height of the table, by one tangent."""
+    half = np.tan(phase / 2)
+    sine = 2 * half / (1 + half * half)
+    return amplitude * (1 - half * sine), amplitude * sine
+
+
+def sin_cos(x):
     """Sine and cosine, which numpy finds faster for many real numbers by the tangent of x/2."""
     if np.iscomplexobj(x) or np.size(x) < 200:
         return np.sin(x), np.cos(x)
@@ -221,12 +251,12 @@ def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     if not np.any(delicate):
         return _closed_form(*given)
     if np.all(delicate):
-        return _by_doubling(*given)
+        return _doubled(*given)
     given = np.broadcast_arrays(*given)
     delicate = np.broadcast_to(delicate, given[0].shape)
     with np.errstate(all="ignore"):  # of the closed form where it is not used
         position, rate = (np.asarray(each) for each in _closed_form(*given))
-    position[delicate], rate[delicate] = _by_doubling(*(each[delicate] for each in given))
+    position[delicate], rate[delicate] = _doubled(*(each[delicate] for each in given))
     return position[()], rate[()]
 
 
@@ -238,8 +268,8 @@ def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     a = scale * (stiffness - 1)
     b = -2 * scale * decay
     rest = -gravity / stiffness
-    sin_start, cos_start = _sin_cos(tau)
-    sin_end, cos_end = _sin_cos(tau + s)
+    sin_start, cos_start = sin_cos(tau)
+    sin_end, cos_end = sin_cos(tau + s)
     c = gap - rest - a * sin_start - b * cos_start
     d = -u - a * cos_start + b * sin_start + decay * c
     cosine, sine = _decaying(s, ratio, zeta)
@@ -254,7 +284,7 @@ def _decaying(s, ratio, zeta):
     square = (1 - zeta) * (1 + zeta)
     omega = ratio * np.sqrt(np.where(over, 0.75, square))
     envelope = np.exp(-np.where(over, 0.5, zeta) * ratio * s)
-    sin, cos = _sin_cos(omega * s)
+    sin, cos = sin_cos(omega * s)
     cosine = envelope * cos
     sine = envelope * sin / omega
     if not np.any(over):
@@ -266,8 +296,15 @@ def _decaying(s, ratio, zeta):
     return cosine, np.where(over, (slow - fast) / (2 * ratio * root), sine)
 
 
-def _by_doubling(s, tau, gap, u, amplitude, gravity, ratio, zeta):
-    """The same by a Taylor series of the responses over s/2^m and m doublings.
+def _doubled(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """δ and δ′ by :func:`_by_doubling`."""
+    x = amplitude * np.cos(tau)
+    y = amplitude * np.sin(tau)
+    return _by_doubling(s, gap, u, x, y, gravity, ratio, zeta)[:2]
+
+
+def _by_doubling(s, gap, u, x, y, gravity, ratio, zeta):
+    """As :func:`.one_ball.contact_by`, by a Taylor series over s/2^m and m doublings.
 
     Nothing is divided by, so that values and derivatives keep all digits where terms of the closed
     form cancel: near the resonance ϖ = 1, ζ = 0, near ζ = 1, and in short contacts. The responses
@@ -283,29 +320,27 @@ def _by_doubling(s, tau, gap, u, amplitude, gravity, ratio, zeta):
 
     size = np.max(np.abs(s) * (1 + ratio.real * (1 + 2 * zeta.real)))
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
-    x = (s + 0 * loss) / 2.0**doublings
-    term = np.array([0 * x, 1 + 0 * x, 0 * x, 0 * x, 0 * x])
+    part = (s + 0 * loss) / 2.0**doublings
+    nothing = 0 * part
+    term = np.array([nothing, 1 + nothing, nothing, nothing, nothing])
     responses = term.copy()
     for k in range(1, 21):
-        term = x / k * rates(*term)
+        term = part / k * rates(*term)
         responses += term
     g, rate, load, sine, cosine = responses
     for _ in range(doublings):
         held = rate + loss * g
-        a = held + np.cos(x)
-        b = g + np.sin(x)
+        a = held + np.cos(part)
+        b = g + np.sin(part)
         load = (1 + held) * load + g * g
         sine, cosine = a * sine + b * cosine, a * cosine - b * sine + g * g
         g, rate = g * (held + rate), rate * rate - stiffness * g * g
-        x = 2 * x
-    sin_start = np.sin(tau)
-    cos_start = np.cos(tau)
-    forced = sin_start * cosine + cos_start * sine
-    forced_rate = sin_start * (g - sine) + cos_start * cosine
-    return (
-        gap * (rate + loss * g) - u * g - gravity * load + amplitude * forced,
-        -gap * stiffness * g - u * rate - gravity * g + amplitude * forced_rate,
-    )
+        part = 2 * part
+    position = gap * (rate + loss * g) - u * g - gravity * load + y * cosine + x * sine
+    speed = -gap * stiffness * g - u * rate - gravity * g + y * (g - sine) + x * cosine
+    sin = np.sin(s)
+    cos = np.cos(s)
+    return position, speed, y * cos + x * sin, x * cos - y * sin
 
 
 def _arc_over_root(zeta):
@@ -430,7 +465,7 @@ class SpringDamper(Ball):
     def first_release(self, tau, u, amplitude, gravity=1.0):
         """T of the first release after impacts at the times τ with the speeds u; an array.
 
-        It is NaN for a ball that stays in contact: for ever (`stays_negative`), or for `PATIENCE`.
+        It is NaN for a ball that stays in contact: for ever, or for `PATIENCE`.
 
         Examples
         --------
@@ -438,138 +473,92 @@ class SpringDamper(Ball):
         >>> ball.first_release(0.0, np.array([1.0, 1e-3]), amplitude=0.9).round(3)
         array([3.478,   nan])
         """
-        ratio = self.frequency_ratio
-        zeta = self.zeta
-        kappa = self.kappa
-        start = kappa * np.minimum(u, 0.0)
-        acceleration = amplitude * np.sin(tau) - gravity + 2 * zeta * ratio * u - ratio**2 * start
-        phase = tau + np.arctan(kappa)
-        strength = amplitude * np.sqrt(1 + kappa**2)
-        f = start - kappa * u
-        slope = kappa * acceleration - u
-        early = self._certainly_in_contact(u, np.abs(amplitude) + np.abs(gravity))
-        # A ball that is laid on the table is pressed on it as long as δ″ < 0 outweighs δ‴.
-        pressed = np.maximum(-acceleration, 0.0)
-        settles = pressed / (np.abs(amplitude) + ratio * (2 + 4 * zeta) * pressed + 1e-300)
-        early = np.where(u == 0, settles, early)
-        given = phase, f, -slope, strength, gravity, ratio, zeta
-        shape = np.broadcast_shapes(*(np.shape(each) for each in (early, *given)))
-        rows = [np.broadcast_to(x, shape).ravel() if np.ndim(x) else x for x in given]
-        release = first_rise(np.broadcast_to(early, shape).ravel(), *rows)
-        return ratio * release.reshape(shape)
-
-    def _certainly_in_contact(self, u, strength):
-        """A time before which no contact ends if the load is at most ``strength``.
-
-        A free impact of the speed u has f = -uk(s), k = e^{-ζϖs} sin(ω(D - s))/ω, and a load adds
-        at most its strength times K = ∫k ds ≤ (1 + r)/ϖ². K/k rises, because e^{-ζϖs} and the sine
-        are log-concave. The sum is thus negative before the time at which sin(ω(D - s)) = q, where
-        it is negative because k ≥ rq/ω there.
-        """
-        zeta = self.zeta
-        ratio = self.frequency_ratio
-        omega = ratio * np.sqrt(np.maximum((1 - zeta) * (1 + zeta), 0.0))
-        r, duration, _, _ = self.signature(u)
-        q = strength * (1 + r) * omega / (ratio**2 * r * np.maximum(u, 1e-300))
-        bounces = (q < 1) & (zeta < 1)
-        arc = np.arcsin(np.where(bounces, q, 0.0)) / np.where(bounces, omega, 1.0)
-        return np.where(bounces, np.maximum(duration - arc, 0.0), 0.0)
+        parameters = self.parameters
+        every = np.broadcast_arrays(tau, u, amplitude, *parameters.values())
+        flat = [each.ravel() for each in every]
+        ball = self.at(**dict(zip(parameters, flat[3:], strict=True)))
+        duration, _ = releases(ball, *flat[:3])
+        duration = duration.reshape(every[0].shape)
+        return np.where(duration < np.inf, self.frequency_ratio * duration, np.nan)
 
 
-@np.errstate(over="ignore", invalid="ignore")  # a contact without a load may vanish in time
-def first_rise(early, *given):
-    """The times of the first rises of oscillators through zero, NaN for those that do not rise.
-
-    Both releases of the contact with a spring and a damper are of this kind: f = δ + κδ′ solves
-    f″ + 2ζϖf′ + ϖ²f = -g + Λ√(1 + κ²) sin(τ + arctan κ + s).
-
-    Parameters
-    ----------
-    early : array of shape (n,)
-        Times before which f certainly does not vanish.
-    given : numbers or arrays of shape (n,)
-        The phase of the forcing, f and -f′ at the start, the amplitude of the forcing, g, ϖ and ζ.
-    """
-    time = np.array(early)
-    found = np.full(early.shape, np.nan)
-    left = np.arange(early.size)
-    for count in itertools.count(1):
-        now = time[left]
-        row = [each[left] if np.ndim(each) else each for each in given]
-        f, slope = in_contact(now, *row)
-        step, last = safe_step(now, f, slope, row[0], *row[3:])
-        time[left] += step
-        found[left[last]] = time[left[last]]
-        going = ~last
-        if count % 8 == 0:
-            stays = stays_negative(now, f, slope, row[0], *row[3:])
-            going &= np.isfinite(f) & (now < PATIENCE) & ~stays
-        left = left[going]
-        if not left.size:
-            return found
+def has_closed_form(ball):
+    """Whether :func:`.one_ball.impacts` follows the contacts of a ball."""
+    if not isinstance(ball, SpringDamper):
+        return False
+    return bool(np.all((ball.zeta <= UNDERDAMPED) & ~_resonates(ball.frequency_ratio, ball.zeta)))
 
 
-def safe_step(s, f, slope, phase, strength, gravity, ratio, zeta):
-    """A step that ends before the next rise of an oscillator through zero, or on it.
-
-    The difference y of f from its quasi-static value q = (Λ sin(φ + s) - g)/ϖ² is an oscillator
-    under the load -q″ - 2ζϖq′ of the strength l = Λ√(1 + (2ζϖ)²)/ϖ². The spring and the damper do
-    not raise e = √(y′² + ϖ²y²), which is thus at most e₀ + 2l/ϖ over a time of 2/ϖ. This limits
-    |f″| ≤ M and |f‴| ≤ J. No zero lies before that of the parabola f + f′h + Bh²/2 with B = M, or,
-    up to a reach H, with B = f″ + JH/3.
-
-    Returns
-    -------
-    step, last : array
-        The step, and whether it ends on the zero.
-    """
-    stiffness = ratio * ratio
+def _resonates(ratio, zeta):
+    """Whether |ϖ² - 1 + 2iζϖ| is small."""
+    detuning = ratio * ratio - 1
     loss = 2 * zeta * ratio
-    static = strength / stiffness
-    sin, cos = _sin_cos(phase + s)
-    height = f + gravity / stiffness - static * sin
-    rate = slope - static * cos
-    second = -stiffness * height - loss * slope
-    load = np.abs(static) * np.sqrt(1 + loss * loss)
-    speed = np.sqrt(rate * rate + stiffness * height * height) + 2 * load / ratio
-    free_bend = load + ratio * np.sqrt(1 + 4 * zeta * zeta) * speed
-    bend = free_bend + np.abs(static)
-    jerk = load + loss * free_bend + stiffness * speed + np.abs(static)
-    step = _root_of_parabola(f, slope, bend)
-    reach = np.minimum(4 * step, 2 / ratio)
-    further = _root_of_parabola(f, slope, np.minimum(second + jerk * reach / 3, bend))
-    newton = _root_of_parabola(f, slope, second)
-    # The parabola with f″ itself is wrong by Jh³/6, and its root by this over the slope.
-    last = (slope > 0) & (jerk * np.abs(newton) ** 3 < 2**-52 * slope * s)
-    step = np.where(last, newton, np.maximum(np.minimum(step, reach), np.minimum(further, reach)))
-    return step, last | (step == 0)
+    return detuning * detuning + loss * loss < DELICATE**2
 
 
-def _root_of_parabola(f, slope, bend):
-    """The first root of f + f′h + Bh²/2 for f < 0; no difference of nearly equal numbers."""
-    square = slope * slope - 2 * bend * f
-    root = np.sqrt(np.maximum(square, 0.0))
-    rising = np.where(square < 0, np.inf, -2 * f / np.maximum(slope + root, 1e-300))
-    sinking = np.where(bend > 0, (root - slope) / np.maximum(bend, 1e-300), np.inf)
-    return np.where(slope > 0, rising, sinking)
+def root_of_parabola(f, slope, bend):
+    """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is none."""
+    root = np.sqrt(slope * slope + 2 * bend * f)
+    falls = slope < 0
+    # The quotient without a difference of nearly equal numbers.
+    part = np.where(falls, 2 * f, root + slope)
+    return part / np.where(falls, root - slope, np.maximum(bend, 0.0))
 
 
-def stays_negative(s, f, slope, phase, strength, gravity, ratio, zeta):
-    """Whether an oscillator with f and f′ at the time s never rises through zero.
+def safe_steps(t, f, slope, second, bend, jerk):
+    """:func:`.one_ball.safe_step` for arrays."""
+    step = root_of_parabola(f, slope, bend)
+    reach = REACH * step
+    closer = root_of_parabola(f, slope, np.minimum(bend, jerk / 3 * reach - second))
+    step = np.maximum(step, np.fmin(reach, closer))
+    near = jerk * step * step * step <= -ROUNDING * slope * t
+    if near.any():
+        step[near] = root_of_parabola(f[near], slope[near], -second[near])
+    return step, near | (step <= ROUNDING * t)
 
-    The steady response is at most Λ/√γ - g/ϖ², γ = (ϖ² - 1)² + (2ζϖ)². What is left of the
-    transient is at most e/ϖ, where its e = √(f′² + ϖ²f²) never rises.
+
+@np.errstate(all="ignore")  # a contact without a load may vanish in time
+def releases(ball, phase, u, amplitude):
+    """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
+    releases: :func:`.one_ball.release` for arrays of one shape, (n,), and for all ϖ and ζ.
     """
-    stiffness = ratio * ratio
-    loss = 2 * zeta * ratio
-    gamma = np.maximum((stiffness - 1) * (stiffness - 1) + loss * loss, 1e-300)
-    a = strength * (stiffness - 1) / gamma
-    b = -strength * loss / gamma
-    sin, cos = _sin_cos(phase + s)
-    transient = f + gravity / stiffness - a * sin - b * cos
-    transient_slope = slope - a * cos + b * sin
-    speed = np.sqrt(transient_slope * transient_slope + stiffness * transient * transient)
-    return np.abs(strength) / np.sqrt(gamma) + speed / ratio < gravity / stiffness
+    u = np.where(u == 0, SLOWEST, u)
+    given = [ball.start(u), u, *table_at(phase, amplitude), amplitude]
+    rows = np.array([0 * u, *given])
+    given = np.broadcast_arrays(*given, ball.frequency_ratio, ball.zeta, ball.kappa)
+    closed = has_closed_form(ball)
+    of_time = contacts if closed else _by_doubling
+    fewest = FEW if closed else 1
+    duration = np.full(u.shape, np.inf)
+    speed = np.full(u.shape, np.nan)
+    left = np.arange(u.size)
+    while left.size >= fewest:
+        s, gap, u, x, y, amplitude = rows
+        ratio = ball.frequency_ratio
+        zeta = ball.zeta
+        kappa = ball.kappa
+        resonant = 0.0 if closed else 1.0 * _resonates(ratio, zeta)
+        motion = of_time(s, gap, u, x, y, 1.0, ratio, zeta)
+        f, slope, second, third, bend, jerk, lasts = bounds(
+            motion, amplitude, ratio, zeta, kappa, resonant
+        )
+        above = np.maximum(f, 0.0)
+        step, last = safe_steps(s, above, slope, -second - kappa * third, bend, jerk)
+        if not closed:
+            step = np.fmin(step, np.divide(2, ratio * resonant))
+        rows[0] = s + step
+        done = last | lasts | ~(rows[0] < PATIENCE)
+        if done.any():
+            released = left[last]
+            duration[released] = rows[0, last]
+            speed[released] = (motion[1] + step * (second + step * third / 2))[last]
+            (going,) = (~done).nonzero()
+            left = left[going]
+            rows = rows.take(going, axis=1)
+            ball = ball.rows(going)
+    for i in left:
+        duration[i], speed[i] = one_ball.release(*(each[i] for each in given))
+    return duration, speed
 
 
 @dataclass(frozen=True)

@@ -133,11 +133,6 @@ def with_ball(function: Callable) -> Callable:
 
 def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> Any:
     """The ball of a named law, with its parameters from texts such as "stiffness=1000"."""
-    from bouncing_ball_beyond.named_laws import LAWS
-
-    name = underscored(law)
-    if name not in LAWS:
-        raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
     values = {} if restitution is None else {"restitution": restitution}
     for text in settings:
         parameter, _, number = text.partition("=")
@@ -145,10 +140,7 @@ def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> A
             values[parameter] = float(number)
         except ValueError:
             raise ValueError(f"settings {text!r}: must be NAME=NUMBER") from None
-    try:
-        return LAWS[name](**values)
-    except TypeError as error:
-        raise ValueError(f"settings: {error}") from error
+    return bb.named_law(law, **values)
 
 
 def underscored(name: str) -> str:

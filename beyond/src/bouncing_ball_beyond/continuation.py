@@ -27,6 +27,7 @@ from bouncing_ball_beyond.periodic import (
 from bouncing_ball_beyond.special_orbits import (
     KINDS,
     ON_THE_WAY,
+    Crossings,
     crossings_of,
     doubled_of,
     halved_at,
@@ -129,6 +130,27 @@ class FollowedBranch:
         """Whether a ball follows the orbits, shape (points,)."""
         return self.equations.admissible(self.z)
 
+    def refined(self, spacing: float = 0.04) -> "FollowedBranch":
+        """The branch with further orbits in between, so that lines through them have no corners.
+
+        Orbits follow one another at most so far apart, as root mean square of the changes of the
+        times and speeds of the impacts and as relative change of the parameter; but there are no
+        more than 50 in a step of the branch. All are solved as those of the branch are. A curve in
+        two parameters has short steps, and remains as it is.
+        """
+        if len(self) < 2 or len(self.equations.along) > 1:
+            return self
+        units = scales(self.equations, self.z[:-1])
+        chords = np.diff(self.z, axis=0)
+        counts = np.ceil(np.linalg.norm(chords / units, axis=1) / spacing).astype(int).clip(1, 50)
+        which = np.repeat(np.arange(len(chords)), counts)
+        share = np.concatenate([np.arange(count) / count for count in counts])[:, np.newaxis]
+        guess = self.z[which] + share * chords[which]
+        solution = newton(self.equations, guess, (chords / units**2)[which])
+        good = solution.found | (share[:, 0] == 0)
+        z = np.where(share == 0, guess, solution.z)[good]
+        return replace(self, z=np.concatenate([z, self.z[-1:]]))
+
     def first(self, kind: str) -> PeriodicOrbit:
         """The first special orbit of a kind.
 
@@ -182,9 +204,9 @@ def _unit(vectors: NDArray) -> NDArray:
 
 
 class _Points(NamedTuple):
-    """One orbit of each row: orbits, unit tangents, tests on the way, and differences of halves.
+    """One orbit of each row: orbits, tangents, tests on the way, and differences of halves.
 
-    Tangents are in the units of `scales`; tests have the shape (rows, tests).
+    Tests have the shape (rows, tests).
     """
 
     z: NDArray
@@ -218,7 +240,7 @@ def _points_at(equations, z, tangents, linear: Linear) -> _Points:
         equations.least_release(linear, z),
         np.linalg.norm(halves, axis=1),
     ]
-    return _Points(z, _unit(tangents), np.stack(tests, axis=1), halves)
+    return _Points(z, tangents, np.stack(tests, axis=1), halves)
 
 
 def _same_sign(before: _Points, after: _Points) -> _Points:
@@ -247,15 +269,16 @@ class _Predicted(NamedTuple):
 
 def _predicted(here: _Points, step, units, low, high) -> _Predicted:
     """Steps along the tangents; one that would leave its window ends there, at this parameter."""
-    rate = here.tangents[:, -1] * units[:, -1]
+    ahead = _unit(here.tangents / units)
+    rate = ahead[:, -1] * units[:, -1]
     target = np.where(rate > 0, high, low)
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = (target - here.z[:, -1]) / rate
     last = whole <= step
     length = np.where(last, whole, step)
-    z = here.z + length[:, np.newaxis] * here.tangents * units
+    z = here.z + length[:, np.newaxis] * ahead * units
     z[last, -1] = target[last]
-    normal = here.tangents / units
+    normal = ahead / units
     normal[last] = 0.0
     normal[last, -1] = np.sign(rate[last])
     return _Predicted(length, z, normal, last)
@@ -266,15 +289,14 @@ def _angle(points: _Points) -> NDArray:
     return np.arctan(points.tests[:, 1] - 1)
 
 
-def _march(start: _Start, window, points: int, until: str | None) -> list[_Steps]:
+def _march(start: _Start, window, until, points: int) -> list[_Steps]:
     """Accepted steps of branches, until they end or their parameter is at an end of its window.
 
     A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
     too much.
     """
     equations = start.equations
-    units = scales(equations, start.z)
-    here = _points_at(equations, start.z, start.direction / units, equations.linear(start.z))
+    here = _points_at(equations, start.z, start.direction, equations.linear(start.z))
     first = here
     rows = np.arange(len(start.z))
     paths = [[here.take([row])] for row in rows]
@@ -283,16 +305,17 @@ def _march(start: _Start, window, points: int, until: str | None) -> list[_Steps
     farthest = np.zeros(len(rows))
     while rows.size:
         low, high = window[rows].T
+        units = scales(equations, here.z)
         ahead = _predicted(here, step, units, low, high)
         solution = newton(equations, ahead.z, ahead.normal, iterations=7)
         solution.z[ahead.last, -1] = ahead.z[ahead.last, -1]
         with np.errstate(all="ignore"):
-            there = _points_at(equations, solution.z, solution.tangent / units, solution.linear)
+            there = _points_at(equations, solution.z, solution.tangent, solution.linear)
             there = _same_sign(here, there)
             turned = np.abs(_angle(there) - _angle(here))
             # A pole of tr/(1 + det) is no obstacle.
             turned = np.minimum(turned, np.pi - turned)
-            cosine = np.sum(there.tangents * here.tangents, axis=1)
+            cosine = _cosine(there, here, units)
             missed = np.linalg.norm((there.z - ahead.z) / units, axis=1)
             inside = (there.z[:, -1] >= low) & (there.z[:, -1] <= high)
         good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * ahead.length)
@@ -304,11 +327,12 @@ def _march(start: _Start, window, points: int, until: str | None) -> list[_Steps
         step = np.where(good, longer, ahead.length / 2)
         away = _from_start(equations, first, here, units)
         back = (away < step / 2) & (farthest > 2 * step)
-        back &= np.sum(here.tangents * first.tangents, axis=1) > STRAIGHT
+        back &= _cosine(here, first, units) > STRAIGHT
         farthest = np.maximum(farthest, away)
         for j in np.flatnonzero(good):
             paths[rows[j]].append(here.take([j]))
-            ends[rows[j]] = _end_of_step(crossed[j], ahead.last[j], back[j], until)
+            kind = until[rows[j]]
+            ends[rows[j]] = _end_of_step(crossed[j], ahead.last[j], back[j], kind)
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"all {points} points are used"
         for j in np.flatnonzero(step < SHORTEST_STEP):
@@ -319,11 +343,16 @@ def _march(start: _Start, window, points: int, until: str | None) -> list[_Steps
             equations = start.equations.rows(rows)
             here = here.take(going)
             first = first.take(going)
-            units = units[going]
             step = step[going]
             farthest = farthest[going]
-    whole = zip(paths, ends, scales(start.equations, start.z), strict=True)
+    units = scales(start.equations, start.z)
+    whole = zip(paths, ends, units, strict=True)
     return [_Steps(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
+
+
+def _cosine(points: _Points, others: _Points, units) -> NDArray:
+    """Cosines of the angles between tangents."""
+    return np.sum(_unit(points.tangents / units) * _unit(others.tangents / units), axis=1)
 
 
 _AT_GOAL = "the end of the window"
@@ -354,23 +383,22 @@ def _from_start(equations, first: _Points, here: _Points, units) -> NDArray:
 
 
 def _path_of(path: list[_Points], end: str, equations, units) -> _Points:
-    """The points of one row, with tangents of z; a closed branch ends exactly at its start."""
+    """The points of one row; a closed branch ends exactly at its start."""
     if end == _CLOSED:
-        ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units) > 0
+        ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units**2) > 0
         turns = 2 * np.pi * np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
         z = path[0].z.copy()
         z[:, : equations.size : equations.unknowns] += turns
         path = [*(path[:-1] if ahead else path), path[0]._replace(z=z)]
-    points = _Points(*(np.concatenate(each) for each in zip(*path, strict=True)))
-    return points._replace(tangents=points.tangents * units)
+    return _Points(*(np.concatenate(each) for each in zip(*path, strict=True)))
 
 
-def _followed(start: _Start, window, points, until, own) -> list[FollowedBranch]:
+def _followed(start: _Start, window, until, points, own) -> list[FollowedBranch]:
     """Branches from their starts to a value of their parameter, with their special orbits.
 
     ``own`` is the kind of the special orbits at the starts, which are not listed.
     """
-    steps = _march(start, window, points, until)
+    steps = _march(start, window, until, points)
     row = np.repeat(np.arange(len(steps)), [len(each.points.z) for each in steps])
     z, slopes, tests, _ = (np.concatenate(e) for e in zip(*(s.points for s in steps), strict=True))
     crossings = crossings_of(start.equations, row, z, slopes, tests)
@@ -393,7 +421,7 @@ def _followed(start: _Start, window, points, until, own) -> list[FollowedBranch]
                 passed.append(_Passed(number, place, PeriodicOrbit(equations, here, kind)))
         passed.sort(key=lambda each: each[:2])
         orbits = path.z
-        last = _first_end([each for each in passed if _ends_at(each.orbit.kind, until)])
+        last = _first_end([each for each in passed if _ends_at(each.orbit.kind, until[i])])
         if last is not None:
             passed = [*(each for each in passed if each[:2] < last[:2]), last]
             orbits = np.vstack([orbits[: last.number + 1], last.orbit.z])
@@ -407,6 +435,7 @@ def _followed(start: _Start, window, points, until, own) -> list[FollowedBranch]
             passed = [each for each in passed if each.number + 1 < len(orbits)]
         else:
             end = _in_words(end, name, orbits[-1, -1], start.goal[i], passed)
+            end += _in_words_of_symmetry(crossings, i, name)
         special = tuple(each.orbit for each in passed)
         branches.append(FollowedBranch(equations, orbits, special, "", end))
     return branches
@@ -440,6 +469,23 @@ def _in_words(end: str, name: str, value: float, goal: float, passed: list[_Pass
     folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
     return f"{here} is reached, on the other side of the start than the goal{turned}"
+
+
+def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
+    """Where a multiplier passes 1 and the parameter does not turn back, or ""."""
+    at_one = (crossings.row == row) & (crossings.kind == "saddle-node")
+    rising = crossings.slopes[..., -1]
+    places = []
+    for j in np.flatnonzero(at_one & (rising[0] * rising[1] > 0)):
+        before, after = crossings.values[:, j]
+        places.append(crossings.ends[:, j, -1] @ [after, -before] / (after - before))
+    if not places:
+        return ""
+    near = ", ".join(f"{place:.3g}" for place in places)
+    return (
+        f"; near {name} = {near} a multiplier passes 1 without a saddle-node: there orbits of less"
+        " symmetry branch off"
+    )
 
 
 def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
@@ -507,7 +553,7 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     many = not isinstance(orbit, PeriodicOrbit)
     wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
     orbits = _listed(orbit, "orbit", wanted) if many else [orbit]
-    found = _follow_all(orbits, along, to, points, None)
+    found = _follow_all(orbits, along, to, points, np.full(len(orbits), None))
     if not many and isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found if many else found[0]
@@ -557,7 +603,8 @@ def cascade(doubling, *, to, impacts: int = 64):
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
     while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
-        found = _follow_all([latest[i] for i in going], None, to[going], 500, "period doubling")
+        until = np.full(len(going), "period doubling")
+        found = _follow_all([latest[i] for i in going], None, to[going], 500, until)
         further = []
         for i, branch in zip(going, found, strict=True):
             if isinstance(branch, OrbitNotFound):
@@ -589,7 +636,7 @@ def _follow_all(orbits, along, to, points, until) -> list:
             continue
         path = each.equations.along[-1] if along is None else path_of(along, each.ball)
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
-        tasks[i] = _task(each, path, goal)
+        tasks[i] = _task(each, path, goal, until[[i]])
         same_ball = each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0))
         key = each.kind, path, each.impacts, same_ball
         same = next((rows for other, rows in groups if other == key), None)
@@ -599,19 +646,24 @@ def _follow_all(orbits, along, to, points, until) -> list:
     for (kind, *_), rows in groups:
         together = _stacked([tasks[i] for i in rows])
         ways = range(together.goals.shape[1])
-        parts = [_from_special(together, way, kind, points, until) for way in ways]
+        parts = [_from_special(together, way, kind, points) for way in ways]
         for place, i in enumerate(rows):
             found[i] = _joined([part[place] for part in parts])
     return found
 
 
 class _Task(NamedTuple):
-    """Orbits to be followed, by rows: their goals, one or two, and the limits of the parameter."""
+    """Orbits to be followed, by rows.
+
+    Their goals, one or two, the limits of the parameter, and the kinds of special orbits at which
+    branches end, or None.
+    """
 
     equations: OrbitEquations
     z: NDArray
     goals: NDArray
     limits: NDArray
+    until: NDArray
 
 
 def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArray]:
@@ -629,7 +681,7 @@ def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArra
     return equations, np.append(orbit.z[: orbit.equations.size], value)
 
 
-def _task(orbit: PeriodicOrbit, path: Path, to) -> _Task:
+def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     """What is to be followed from one orbit, as one row.
 
     Raises
@@ -648,7 +700,7 @@ def _task(orbit: PeriodicOrbit, path: Path, to) -> _Task:
             raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
     if len(goals) == 2 and not goals[0] <= value <= goals[1]:
         raise ValueError(f"to = {to}: {path.name} = {value:.10g} of the orbit must be between them")
-    return _Task(equations, z[np.newaxis], goals[np.newaxis], np.array([[low, high]]))
+    return _Task(equations, z[np.newaxis], goals[np.newaxis], np.array([[low, high]]), until)
 
 
 def _stacked(tasks: list[_Task]) -> _Task:
@@ -673,7 +725,7 @@ def _windows(z, goal, limits) -> NDArray:
     return np.sort(np.stack([goal, behind], axis=-1), axis=-1)
 
 
-def _from_special(task: _Task, way: int, kind, points, until) -> list:
+def _from_special(task: _Task, way: int, kind, points) -> list:
     """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
     start = _STARTS.get(kind, _no_start)(task, way)
     name = task.equations.along[-1].name
@@ -682,7 +734,8 @@ def _from_special(task: _Task, way: int, kind, points, until) -> list:
     if not going.size:
         return found
     window = _windows(task.z, start.goal, task.limits)[going]
-    branches = _followed(start.take(going), window, points, until, kind)
+    until = task.until[going]
+    branches = _followed(start.take(going), window, until, points, kind)
     for i, branch in zip(going, branches, strict=True):
         path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
         text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
@@ -866,6 +919,10 @@ class Limits(NamedTuple):
     saddle_node: PeriodicOrbit | None
     period_doubling: PeriodicOrbit | None
 
+    def __repr__(self):
+        places = (each and f"Λ = {each.amplitude:.10g}" for each in self)
+        return "Limits: saddle-node {}, period doubling {}".format(*places)
+
 
 def limits(ball: Ball, *, n=1):
     """The saddle-node and the period doubling of the n-T orbits of a ball.
@@ -892,10 +949,11 @@ def limits(ball: Ball, *, n=1):
     """
     row, (periods,), shape = rows_of(ball, n)
     between = _between_limits(OrbitEquations(row, 1, periods))
-    down = _follow_all(between, "amplitude", 1e-6, 500, "saddle-node")
-    up = _follow_all(between, "amplitude", None, 500, "period doubling")
+    both = np.repeat(["saddle-node", "period doubling"], len(between))
+    to = [1e-6] * len(between) + [None] * len(between)
+    branches = _follow_all(between * 2, "amplitude", to, 500, both)
     found = []
-    for below, above in zip(down, up, strict=True):
+    for below, above in zip(branches[: len(between)], branches[len(between) :], strict=True):
         special = () if isinstance(below, OrbitNotFound) else (*below.special[::-1], *above.special)
         folds = (each for each in special if each.kind == "saddle-node")
         doublings = (each for each in special if each.kind == "period doubling")

@@ -47,7 +47,6 @@ from bouncing_ball_beyond.forms import (
     longest_step,
     null_vectors,
     one_impact_less,
-    taken_twice,
 )
 from bouncing_ball_beyond.paths import Path, path_of
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
@@ -158,11 +157,6 @@ class _System:
         """Of saddle-nodes and period doublings: 1 or -1."""
         return MULTIPLIERS[self.kind]
 
-    @cached_property
-    def twice(self) -> OrbitEquations:
-        """The equations of the orbits taken twice."""
-        return taken_twice(self.equations)
-
     def border(self, z: NDArray) -> _Border | None:
         """The null vectors at a special orbit."""
         if self.kind not in MULTIPLIERS:
@@ -176,7 +170,7 @@ class _System:
         ``derivatives`` are those of the legs at z and, if impacts have a T, on both sides of z.
         """
         if border is None:
-            value, gradient = value_and_gradient(self.equations, self.kind, z[np.newaxis])
+            value, gradient, _ = value_and_gradient(self.equations, self.kind, z[np.newaxis])
             return value[0], gradient[0], None, None
         size = len(border.v)
         matrix = np.zeros((size + 1, size + 1))
@@ -189,7 +183,7 @@ class _System:
         *w, _ = np.linalg.solve(matrix.T, right)
         new = _Border(np.array(v), np.array(w))
         step = longest_step(self.equations, z, new.v)
-        bent = curvature(self.twice, z, new.v, self.multiplier, step)
+        bent = curvature(self.equations, z, new.v, self.multiplier, step)
         gradient = -new.w @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
         if len(derivatives) > 1:
             rates = np.zeros((len(derivatives[0]), 3))
@@ -236,7 +230,7 @@ class _System:
             except np.linalg.LinAlgError:
                 break
             z = z + step
-            small = np.abs(step).max() < tolerance * (1 + np.abs(z).max())
+            small = np.all(np.abs(step) < tolerance * self.equations.sizes(z[np.newaxis]))
             if small and abs(value) < ZERO:
                 return _Point(z, tangent, new, bent)
         raise OrbitNotFound(f"no {self.kind} is found: Newton's method does not converge")
@@ -533,9 +527,7 @@ def _difference_of_halves(equations: OrbitEquations, z: NDArray) -> NDArray:
     """
     if equations.impacts % 2:
         return np.ones(len(z))
-    halves = z[:, : equations.size].reshape(len(z), 2, -1)
-    difference = halves[:, 1] - halves[:, 0]
-    difference[:, :: equations.unknowns] -= np.pi * equations.periods
+    difference = equations.halves(z)
     size = np.linalg.norm(difference, axis=1)
     along = np.sum(difference[1:] * difference[:-1], axis=1) / size[:-1]
     signs = np.cumprod([1.0, *np.sign(along)])

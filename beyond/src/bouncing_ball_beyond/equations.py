@@ -21,7 +21,7 @@ FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
 
 ROUNDING = 4 * np.finfo(float).eps
-"""Rounding errors of the equations, relative to the largest unknown."""
+"""Rounding errors of the equations, relative to their largest terms."""
 
 DENSE = 16
 """Systems of more legs are halved: libraries of linear algebra start threads for large matrices."""
@@ -105,10 +105,9 @@ class OrbitEquations:
 
     def rows(self, which) -> "OrbitEquations":
         """The equations of some of the rows, by an index, a slice or a mask of them."""
-        arrays = {name: each for name, each in self.ball.parameters.items() if np.ndim(each)}
         return replace(
             self,
-            ball=self.ball.at(**{name: each[which] for name, each in arrays.items()}),
+            ball=self.ball.rows(which),
             periods=_some(self.periods, which),
             amplitude=_some(self.amplitude, which),
         )
@@ -116,8 +115,7 @@ class OrbitEquations:
     @cached_property
     def _beside_impacts(self) -> tuple[Ball, NDArray]:
         """The ball and Λ as columns, which go beside arrays of the shape (rows, k)."""
-        arrays = {name: each for name, each in self.ball.parameters.items() if np.ndim(each)}
-        ball = self.ball.at(**{name: each[:, np.newaxis] for name, each in arrays.items()})
+        ball = self.ball.rows(np.s_[:, np.newaxis])
         return ball, np.asarray(self.amplitude, float)[..., np.newaxis]
 
     def at(self, values) -> tuple[Ball, NDArray]:
@@ -131,6 +129,12 @@ class OrbitEquations:
         """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
         return x, *self.at(z[:, self.size :])
+
+    def sizes(self, z) -> NDArray:
+        """1 + the largest unknown of the impacts, and 1 + |p| of parameters, shape (rows, N)."""
+        sizes = 1 + np.abs(z)
+        sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
+        return sizes
 
     def following(self, x) -> NDArray:
         """For each impact the next one; after the last the first, m periods later."""
@@ -277,8 +281,7 @@ class OrbitEquations:
     def _during(self, z) -> Callable[[NDArray], Impact]:
         """The contacts of orbits as a function of T, shape (rows, k, times)."""
         x, ball, amplitude = self.split(z)
-        arrays = {name: each for name, each in ball.parameters.items() if np.ndim(each)}
-        beside = ball.at(**{name: each[..., np.newaxis] for name, each in arrays.items()})
+        beside = ball.rows(np.s_[..., np.newaxis])
         given = x[..., 0, np.newaxis], x[..., 1, np.newaxis]
         return lambda t: beside.contact(*given, t, np.asarray(amplitude)[..., np.newaxis])
 
@@ -529,8 +532,8 @@ def newton(
         By default the parameter is fixed.
     iterations : int
     tolerance : float
-        The largest last step relative to 1 + |z|. Steps fall quadratically, so that the error after
-        one of 1e-11 is that of rounding.
+        The largest last step, in units of `OrbitEquations.sizes`. Steps fall quadratically, so that
+        the error after one of 1e-11 is that of rounding.
 
     Returns
     -------
@@ -548,12 +551,14 @@ def newton(
         solution = solve_bordered(linear.derivatives, right, border, border_right)
         step = solution[..., 0]
         z = z + step
-        size = np.abs(z).max(axis=1)
         defect = np.abs(linear.legs).max(axis=(1, 2))
+        moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
+        # Lengths in the equations are of the size of Λ, or of the times and the speeds.
+        _, amplitude = equations.at(z[:, equations.size :])
+        size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
         # Steps become small, or they are made of nothing but rounding errors of the equations.
-        found = np.abs(step).max(axis=1) < tolerance * (1 + size)
-        found |= defect < ROUNDING * (1 + size)
-        if (found | np.isnan(size)).all():
+        found = (moved < tolerance) | (defect < ROUNDING * (1 + size))
+        if (found | np.isnan(moved)).all():
             break
     # Far away, where times have no digits left, steps are small as well.
     found &= defect < 1e-7

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.balls import Corrected
 from bouncing_ball_beyond.equations import OrbitEquations, dense, flight, newton
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
+from bouncing_ball_beyond.special_orbits import doubled_of
 
 MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
 """The multiplier that a kind of special orbit has."""
@@ -65,23 +66,17 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
     return dense(turned[np.newaxis, ..., : q + 2])[0].reshape(-1, derivatives.shape[0] * q)
 
 
-def taken_twice(equations: OrbitEquations) -> OrbitEquations:
-    """The equations of orbits with twice the impacts and periods."""
-    return replace(equations, impacts=2 * equations.impacts, periods=2 * equations.periods)
-
-
-def curvature(twice: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step) -> Curvature:
+def curvature(
+    equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step
+) -> Curvature:
     """Derivatives of the legs along a vector v of the impacts that comes back multiplied by ±1.
 
     They are those of the first half of the orbit taken twice, along which v is periodic.
     """
-    size = twice.size // 2
-    later = z[:size].copy()
-    later[:: twice.unknowns] += np.pi * twice.periods
-    row = np.concatenate([z[:size], later, z[size:]])
-    direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - size)])
+    twice, row = doubled_of(equations, z[np.newaxis])
+    direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
-    derivatives = twice.linear(rows).derivatives[:, : twice.impacts // 2]
+    derivatives = twice.linear(rows).derivatives[:, : equations.impacts]
     first = np.tensordot(FIRST, derivatives, axes=1) / step
     second = np.tensordot(SECOND, derivatives, axes=1) / step**2
     return Curvature(derivatives[len(NODES) // 2], first, second)
@@ -185,8 +180,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
     w = w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
     step = longest_step(equations, z, v)
-    twice = taken_twice(equations)
-    coarse, fine = (curvature(twice, z, v, multiplier, h) for h in (step, step / 2))
+    coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
     value = coefficient(fine, v, w, multiplier)
     by_parameter = derivatives[..., q + 2].ravel()
     if multiplier == 1:

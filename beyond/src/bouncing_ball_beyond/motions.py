@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtrit
 
-from bouncing_ball_beyond.balls import H, check_ball
+from bouncing_ball_beyond.balls import H, check_ball, contacts, has_closed_form, table_at
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.periodic import OrbitNotFound, solved
@@ -26,15 +26,11 @@ from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
     Balls,
     axis,
-    contacts,
     dataset,
     described,
     first_impacts,
     follow,
     grid_of,
-    has_closed_form,
-    some_of,
-    table_at,
 )
 
 NEAR = 1e-7
@@ -150,11 +146,10 @@ def slopes_of_oscillator(balls, tau, u, duration, w):
     kappa = ball.kappa
     x, y = table_at(tau, balls.amplitude)
     start = np.where(u < 0, kappa, 0.0)
-    load = contacts(duration, 0.0, 0.0, 0.0, 0.0, ratio, zeta)
-    by_tau = contacts(duration, 0.0, 0.0, -y, x, ratio, zeta)
-    by_u = contacts(duration, start, 1.0, 0.0, 0.0, ratio, zeta)
-    gap = np.array([by_tau[0] - load[0], by_u[0] - load[0]])
-    rate = np.array([by_tau[1] - load[1], by_u[1] - load[1]])
+    by_tau = contacts(duration, 0.0, 0.0, -y, x, 0.0, ratio, zeta)
+    by_u = contacts(duration, start, 1.0, 0.0, 0.0, 0.0, ratio, zeta)
+    gap = np.array([by_tau[0], by_u[0]])
+    rate = np.array([by_tau[1], by_u[1]])
     push = table_at(tau + duration, balls.amplitude)[1] - 1
     second = push - 2 * zeta * ratio * w + ratio * ratio * kappa * w
     later = -(gap + kappa * rate) / (w + kappa * second)
@@ -394,7 +389,7 @@ def _store_periodic(found, lane, record, after, again, seen):
     again = _take(again, some)
     sticks = np.zeros((len(record), some.size), bool)
     if after.ball.lasts:
-        ball = some_of(after.ball, some)
+        ball = after.ball.rows(some)
         sticks = ~(record[:, 3, some] <= 2 * ball.free(np.abs(record[:, 2, some])))
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
     _store_end(
@@ -759,7 +754,7 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
     value, start = np.mgrid[: grid.size, :starts].reshape(2, -1)
     phase = TURN * (EVEN[0] * (start + 1) % 1)
-    several = some_of(ball, value)
+    several = ball.rows(value)
     speed = fastest(several, amplitude[value]) * (EVEN[1] * (start + 1) % 1)
     balls = Balls(several, amplitude[value], 0 * phase, phase, speed)
     passes = [ends_of(balls, impacts)]
@@ -777,7 +772,7 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
     }
     value = np.repeat(np.arange(grid.size), len(passes) * starts)
     state = np.zeros(value.size), ends["end_phase"], ends["end_speed"]
-    balls = Balls(some_of(ball, value), amplitude[value], *state)
+    balls = Balls(ball.rows(value), amplitude[value], *state)
     (moving,) = np.isfinite(balls.phase).nonzero()
     recorded = np.full((2, value.size, samples), np.nan)
     recorded[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)

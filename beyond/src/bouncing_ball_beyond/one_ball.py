@@ -9,29 +9,13 @@ so that no zero lies before the root of this parabola, with H = ∞, B = K, or w
 Steps to such roots never pass a zero, and converge to a simple one with third order. A double zero
 slows them down and does not mislead them.
 
-The functions are plain Python. Where numba is installed it compiles them, which gives the same
-numbers. They are in one file because numba's cache notices only changes of the file of the function
-that is called. Many balls are followed side by side in :mod:`bouncing_ball_beyond.simulation`.
+The functions are plain Python. Where numba is installed, :func:`compile_loops` compiles them, which
+gives the same numbers. They are in one file because numba's cache notices only changes of the file
+of the function that is called. Many balls are followed side by side in
+:mod:`bouncing_ball_beyond.simulation`, by the same formulas on arrays.
 """
 
 import math
-
-try:
-    from numba import njit
-except ImportError:
-
-    def compiled(function):
-        """Without numba the functions remain as they are."""
-        return function
-else:
-
-    def compiled(function):
-        """The function compiled, and kept for later runs where a folder can be written to."""
-        try:
-            return njit(cache=True)(function)
-        except RuntimeError:
-            return njit(function)
-
 
 TURN = 2 * math.pi
 REACH = 4.0
@@ -62,7 +46,6 @@ starts, the closing speed u, T, the duration D, δ and δ′ as it ends, and the
 follows. T and δ′ are NaN, and D is infinite, for a ball that stays on the table."""
 
 
-@compiled
 def root_of_parabola(f, slope, bend):
     """The first h > 0 at which f + f′h - B h²/2 vanishes, for f ≥ 0; infinity if there is none."""
     square = slope * slope + 2 * bend * f
@@ -75,7 +58,6 @@ def root_of_parabola(f, slope, bend):
     return math.inf
 
 
-@compiled
 def safe_step(t, f, slope, second, bend, jerk):
     """A step from the time t that passes no zero of f, and whether it ends there; K and J are
     ``bend`` and ``jerk``.
@@ -109,10 +91,9 @@ def flight_by(functions):
     return flight
 
 
-flight = compiled(flight_by(math))
+flight = flight_by(math)
 
 
-@compiled
 def rise(gap, w, x, y, amplitude, kappa):
     """The time at which a ball that was released below the level of the table is above it, or at
     which its contact resumes: whether it does, and this time.
@@ -138,7 +119,6 @@ def rise(gap, w, x, y, amplitude, kappa):
     return True, math.nan
 
 
-@compiled
 def emergence(start, gap, w, x, y, amplitude):
     """The time, not before ``start``, at which a ball rises through the level of the table or is
     above it; infinity if it falls back before.
@@ -156,7 +136,6 @@ def emergence(start, gap, w, x, y, amplitude):
             return t
 
 
-@compiled
 def earliest(w, x, y, amplitude):
     """A time before which a ball that leaves at the level of the table has certainly not landed.
 
@@ -169,7 +148,6 @@ def earliest(w, x, y, amplitude):
     return max(start, (2 * x + math.sqrt(4 * x * x + 12 * amplitude * (y - 1))) / amplitude)
 
 
-@compiled
 def landing(start, gap, w, x, y, amplitude):
     """The time of the first landing after the time ``start``, before which there is certainly none,
     and the closing speed.
@@ -196,9 +174,9 @@ def landing(start, gap, w, x, y, amplitude):
 def contact_by(functions):
     """The motion in contact, by the functions of numbers, ``math``, or of arrays, ``numpy``."""
 
-    def contact(s, gap, u, x, y, ratio, zeta):
+    def contact(s, gap, u, x, y, gravity, ratio, zeta):
         """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1,
-        and the height of the table and its velocity.
+        and the height of the table and its velocity (Eqs. 12 and 13).
 
         The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with
         k = g′ + 2ζϖg, and h = Q + iP to e^{is}::
@@ -206,6 +184,7 @@ def contact_by(functions):
             h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
 
         Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
+        Numbers are real: complex steps lose theirs where a tangent has a pole.
         """
         loss = 2 * zeta * ratio
         stiffness = ratio * ratio
@@ -226,60 +205,84 @@ def contact_by(functions):
         scale = detuning * detuning + loss * loss
         in_phase = (real * detuning + imaginary * loss) / scale
         quadrature = (imaginary * detuning - real * loss) / scale
-        position = gap * (1 - lost) - u * g - lost / stiffness + y * in_phase + x * quadrature
-        rate = y * (g - quadrature) + x * in_phase - g - u * slope - gap * stiffness * g
+        held = gap * (1 - lost) - u * g - gravity * lost / stiffness
+        position = held + y * in_phase + x * quadrature
+        free_rate = -u * slope - (gravity + gap * stiffness) * g
+        rate = free_rate + y * (g - quadrature) + x * in_phase
         return position, rate, y * cosine + x * sine, x * cosine - y * sine
 
     return contact
 
 
-contact = compiled(contact_by(math))
+contact = contact_by(math)
 
 
-@compiled
-def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
-    r"""The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero, and δ′
-    there; infinity if it lasts.
+def bounds_by(functions):
+    """The bounds of the search for a release, by the functions of numbers or of arrays."""
 
-    What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² = F′² +
-    ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
+    def bounds(motion, amplitude, ratio, zeta, kappa, resonant):
+        r"""f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
+        what :func:`contact` returns.
 
-        \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
-    """
-    loss = 2 * zeta * ratio
-    stiffness = ratio * ratio
-    detuning = (ratio - 1) * (ratio + 1)
-    scale = detuning * detuning + loss * loss
-    steady = amplitude * math.sqrt((1 + kappa * kappa) / scale)
-    # The steady response of δ + κδ′ is a Λ sin + b Λ cos of the phase of the table.
-    a = (detuning + kappa * loss) / scale
-    b = (kappa * detuning - loss) / scale
-    growth = math.sqrt(1 + 4 * zeta * zeta)
-    if u == 0:
-        u = SLOWEST
-    s = 0.0
-    while s < PATIENCE:
-        position, rate, push, shove = contact(s, gap, u, x, y, ratio, zeta)
+        What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² =
+        F′² + ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
+
+            \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
+
+        Next to the resonance, where ``resonant`` is 1 and not 0, F is all of f besides 1/ϖ², and
+        forced by l = Λ√(1 + κ²) at most, so that e grows by 2l/ϖ at most in a time of 2/ϖ.
+        """
+        position, rate, push, shove = motion
+        loss = 2 * zeta * ratio
+        stiffness = ratio * ratio
+        detuning = (ratio - 1) * (ratio + 1)
+        share = (1 - resonant) / (detuning * detuning + loss * loss + resonant)
+        forcing = amplitude * functions.sqrt(1 + kappa * kappa)
+        forced = forcing * (functions.sqrt(share) + resonant * (1 + loss))
+        # The steady response of δ + κδ′ is a Λ sin + b Λ cos of the phase of the table.
+        a = (detuning + kappa * loss) * share
+        b = (kappa * detuning - loss) * share
         second = push - 1 - loss * rate - stiffness * position
         third = shove - loss * second - stiffness * rate
         f = -position - kappa * rate
         slope = -rate - kappa * second
         free = f + a * push + b * shove - 1 / stiffness
         free_rate = slope + a * shove - b * push
-        energy = math.sqrt(free_rate * free_rate + stiffness * free * free)
-        if energy / ratio + steady <= 1 / stiffness:
+        energy = functions.sqrt(free_rate * free_rate + stiffness * free * free)
+        energy = energy + 2 * resonant * forcing / ratio
+        growth = 1 + 4 * zeta * zeta
+        bend = ratio * functions.sqrt(growth) * energy
+        jerk = ratio * functions.sqrt(1 + growth) * bend + forced
+        lasts = energy / ratio + forced <= (1 - resonant) / stiffness
+        return f, slope, second, third, bend + forced, jerk, lasts
+
+    return bounds
+
+
+bounds = bounds_by(math)
+
+
+def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
+    """The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero, and δ′
+    there; infinity if it lasts.
+    """
+    if u == 0:
+        u = SLOWEST
+    s = 0.0
+    while s < PATIENCE:
+        motion = contact(s, gap, u, x, y, 1.0, ratio, zeta)
+        f, slope, second, third, bend, jerk, lasts = bounds(
+            motion, amplitude, ratio, zeta, kappa, 0.0
+        )
+        if lasts:
             break
-        bend = ratio * growth * energy
-        jerk = ratio * math.sqrt(1 + growth * growth) * bend + steady
-        f = max(f, 0.0)
-        step, last = safe_step(s, f, slope, -second - kappa * third, bend + steady, jerk)
+        step, last = safe_step(s, max(f, 0.0), slope, -second - kappa * third, bend, jerk)
         s += step
         if last:
-            return s, rate + step * (second + step * third / 2)
+            return s, motion[1] + step * (second + step * third / 2)
     return math.inf, math.nan
 
 
-@compiled
 def settling(w, r, x, y, amplitude):
     """The time in which the bounces after an impact end on the table, -1 if they are not summed up.
 
@@ -301,7 +304,6 @@ def settling(w, r, x, y, amplitude):
     return whole * (1 + x * whole / (3 * gravity))
 
 
-@compiled
 def until_lift_off(phase, amplitude):
     """How long a ball that rests on the table stays there: until Λ sin τ rises to 1, or for ever
     (Eq. 9).
@@ -313,7 +315,6 @@ def until_lift_off(phase, amplitude):
     return 0.0 if wait > TURN - CHATTER**2 else wait
 
 
-@compiled
 def rest(gap, w, restitution, phase, amplitude, left):
     """How long a ball rests on the table after an instantaneous impact with the gap δ and the speed
     w, and the phase at which it leaves; a negative time if it does not rest.
@@ -337,14 +338,12 @@ def rest(gap, w, restitution, phase, amplitude, left):
     return settled + until_lift_off(end, amplitude), lift_off
 
 
-@compiled
 def reduced(phase):
     """The number of turns of the table in a phase, and what is left of it, from -π to π."""
     turns = float(math.floor(phase / TURN + 0.5))
     return turns, phase - turns * TURN
 
 
-@compiled
 def fly(gap, w, x, y, amplitude, kappa):
     """The time of the flight up to the next impact, and its closing speed, which is negative where
     the contact resumes.
@@ -357,7 +356,6 @@ def fly(gap, w, x, y, amplitude, kappa):
     return landing(start, gap, w, x, y, amplitude)
 
 
-@compiled
 def impacts(turns, phase, u, amplitude, restitution, ratio, zeta, kappa, out):
     """Impacts of a ball into the rows of ``out``.
 
@@ -407,3 +405,37 @@ def impacts(turns, phase, u, amplitude, restitution, ratio, zeta, kappa, out):
         passed, phase = reduced(phase + flown)
         turns += passed
     return False, turns, phase, u
+
+
+LOOPS = (
+    root_of_parabola,
+    safe_step,
+    flight,
+    rise,
+    emergence,
+    earliest,
+    landing,
+    contact,
+    bounds,
+    release,
+    settling,
+    until_lift_off,
+    rest,
+    reduced,
+    fly,
+    impacts,
+)
+
+
+def compile_loops():
+    """Compile the functions above by numba, which finds them by their names, if it is installed."""
+    try:
+        from numba import njit
+    except ImportError:
+        return
+    for function in LOOPS:
+        try:
+            globals()[function.__name__] = njit(cache=True)(function)
+        except RuntimeError:
+            # There is no folder for the cache that can be written to.
+            globals()[function.__name__] = njit(function)

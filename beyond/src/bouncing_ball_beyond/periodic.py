@@ -421,10 +421,9 @@ def shortest_contacts(
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     """The equations of one row alone, with numbers in place of arrays."""
-    arrays = {name: each for name, each in equations.ball.parameters.items() if np.ndim(each)}
     return replace(
         equations,
-        ball=equations.ball.at(**{name: float(each[i]) for name, each in arrays.items()}),
+        ball=equations.ball.rows(i),
         periods=int(np.ravel(equations.periods)[i if np.ndim(equations.periods) else 0]),
         amplitude=float(np.ravel(equations.amplitude)[i if np.ndim(equations.amplitude) else 0]),
     )
@@ -571,11 +570,15 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     x = x[(x[..., 1] > 0).all(axis=1) & lasting & (equations.ends(z).flight > 0).all(axis=1)]
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
-    first = x[..., 1].round(6).argmax(axis=1)[:, np.newaxis] + np.arange(k)
+    # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.
+    rank = x[..., 1].round(6) - 1e-8 * (x[..., 0] % (2 * np.pi))
+    first = rank.argmax(axis=1)[:, np.newaxis] + np.arange(k)
     x = np.take_along_axis(np.concatenate([x, later], axis=1), first[..., np.newaxis], axis=1)
     x[..., 0] -= 2 * np.pi * np.floor(x[:, :1, 0] / (2 * np.pi) + 1e-9)
     for j in range(1, k):
-        again = np.abs(np.roll(x, j, axis=1) - x)[..., 1:].max(axis=(1, 2)) < 1e-7
+        change = np.roll(x, j, axis=1) - x
+        change[..., 0] -= 2 * np.pi * np.round(change[..., 0] / (2 * np.pi))
+        again = np.abs(change).max(axis=(1, 2)) < 1e-7
         x = x[~again] if k % j == 0 else x
     rows = x.reshape(len(x), equations.size)
     rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]

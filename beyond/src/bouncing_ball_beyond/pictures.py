@@ -16,10 +16,8 @@ from numpy.typing import NDArray
 from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pieces, sample, style
 from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
-from bouncing_ball_beyond.equations import newton
 from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
-from bouncing_ball_beyond.special_orbits import scales
 
 MARKS = {
     "saddle-node": "o",
@@ -54,9 +52,6 @@ DECADES = 2
 
 MARKED = 4
 """Orbits with more impacts have no marks, which would hide their lines."""
-
-FINENESS = 0.04
-"""Distance of the orbits through which lines are drawn, in the units of the continuation."""
 
 
 def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure:
@@ -123,7 +118,7 @@ def _branches(group: Any) -> list[FollowedBranch]:
 def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dict[str, Any]:
     """Draw one branch or curve; returns what a legend says of it."""
     is_curve = isinstance(branch, SpecialCurve)
-    shown = branch if is_curve else _refined(branch)
+    shown = branch.refined()
     orbits = with_special(shown)
     whole = replace(shown, z=np.array([each.z for each in orbits]))
     x, y = _coordinates(whole, quantity)
@@ -178,22 +173,6 @@ def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArra
     y = np.array([np.atleast_1d(getattr(each, quantity)) for each in branch.orbits])
     is_angle = OF_IMPACTS[quantity][2] == "rad"
     return branch.values, np.unwrap(y, axis=0) / np.pi if is_angle else y
-
-
-def _refined(branch: FollowedBranch) -> FollowedBranch:
-    """The branch with further orbits in between, so that lines through them have no corners."""
-    if len(branch) < 2:
-        return branch
-    units = scales(branch.equations, branch.z[:-1])
-    chords = np.diff(branch.z, axis=0)
-    counts = np.ceil(np.linalg.norm(chords / units, axis=1) / FINENESS).astype(int).clip(1, 50)
-    which = np.repeat(np.arange(len(chords)), counts)
-    share = np.concatenate([np.arange(count) / count for count in counts])[:, np.newaxis]
-    guess = branch.z[which] + share * chords[which]
-    solution = newton(branch.equations, guess, (chords / units**2)[which])
-    good = solution.found | (share[:, 0] == 0)
-    z = np.where(share == 0, guess, solution.z)[good]
-    return replace(branch, z=np.concatenate([z, branch.z[-1:]]))
 
 
 def _scale(axes: Axes) -> None:

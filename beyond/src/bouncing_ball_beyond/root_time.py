@@ -27,7 +27,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.balls import H, sin_cos
 
 ORDER = 20
 """Gauss nodes of a panel."""
@@ -180,7 +180,7 @@ class ContactMotion(NamedTuple):
 
 def load_of(t, given):
     """a = g - Λ sin(τ + t)."""
-    return given["gravity"] - given["amplitude"] * np.sin(given["tau"] + t)
+    return given["gravity"] - given["amplitude"] * sin_cos(given["tau"] + t)[0]
 
 
 def rates(motion, state):

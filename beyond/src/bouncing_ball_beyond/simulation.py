@@ -13,27 +13,31 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball_beyond import one_ball
-from bouncing_ball_beyond.balls import Ball, Corrected, H, Rigid, SpringDamper, brief, check_ball
-from bouncing_ball_beyond.one_ball import COLUMNS, PATIENCE, REACH, ROUNDING, SLOWEST, STEPS, TURN
+from bouncing_ball_beyond.balls import (
+    FEW,
+    Ball,
+    Corrected,
+    H,
+    Rigid,
+    SpringDamper,
+    brief,
+    check_ball,
+    flights,
+    has_closed_form,
+    releases,
+    root_of_parabola,
+    safe_steps,
+    table_at,
+)
+from bouncing_ball_beyond.one_ball import COLUMNS, ROUNDING, STEPS, TURN
 
-FEW = 40
-"""Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
-scalar ones."""
+one_ball.compile_loops()
+
 AT_ONCE = 32
 MOST_IMPACTS = 1_000_000
 """The number of impacts of a ball that :func:`history` follows, and of those after which it looks
 at the time."""
 TINY = 1e-300
-UNDERDAMPED = 0.99
-"""Contacts with a larger ζ are followed on arrays as well."""
-DELICATE = 0.25
-"""Contacts whose |ϖ² - 1 + 2iζϖ| is below this are followed on arrays: terms of their closed form
-cancel."""
-
-flights = one_ball.flight_by(np)
-"""The motion in flight, for arrays."""
-contacts = one_ball.contact_by(np)
-"""The motion in contact, for arrays."""
 
 
 class Leaving(NamedTuple):
@@ -70,41 +74,7 @@ class Balls:
     def take(self, which):
         """Some of the balls, by a mask or their indices."""
         rows = {name: value[which] for name, value in vars(self).items() if name != "ball"}
-        return Balls(ball=some_of(self.ball, which), **rows)
-
-
-def some_of(ball, which):
-    """The ball with the entries of its array parameters that belong to some of the rows."""
-    arrays = {name: value[which] for name, value in ball.parameters.items() if np.ndim(value)}
-    return ball.at(**arrays) if arrays else ball
-
-
-def root_of_parabola(f, slope, bend):
-    """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is none."""
-    root = np.sqrt(slope * slope + 2 * bend * f)
-    falls = slope < 0
-    # The quotient without a difference of nearly equal numbers.
-    part = np.where(falls, 2 * f, root + slope)
-    return part / np.where(falls, root - slope, np.maximum(bend, 0.0))
-
-
-def safe_steps(t, f, slope, second, bend, jerk):
-    """:func:`.one_ball.safe_step` for arrays."""
-    step = root_of_parabola(f, slope, bend)
-    reach = REACH * step
-    closer = root_of_parabola(f, slope, np.minimum(bend, jerk / 3 * reach - second))
-    step = np.maximum(step, np.fmin(reach, closer))
-    near = jerk * step * step * step <= -ROUNDING * slope * t
-    if near.any():
-        step[near] = root_of_parabola(f[near], slope[near], -second[near])
-    return step, near | (step <= ROUNDING * t)
-
-
-def table_at(phase, amplitude):
-    """Λ cos τ and Λ sin τ, the velocity and the height of the table, by one tangent."""
-    half = np.tan(phase / 2)
-    sine = 2 * half / (1 + half * half)
-    return amplitude * (1 - half * sine), amplitude * sine
+        return Balls(ball=self.ball.rows(which), **rows)
 
 
 @np.errstate(divide="ignore", invalid="ignore")
@@ -161,76 +131,11 @@ def instants(ball, landed, gap, w, x, y, amplitude):
     return t, speed
 
 
-@np.errstate(divide="ignore", invalid="ignore")
-def releases(ball, phase, u, amplitude):
-    """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
-    releases: :func:`.one_ball.release` for arrays.
-    """
-    u = np.where(u == 0, SLOWEST, u)
-    given = ball.start(u), u, *table_at(phase, amplitude), amplitude
-    parameters = np.broadcast_arrays(u, ball.frequency_ratio, ball.zeta, ball.kappa)[1:]
-    rows = np.array([0 * u, *given])
-    duration = np.full(u.shape, np.inf)
-    speed = np.full(u.shape, np.nan)
-    left = np.arange(u.size)
-    while left.size >= FEW:
-        ratio = ball.frequency_ratio
-        zeta = ball.zeta
-        kappa = ball.kappa
-        loss = 2 * zeta * ratio
-        stiffness = ratio * ratio
-        detuning = (ratio - 1) * (ratio + 1)
-        scale = detuning * detuning + loss * loss
-        a = (detuning + kappa * loss) / scale
-        b = (kappa * detuning - loss) / scale
-        growth = 1 + 4 * zeta * zeta
-        s, gap, u, x, y, amplitude = rows
-        position, rate, push, shove = contacts(s, gap, u, x, y, ratio, zeta)
-        second = push - 1 - loss * rate - stiffness * position
-        third = shove - loss * second - stiffness * rate
-        f = -position - kappa * rate
-        slope = -rate - kappa * second
-        steady = amplitude * np.sqrt((1 + kappa * kappa) / scale)
-        free = f + a * push + b * shove - 1 / stiffness
-        free_rate = slope + a * shove - b * push
-        energy = np.sqrt(free_rate * free_rate + stiffness * free * free)
-        bend = ratio * np.sqrt(growth) * energy
-        jerk = ratio * np.sqrt(1 + growth) * bend + steady
-        above = np.maximum(f, 0.0)
-        step, last = safe_steps(s, above, slope, -second - kappa * third, bend + steady, jerk)
-        rows[0] = s + step
-        done = last | (energy / ratio + steady <= 1 / stiffness) | (s > PATIENCE)
-        if done.any():
-            released = left[last]
-            duration[released] = rows[0, last]
-            speed[released] = (rate + step * (second + step * third / 2))[last]
-            (going,) = (~done).nonzero()
-            left = left[going]
-            rows = rows.take(going, axis=1)
-            ball = some_of(ball, going)
-    for i in left:
-        gap, u, x, y, amplitude = (each[i] for each in given)
-        ratio, zeta, kappa = (each[i] for each in parameters)
-        found = one_ball.release(gap, u, x, y, amplitude, ratio, zeta, kappa)
-        duration[i], speed[i] = found
-    return duration, speed
-
-
-def has_closed_form(ball):
-    """Whether :func:`.one_ball.impacts` and :func:`releases` follow the contacts of a ball."""
-    if not isinstance(ball, SpringDamper):
-        return False
-    detuning = ball.frequency_ratio**2 - 1
-    loss = 2 * ball.zeta * ball.frequency_ratio
-    far = detuning * detuning + loss * loss >= DELICATE**2
-    return bool(np.all(far & (ball.zeta <= UNDERDAMPED)))
-
-
 def leave(balls):
     """How balls leave the table after their impacts."""
     ball = balls.ball
     u = balls.speed
-    if has_closed_form(ball):
+    if isinstance(ball, SpringDamper):
         duration, w = releases(ball, balls.phase, u, balls.amplitude)
         own_time = np.where(duration < np.inf, duration * ball.frequency_ratio, np.nan)
     else:
@@ -674,7 +579,7 @@ def over_time(grid, balls, fall, periods, samples):
             if len(record) > MOST_IMPACTS:
                 raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
         record = record[np.isfinite(record[:, 0])]
-        one = some_of(balls.ball, [j])
+        one = balls.ball.rows([j])
         gap, rate, found["contact"][j] = states_at(record, origin, one, amplitude, times)
         found["table"][j] = amplitude * np.sin(origin + times)
         found["ball"][j] = gap + found["table"][j]

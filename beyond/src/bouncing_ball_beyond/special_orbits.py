@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton
+from bouncing_ball_beyond.equations import Linear, OrbitEquations, dense, newton
 
 LONG = 2.0
 """A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
@@ -185,21 +185,24 @@ def located(equations, crossings: Crossings) -> tuple[NDArray, NDArray]:
     return z, found & (np.abs(value) < 1e-6 * np.maximum(largest, 1e-3))
 
 
-def value_and_gradient(equations: OrbitEquations, kind: str, z: NDArray) -> tuple[NDArray, NDArray]:
-    """The test of a kind of special orbit, shape (rows,), and its gradient, shape (rows, N).
+def value_and_gradient(
+    equations: OrbitEquations, kind: str, z: NDArray
+) -> tuple[NDArray, NDArray, Linear]:
+    """The test of a kind of special orbit, shape (rows,), its gradient, shape (rows, N), and the
+    legs.
 
     The gradient is a central difference. Its errors, some 1e-10, slow Newton's method down a little
     and do not move what it finds.
     """
     rows, length = z.shape
     shift = 1e-6 * np.maximum(1.0, np.abs(z))
-    nudges = shift[:, np.newaxis] * np.eye(length)
-    nearby = np.concatenate([z[:, np.newaxis] + nudges, z[:, np.newaxis] - nudges], axis=1)
-    nearby = nearby.reshape(-1, length)
-    each = equations.rows(np.repeat(np.arange(rows), 2 * length))
-    values = KINDS[kind].test(each, nearby, each.linear(nearby)).reshape(rows, 2, length)
-    gradient = (values[:, 0] - values[:, 1]) / (2 * shift)
-    return KINDS[kind].test(equations, z, equations.linear(z)), gradient
+    nudges = np.concatenate([np.zeros((1, length)), np.eye(length), -np.eye(length)])
+    nearby = (z + nudges[:, np.newaxis] * shift).reshape(-1, length)
+    each = equations.rows(np.tile(np.arange(rows), len(nudges)))
+    linear = each.linear(nearby)
+    values = KINDS[kind].test(each, nearby, linear).reshape(-1, rows)
+    above, below = values[1:].reshape(2, length, rows)
+    return values[0], (above - below).T / (2 * shift), Linear(*(x[:rows] for x in linear))
 
 
 @np.errstate(all="ignore")
@@ -215,17 +218,17 @@ def special_near(
     left = np.arange(len(z))
     for _ in range(iterations):
         part = equations.rows(left)
-        legs, jacobian = part.residuals(z[left])
-        value, gradient = value_and_gradient(part, kind, z[left])
+        value, gradient, linear = value_and_gradient(part, kind, z[left])
+        jacobian = dense(linear.derivatives).reshape(-1, part.size, part.length)
         matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
-        right = np.concatenate([legs, value[:, np.newaxis]], axis=1)
+        right = np.column_stack([linear.legs.reshape(-1, part.size), value])
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
         matrix[~finite] = np.eye(z.shape[1])
         step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
         size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
         finite &= size < LONG
         z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)
-        small = size < 1e-11
+        small = np.all(np.abs(step) < 1e-11 * part.sizes(z[left]), axis=1)
         found[left] = finite & small
         left = left[finite & ~small]
         if left.size == 0:

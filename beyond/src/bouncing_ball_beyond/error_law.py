@@ -14,7 +14,7 @@ place of C, turned by -s, and delayed by t_c, where s = σ/(1 + b) and b = d(rv)
     Y₁ = √(Λ² - (C - s)²),    cos ψ₁ = (C - s)/Λ.
 
 This holds from the saddle-node, where the height is wrong by √(2Cs)/H, to the period doubling.
-The proof is in article.md, and docs/error-law.md says how good the law is.
+The proof is in appendix.md, and docs/error-law.md says how good the law is.
 """
 
 from collections.abc import Callable, Sequence

@@ -143,6 +143,20 @@ def test_flights_graze_along_a_curve():
         assert gaps.min() == pytest.approx(0.0, abs=1e-7)
 
 
+def test_flights_of_saddle_nodes_graze_before_the_release_is_lost():
+    """Both are in the last step of the curve."""
+    fold = follow(orbit(SpringDamper(10.0, restitution=0.5), amplitude=1.3), to=0.5)
+    ranges = {"amplitude": (0.02, 5.0), "frequency_ratio": (0.3, 30.0)}
+    curve = special_curve(fold.first("saddle-node"), along=STIFFNESS, ranges=ranges)
+    assert curve.start.startswith("lost release")
+    grazing = curve.first("grazing of a flight")
+    times = np.linspace(0.1, grazing.flight_time - 0.1, 20001)
+    leaves = grazing.times[0] + grazing.contact_duration
+    speed = grazing.relative_bounce_velocity
+    gaps = flight(times, leaves, 0.0, speed, grazing.amplitude)[0]
+    assert gaps.min() == pytest.approx(0.0, abs=1e-7)
+
+
 def test_a_frequency_is_one_of_two_parameters():
     ball = SpringDamper(25.0, restitution=0.85)
     doubling = follow(orbit(ball, amplitude=0.9), to=1.3).first("period doubling")

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
+from bouncing_ball_beyond import root_time
 from bouncing_ball_beyond.balls import Corrected, H, SpringDamper
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.named_laws import (
@@ -338,9 +339,72 @@ class TestKinks:
         impact = law.first_impact(0.169860250995284, 2.1297017566396343, 1.7)[1]
         np.testing.assert_allclose([impact.duration, impact.speed], [duration, w], rtol=CLOSE)
 
-    def test_kink_at_the_release(self):
+    def test_kink_at_the_release(self, monkeypatch):
+        # An impact takes about six panels.
+        monkeypatch.setattr(root_time, "MOST_PANELS", 20)
         signature = elasto_backlash(20.0, 0.0).computed_signature(3.0)
         assert abs(signature.duration - np.pi / 20) < CLOSE
+
+
+def random_impacts(number, slowest, strongest):
+    """Times, speeds and amplitudes of impacts; in slow ones p oscillates near zero."""
+    rng = np.random.default_rng(11)
+    u = 10 ** rng.uniform(slowest, 1, number)
+    return rng.uniform(0, 2 * np.pi, number), u, rng.uniform(0, strongest, number)
+
+
+def stepped_releases(law, tau, u, amplitude, end, step=5e-4):
+    """First releases at δ = 0 of contacts that begin together, by Runge and Kutta's method.
+
+    Also the least |p| of the minima of p between the steps before.
+    """
+
+    def rates(t, p, v):
+        force = law.force(np.maximum(p, 0.0), v, **law.values)
+        return np.array([v, 1 - amplitude * np.sin(tau + t) - force])
+
+    state = np.array([0 * u, u])
+    release = np.full(u.shape, np.inf)
+    margin = np.full(u.shape, np.inf)
+    depths = [0 * u - 1, 0 * u]
+    for t in step * np.arange(round(end / step)):
+        first = rates(t, *state)
+        second = rates(t + step / 2, *(state + step / 2 * first))
+        third = rates(t + step / 2, *(state + step / 2 * second))
+        fourth = rates(t + step, *(state + step * third))
+        state = state + step / 6 * (first + 2 * second + 2 * third + fourth)
+        inside = np.isinf(release)
+        turns = inside & (depths[1] <= depths[0]) & (depths[1] <= state[0])
+        margin[turns] = np.fmin(margin, np.abs(depths[1]))[turns]
+        depths = [depths[1], state[0]]
+        release[inside & (state[0] < 0)] = t + step
+    return release, margin
+
+
+class TestNoReleaseIsPassed:
+    """Releases where p barely falls below zero, for a short time."""
+
+    def test_linear_by_the_closed_form(self):
+        impacts = random_impacts(3000, -4, 3)
+        exact = SpringDamper(20.0, damping_ratio=0.003).first_release(*impacts)
+        T = linear(20.0, 0.003).first_release(*impacts)
+        np.testing.assert_allclose(T, exact / 20, rtol=0, atol=CLOSE)
+
+    @pytest.mark.parametrize(
+        "law", [hunt_crossley_linear(400.0, 0.01), hunt_crossley(1000.0, 1e-3)], ids=repr
+    )
+    def test_weak_damping_by_small_steps(self, law):
+        impacts = random_impacts(3000, -3, 3)
+        duration = law.first_impact(*impacts)[1].duration
+        end, margin = stepped_releases(law, *impacts, 8.0)
+        # The others end after the last step, or stay.
+        duration = np.where(duration < 7.9, duration, np.inf)
+        end = np.where(end < 7.9, end, np.inf)
+        same = (duration == end) | (np.abs(np.fmin(duration, 9) - np.fmin(end, 9)) < 1e-3)
+        # The steps are wrong by 1e-7, and between two of them p may fall by as much.
+        clear = margin > 1e-6
+        assert clear.sum() > 2950
+        assert same[clear].all()
 
 
 class TestLastingContacts:

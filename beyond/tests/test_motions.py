@@ -202,6 +202,10 @@ def test_chaos_that_ends_is_a_transient():
 def test_basins_are_the_motions_of_balls_one_by_one(ball):
     found = bb.basins(ball, amplitude=1.1, starts=7)
     assert abs(float(found.share.sum()) - 1) < 1e-12
+    # Each start is in the middle of a cell, and all cells are of the same size.
+    middle = (np.arange(7) + 0.5) / 7
+    assert np.allclose(found.phase, 2 * np.pi * middle - np.pi, rtol=1e-14)
+    assert np.allclose(found.speed, middle * 1.1 * 1.65 / 0.35, rtol=1e-14)
     for i in range(7):
         for j in range(0, 7, 3):
             u, tau = float(found.speed[i]), float(found.phase[j])

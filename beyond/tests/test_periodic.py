@@ -43,6 +43,8 @@ def test_the_orbits_of_the_restitution_model_are_its_closed_form(n):
         trace = 1 + r**2 - (1 + r) ** 2 * amplitude * np.sin(phase)
         for i, each in enumerate(found):
             assert each.phase == pytest.approx(phase[i], abs=ROUNDED)
+            # The first impact is in the first period of the table.
+            assert each.times[0] == pytest.approx(phase[i] % (2 * np.pi), abs=ROUNDED)
             assert each.speeds[0] == pytest.approx(2 * np.pi * n / (1 + r[i]), abs=ROUNDED)
             expected = trace[i], r[i] ** 2
             assert each.trace_and_determinant == pytest.approx(expected, abs=100 * ROUNDED)

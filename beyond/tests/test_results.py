@@ -204,6 +204,10 @@ def test_lines_are_solid_where_orbits_are_stable(rigid):
     ends = [rigid.first(kind) for kind in ("saddle-node", "period doubling")]
     assert sorted(x[[0, -1]]) == [each.amplitude for each in ends]
     assert sorted(y[[0, -1]]) == pytest.approx([each.phase / np.pi for each in ends], abs=1e-12)
+    # Between the orbits the line is the closed form Λ cos φ = π/3 to a thousandth of the axis.
+    middle = (y[1:] + y[:-1]) / 2
+    away = (x[1:] + x[:-1]) / 2 - np.pi / 3 / np.cos(np.pi * middle)
+    assert np.abs(away).max() < 1e-3 * np.ptp(axes.get_xlim())
     marks = [line.get_marker() for line in axes.lines if line.get_linestyle() == "None"]
     assert sorted(marks) == ["o", "s"]
 
@@ -239,7 +243,11 @@ def test_all_kinds_have_marks():
 
 def test_a_stable_cascade_has_no_unstable_lines():
     doubling = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8).first("period doubling")
-    figure = plot(cascade(doubling, to=1.8, impacts=8))
+    branches = cascade(doubling, to=1.8, impacts=8)
+    figure = plot(branches)
+    # The lines of a branch begin at the orbit that doubles its period.
+    starts = {line.get_xdata()[0] for line in figure.axes[0].lines if line.get_linestyle() == "-"}
+    assert {each.values[0] for each in branches} <= starts
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert texts == [
         "stable",

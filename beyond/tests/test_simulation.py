@@ -146,6 +146,28 @@ def test_the_corrected_model_and_a_law_of_hertz_are_simulated():
         assert abs(found.time[k + 1] - (tau - 0.6)) < 1e-6
 
 
+@pytest.mark.parametrize("law", [bb.tsuji(1000.0, 0.1), bb.kuwabara_kono(1000.0, 0.02)], ids=repr)
+def test_instants_of_laws_are_where_they_are_defined(law):
+    """There δ = -u t_c(u) after a flight, also where t_c depends on u."""
+    rng = np.random.default_rng(21)
+    ball = bb.Corrected(law)
+    phase = rng.uniform(-np.pi, np.pi, 3000)
+    u = 10 ** rng.uniform(-2, 1, 3000)
+    balls = simulation.Balls(ball, rng.uniform(0.5, 6, 3000), 0 * u, phase, u)
+    leaving = simulation.leave(balls)
+    going = np.isfinite(leaving.duration)
+    balls = balls.take(going)
+    leaving = simulation.Leaving(*(x[going] for x in leaving))
+    t, speed = simulation.fly(balls, leaving)
+    amplitude = balls.amplitude
+    phase = leaving.phase
+    table = amplitude * (np.sin(phase) - np.sin(phase + t) + t * np.cos(phase))
+    gap = leaving.gap + leaving.speed * t - t * t / 2 + table
+    error = np.abs(gap + speed * law.signature(speed).centroid)
+    assert going.sum() > 2500
+    assert (error < 1e-14 * (1 + amplitude + t * t)).all()
+
+
 def test_both_lines_of_the_restitution_map():
     """Λ(sin τ₁ - sin τ₀) = s v₀ - s²/2 and v₁ = -r(v₀ - s) + (1 + r)Λ cos τ₁ (Eq. 5)."""
     r, amplitude = 0.85, 2.5

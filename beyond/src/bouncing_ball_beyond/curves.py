@@ -202,7 +202,6 @@ class _System:
         shift[2 : self.equations.size : 3] = SHIFT
         return np.array([0 * shift, shift, -shift])
 
-    @np.errstate(all="ignore")
     def solve(self, guess, normal, border, tolerance=1e-8, iterations=8) -> _Point:
         """The special orbit on the plane through a guess across a normal, by Newton's method.
 

@@ -66,15 +66,8 @@ class Frequency:
         return np.sqrt(amplitude)
 
     def limits(self, ball: Ball, amplitude):
-        """The frequencies at which Λ and the parameters of the ball are within their limits."""
-        here = np.sqrt(amplitude)
+        """The frequencies at which Λ is within its limits."""
         low, high = np.sqrt(LIMITS["amplitude"])
-        for name, power in ball.frequency_powers.items():
-            with np.errstate(divide="ignore", invalid="ignore"):
-                ratios = np.divide(LIMITS.get(name, (0.0, np.inf)), ball.parameters[name])
-                ends = np.sort(here * ratios ** (1 / power))
-            low = np.fmax(low, ends[0])
-            high = np.fmin(high, ends[1])
         return low, high
 
 

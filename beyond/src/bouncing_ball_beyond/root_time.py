@@ -11,7 +11,8 @@ panel of the length h, F is a polynomial with the values F_j at the Gauss nodes,
 find them: integrals of v give q, those of λ give t, and those of F give v. Each sweep adds two
 orders in ωh, with the frequency ω of the oscillation in s. If the last Legendre coefficients of v
 are ε, then the end of the panel is right to the order of ε². A panel ends where the force has a
-kink, so that the force is analytic on each.
+kink, so that the force is analytic on each. It also ends at a maximum of the release function that
+may be above zero, so that no release is passed where it barely is.
 
 The derivatives are those of the collocation: one linear system for each panel and all directions.
 
@@ -26,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.optimize import elementwise
 
 from bouncing_ball_beyond.balls import H, sin_cos
 
@@ -383,6 +385,45 @@ def _first_event(motion, events, side, start, panel):
     return which, place
 
 
+def _maxima(motion, event, before, states):
+    """Maxima between nodes at which a function may reach zero: contacts, and places on [0, 1].
+
+    ``before`` has the signs of the function before its event, and ``states`` are (q, v, t) at the
+    starts, nodes and ends of panels.
+    """
+    below = -before * event(*states, motion.given)
+    middle = below[1:-1]
+    rises = middle - below[:-2]
+    falls = middle - below[2:]
+    # Between three values a parabola rises less above the highest one than to it.
+    near = (rises >= 0) & (falls > 0) & (middle + np.maximum(rises, falls) > 0)
+    node, row = np.nonzero(near)
+    if not row.size:
+        return row, np.zeros(0)
+    polynomials = [_COEFFICIENTS @ y[1:-1, row] for y in states]
+
+    def depth(place, k):
+        state = (legendre.legval(2 * place - 1, y[:, k], tensor=False) for y in polynomials)
+        return before[row[k]] * event(*state, motion.of(row[k]).given)
+
+    x = np.concatenate([[0.0], _NODES, [1.0]])
+    bracket = x[node], x[node + 1], x[node + 2]
+    found = elementwise.find_minimum(depth, bracket, args=(np.arange(row.size),))
+    # Inside a panel the motion is only as right as the last coefficients are small.
+    reached = found.f_x <= ROUGH * np.abs(below[:, row]).max(0)
+    return row[reached], found.x[reached]
+
+
+def _first_maximum(motion, events, side, start, panel):
+    """The place on [0, 1] of the first of the :func:`_maxima` of all events; infinity if none."""
+    states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
+    first = np.full(start[0].size, np.inf)
+    for event, before in zip(events, side, strict=True):
+        row, place = _maxima(motion, event, before, states)
+        np.minimum.at(first, row, place)
+    return first
+
+
 def _shift(motion, event, state, by):
     """Derivatives of s at an event, from those of (q, v, t), (3, rows, directions)."""
     _, slope = event_rate(motion, event, state)
@@ -472,6 +513,11 @@ class _Contacts:
         greatest = np.abs(panel.nodes[1]).max(0)
         least = CALM if lies else 1.0
         good, factor = _resolved(panel, np.fmax(least * self.size[1, here], greatest))
+        # The end of a shorter panel shows whether there is an event.
+        place = _first_maximum(motion, self.events, side, start, panel)
+        doubtful = good & (place < 1)
+        factor = np.where(doubtful, place * panel.length / length, factor)
+        good &= ~doubtful
         self.length[here] = length * np.where(good & (which >= 0), 1.0, factor)
         self.ended[here] = good & last & (which < 0)
         kept = here[good]

@@ -112,7 +112,8 @@ def instants(ball, landed, gap, w, x, y, amplitude):
     the speeds.
 
     f = δ - h(u) with the gap h(u) at the start has f″ ≥ -(1 + Λ)(1 + \|h′\|) if h′ is constant, as
-    it is for the instants of a linear contact.
+    it is for the instants of a linear contact. For others a step may pass the zero of f, and
+    Newton's method goes back to it.
     """
     t = landed.copy()
     speed = np.empty_like(t)
@@ -122,10 +123,14 @@ def instants(ball, landed, gap, w, x, y, amplitude):
         slope_of_start = start.imag / H
         f = position - start.real
         slope = rate + slope_of_start * second
-        bend = (1 + amplitude) * (1 + np.abs(slope_of_start))
+        lag = np.abs(slope_of_start)
+        bend = (1 + amplitude) * (1 + lag)
         step = root_of_parabola(np.maximum(f, 0.0), slope, bend)
+        size = np.abs(gap) + (t + lag) * (np.abs(w) + (1 + amplitude) * (1 + t))
+        passed = f < -16 * ROUNDING * size  # more than rounding
+        step = np.where(passed, -f / slope, step)
         speed = -rate
-        if not np.any(step > 4 * ROUNDING * t):
+        if not np.any(np.abs(step) > 4 * ROUNDING * t):
             break
         t += step
     return t, speed

@@ -281,7 +281,7 @@ def study(kind, recordings, seed):
         known = stated[0] if stated else recording.uncertainty
         at = math.exp(float(np.mean(np.log(impacts.speed))))
         curves = curves_of(impacts, errors_of(impacts, known), at)
-        scattering, still = estimates(curves, impacts.log_r)
+        scattering, still = estimates(impacts, curves, known is not None)
         found = scattering if make.keywords["scatter"] or still is None else still
         truth = math.log(float(np.squeeze(r(at))))
         held += found.low <= truth <= found.high

@@ -16,7 +16,9 @@ readings are given, σ² (1 - φ) is known.
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
 does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
 scatter, and for weights of φ that are proportional to φ, if they do. The first one is left out if
-the impacts contradict it (it is less than 1/20 as likely as the second one) or if both are alike.
+the impacts contradict it or if both are alike. The impacts contradict it if a test of φ = 0 rejects
+it at 5 %. Its statistic is Q(0)/σ², which has the χ² distribution, if the errors are known, and
+Q(0)/Q(1) otherwise, where Q(φ) is the sum of squares that a power of the speed leaves.
 
 A law is judged by how much worse it fits than a parabola in ln v, for each φ: by the F
 distribution, of whose probabilities the largest one counts among those φ that are at least 1/20 as
@@ -28,7 +30,7 @@ incompatible, but said to deviate.
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -54,6 +56,8 @@ _LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
 # What is less likely than this, compared with something else, is left out.
 _UNLIKELY = 0.05
+# A contact that lasts longer, in s, is not one of a ball.
+_LONGEST_CONTACT = 0.01
 # Intervals are alike if the narrower one is more than this part of the other one.
 _ALIKE = 0.8
 REJECTED = 0.005
@@ -153,6 +157,22 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
     return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
+
+
+def without_contacts(recording: Recording, durations: Array) -> Recording:
+    """Return the recording with flights from release to touch.
+
+    Raises
+    ------
+    Refused
+        If a contact would last as long as a flight.
+    """
+    chains = tuple(chain - durations[: len(chain)] for chain in recording.chains)
+    shortest = min(float(chain.min(initial=math.inf)) for chain in chains)
+    if shortest <= 0:
+        raise Refused(f"contact time: {show(float(durations.max()), 's')} is longer than the "
+                      "shortest time between two impacts")  # fmt: skip
+    return replace(recording, chains=chains)
 
 
 @dataclass(frozen=True)
@@ -279,18 +299,42 @@ def _estimate(curves: Curves, y: Array, by_share: Array) -> Estimate:
     return Estimate(centre + middle, low, high, float(np.sum(weights * slope)))
 
 
-def estimates(curves: Curves, y: Array) -> tuple[Estimate, Estimate | None]:
+def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
+    """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
+
+    The deviations are those from a power of the speed. A ratio of two squares is larger than the
+    measured one if a sum of squares of normal numbers with certain factors is positive: the
+    integral for that is of J. P. Imhof, Biometrika 48 (1961) 419.
+    """
+    x = np.log(impacts.speed)
+    contrasts = linalg.null_space(np.stack([np.ones_like(x), x - x.mean()]))
+    z = contrasts.T @ impacts.log_r
+    if len(z) < 2:
+        return 1.0
+    still = contrasts.T @ curves.errors.shapes[0] @ contrasts
+    squares = float(z @ np.linalg.solve(still, z))
+    if is_known:
+        return float(special.chdtrc(len(z), squares / curves.errors.sizes[0, 0] ** 2))
+    factors = 1 - squares / float(z @ z) * np.linalg.eigvalsh(still)
+    steps = np.arange(-30.0, 60.0, 0.05)
+    by_step = factors / np.abs(factors).max() * np.exp(steps)[:, None]
+    swing = np.sin(np.arctan(by_step).sum(axis=1) / 2)
+    damped = np.exp(-np.log1p(by_step**2).sum(axis=1) / 4)
+    return 0.5 + float(np.trapezoid(swing * damped, steps)) / math.pi
+
+
+def estimates(impacts: Impacts, curves: Curves, is_known: bool) -> tuple[Estimate, Estimate | None]:
     """Return what a recording says if impacts scatter, and if they do not.
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
+    y = impacts.log_r
     shares = curves.errors.shares
-    likelihood = curves.posterior(y - np.mean(y))[0].sum(axis=(1, 2))
     scattering = _estimate(curves, y, shares)
-    if likelihood[0] < _UNLIKELY * float(shares @ likelihood) / shares.sum():
-        return scattering, None
     still = _estimate(curves, y, np.where(shares == 0, 1.0, 0.0))
     if still.high - still.low > _ALIKE * (scattering.high - scattering.low):
+        return scattering, None
+    if still.low > 0 or without_scatter(impacts, curves, is_known) < _UNLIKELY:
         return scattering, None
     return scattering, still
 
@@ -697,7 +741,8 @@ def fit(
     mass, diameter : Quantity, optional
         Of the ball, with which the drag of the air is removed from flights and heights.
     contact_time : Quantity, optional
-        A measured one, in place of those of the recording: it gives the laws their stiffness.
+        A measured one, in place of those of the recording: it gives the laws their stiffness, and
+        is taken off times between impacts, which are from touch to touch.
     leave_out : tuple of int
         Lines of the file.
     intervals : bool
@@ -706,7 +751,7 @@ def fit(
     Raises
     ------
     Refused
-        If the recording cannot be read or has fewer than three impacts.
+        If the recording cannot be read, no impact lies between two flights, or r is above 1.
     """
     recording = source if isinstance(source, Recording) else read(source, leave_out, intervals)
     head = recording.head
@@ -722,31 +767,57 @@ def fit(
             notes.append(f"the drag of the air is removed, {drag:.2g} of the speed per metre")
         else:
             notes.append("the drag of the air is not removed: give the mass and the diameter")
+    durations = recording.durations
+    if contact_time is not None:
+        durations = np.array([positive("contact time", contact_time, "s")])
+    if recording.kind == "flights" and durations is not None:
+        recording = without_contacts(recording, durations)
+        # The first and the last touch are no impacts between two flights.
+        durations = durations[1:-1] if len(durations) > 2 else durations
+        lasts = show(float(durations.mean()), "s")
+        notes.append(f"the contact, {lasts}, is taken off each time between two impacts")
     impacts = impacts_of(recording, drag)
     n = len(impacts.log_r)
     middle = math.exp(float(np.mean(np.log(impacts.speed))))
     at = middle if speed is None else positive("speed", speed, "m/s")
     if n < _FEWEST:
-        notes.append(f"{n} impacts are too few for an interval of its own: it is wide")
+        notes.append("too few impacts for an interval of their own: it is wide")
     stated = resolution if resolution is not None else head.get("resolution")
     known: float | Array | None = recording.uncertainty
     if stated is not None:
         unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s"}
         known = positive("resolution", stated, unit.get(recording.kind, ""))
+    is_known = known is not None
     curves = curves_of(impacts, errors_of(impacts, known), at)
-    scattering, still = estimates(curves, impacts.log_r)
+    scattering, still = estimates(impacts, curves, is_known)
+    if scattering.low > 0:
+        raise Refused(
+            f"{recording.name}: r = {math.exp(scattering.value):.4f} is above 1 by more than "
+            "its error: no ball bounces so"
+        )
+    if scattering.value > 0:
+        notes.append(
+            f"r = {math.exp(scattering.value):.4f} is above 1 within its error: 1 is taken"
+        )
+    restitution = min(math.exp(scattering.value), 1.0)
+    if recording.kind == "flights" and durations is None:
+        tried = 0.01 * min(float(chain.min(initial=1.0)) for chain in recording.chains)
+        shorter = impacts_of(without_contacts(recording, np.array([tried])), drag)
+        low, high = _of_logs(still or scattering)
+        falls = restitution * float(np.mean(impacts.log_r - shorter.log_r)) / tried
+        if falls * _LONGEST_CONTACT > (high - low) / 2:
+            notes.append(
+                f"times between impacts include the contact: r is lower by {falls / 1000:.1g} for "
+                f"each ms that it lasts, which matters from {show((high - low) / 2 / falls, 's')} "
+                "on; give --contact-time"
+            )
     if not 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max():
         notes.append(f"{at:.3g} m/s is outside of the measured speeds")
-    is_known = known is not None
     if not is_known:
         notes.append("no errors are given: a law can only be said to deviate")
     laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
     if laws and all(each.probability < REJECTED for each in laws):
         notes.append("no law fits: r is that of a smooth curve")
-    durations = recording.durations
-    if contact_time is not None:
-        durations = np.array([positive("contact time", contact_time, "s")])
-    restitution = min(math.exp(scattering.value), 1.0)
     times: list[Timed] = []
     if durations is not None:
         times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)

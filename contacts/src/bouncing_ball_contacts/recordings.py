@@ -9,7 +9,7 @@ time, or a signal in which impacts stand out. Lines ``# key: value`` above it na
 import re
 import zipfile
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree
@@ -25,10 +25,11 @@ UNITS = {
     "drop": "m",
     "rebound": "m",
     "height": "m",
-    "position": "m",
     "in": "m/s",
     "out": "m/s",
     "duration": "s",
+    "restitution": "",
+    "uncertainty": "",
 }
 # What a heading means: the first pattern that is found in it, in lower case and without units.
 _MEANINGS = (
@@ -41,14 +42,15 @@ _MEANINGS = (
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
     ("in", r"(impact|incoming|falling)\b.*\b(speed|velocity)"),
     ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
-    ("rebound", r"rebound|bounce height|^h ?(1|2|'|′|after|out|r)\b|^h'"),
+    ("rebound", r"rebound|bounce height|^h ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
     ("drop", r"drop|release|initial height|start height|^h ?(0|before|in|i)\b"),
     ("height", r"height|^h$"),
     ("recording", r"recording|^run\b|trial|series|ball\b"),
     ("count", r"number|^(no|nr)\.?$|^n$|^#$|index|^(event|bounce|impact)s?$"),
     ("time", r"^t ?\d*$|time|second"),
-    ("position", r"^y$|position.*y|^z$|vertical"),
-    ("signal", r"^f[a-z]?$|force|volt|ampl|sound|accel|pressure|^ch ?\d|recording|audio|load"),
+    ("position", r"^[yz]\b|^(?!x\b).*\bposition\b(?!.*\bx\b)|vertical"),
+    ("force", r"^f[a-z]?$|force|load"),
+    ("signal", r"volt|ampl|sound|accel|pressure|^ch ?\d|audio"),
 )
 _UNIT_ROW = re.compile(
     r"|s|ms|µs|us|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
@@ -61,6 +63,9 @@ _LONGEST = 9.0
 _LONGER = 1.02
 # Between two impacts a signal is silent for this time in s.
 _SILENCE = 0.03
+_SHORTEST_TRACK = 8
+# A height that rises by this part of the range belongs to another flight.
+_RISE = 0.03
 
 
 @dataclass(frozen=True)
@@ -70,9 +75,10 @@ class Recording:
     ``kind`` is "flights" (durations of successive flights in s), "heights" (successive tops),
     "drops" (pairs of heights), "speeds" (pairs) or "coefficients" (pairs of speed and r).
 
-    ``chains`` are arrays, one for each recording; those of pairs have two columns. ``uncertainty``
-    has standard deviations of r, ``durations`` contact times in s, one or one for each impact;
-    ``head`` has what the file says of the ball.
+    ``chains`` are arrays, one for each recording; those of pairs have two columns. A flight is the
+    time from touch to touch, which includes the contact at its begin. ``uncertainty`` has standard
+    deviations of r, ``durations`` contact times in s, one or one for each impact (of flights: for
+    each touch); ``head`` has what the file says of the ball.
     """
 
     name: str
@@ -106,6 +112,8 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
     Refused
         If the file has no bounces, or numbers that are no bounces.
     """
+    if not isinstance(source, str | Path):
+        raise Refused(f"{source!r} is no recording: give a file, a name, or Recording(…)")
     path = Path(source)
     if str(source) in experiments():
         data = files(__package__).joinpath("experiments", f"{source}.csv").read_bytes()
@@ -184,7 +192,17 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
         if "interval" not in columns and np.all(np.diff(times[np.isfinite(times)]) > 0):
             raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
         columns.setdefault("interval", times)
-    return _measured(name, columns, head, table)
+    recording, used = _measured(name, columns, head, table.names)
+    # Lines that were left out on purpose are known to be missing.
+    has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
+    inside = range(table.lines[0], table.lines[-1])
+    empty = {number for number in inside if not lines[number - 1].strip()}
+    gaps = sorted((empty | set(columns["line"][has_gap])) - leave_out)
+    if gaps:
+        shown = ", ".join(f"{number:.0f}" for number in gaps[:5]) + (", …" if gaps[5:] else "")
+        note = f"a number is missing in line {shown}, which is left out"
+        return replace(recording, notes=(*recording.notes, note))
+    return recording
 
 
 @dataclass(frozen=True)
@@ -254,11 +272,16 @@ def _heading(cell: str) -> tuple[str, str]:
     """Return the name and the unit of a heading such as 'Drop height (cm)' or 'h0/cm'."""
     found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell)
     if found is None:
-        found = re.fullmatch(r"(.+?)(?:\s*/\s*|[_ ]| in )(s|ms|us|µs|m|cm|mm|m/s|cm/s|N|V)", cell)
-    return (found[1].strip(), found[2]) if found else (cell, "")
+        units = "s|ms|us|µs|m|cm|mm|px|m/s|cm/s|N|V"
+        found = re.fullmatch(rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell)
+    if found is None:
+        return cell, ""
+    return found[1].strip(), "" if found[2] in ("-", "–", "1") else found[2]
 
 
 def _meaning(name: str, unit: str) -> str | None:
+    if unit.lower() in ("px", "pixel", "pixels"):
+        return None if name.lower().startswith("x") else "position"
     plain = re.sub(r"[{}$\\]", "", name).replace("_", " ").lower().strip()
     for meaning, pattern in _MEANINGS:
         if plain and re.search(pattern, plain):
@@ -267,18 +290,31 @@ def _meaning(name: str, unit: str) -> str | None:
 
 
 def _columns(name: str, table: _Table) -> dict[str, Array]:
+    """Return what the columns measure, in SI units, and "line", the numbers of the lines."""
     values = table.values
     names = table.names
     units = table.units
+    line = np.array(table.lines)
+    columns: dict[str, Array] = {}
     alike = {re.sub(r"\d+", "", each) for each in names}
-    if len(values) == 1 and len(names) > 2 and len(alike) == 1:
-        # One recording in one line, as "Time 1 (s)", "Time 2 (s)", …
-        values = values.T
+    first = _meaning(names[0], units[0])
+    is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
+    if len(names) > 2 and len(alike) == 1 and is_series:
+        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …
+        line = np.repeat(line, len(names))
+        columns["recording"] = line
+        values = values.reshape(-1, 1)
         names = names[:1]
         units = units[:1]
+    meanings = [_meaning(*each) for each in zip(names, units, strict=True)]
+    if {"time", "height"} <= set(meanings) and len(values) >= _SHORTEST_TRACK:
+        place = meanings.index("height")
+        rises = values[:, place] - np.fmin.accumulate(values[:, place])
+        if np.nanmax(rises, initial=0.0) > _RISE * np.ptp(values[np.isfinite(rises), place]):
+            # Tops of flights fall, so that these are heights of a track.
+            meanings[place] = "position"
     found: dict[str, list[Array]] = {}
-    for column, heading, unit in zip(values.T, names, units, strict=True):
-        meaning = _meaning(heading, unit)
+    for column, heading, unit, meaning in zip(values.T, names, units, meanings, strict=True):
         if meaning is None or not np.isfinite(column).any():
             continue
         scale = 1.0
@@ -292,12 +328,21 @@ def _columns(name: str, table: _Table) -> dict[str, Array]:
         found.setdefault(meaning, []).append(column * scale)
     if not any(names):
         found = _without_headings(values)
-    columns = {meaning: parts[0] for meaning, parts in found.items()}
-    if len(found.get("rebound", [])) > 1 and "drop" in columns:
-        # Several rebounds of one drop height, each in a column.
-        columns["drop"] = np.tile(columns["drop"], len(found["rebound"]))
-        columns["rebound"] = np.concatenate(found["rebound"])
-    return columns
+    columns |= {meaning: parts[0] for meaning, parts in found.items()} | {"line": line}
+    rebounds = found.get("rebound", [])
+    if len(rebounds) < 2 or "drop" not in found:
+        return columns
+    heights = np.column_stack([columns["drop"], *rebounds])
+    total = heights[np.isfinite(heights[:, :3]).all(axis=1), :3].sum(axis=0)
+    # Of successive bounces, heights fall from each to the next: h₂/h₁ is nearer to h₁/h₀ than to 1.
+    if total[2] ** 2 * total[0] < total[1] ** 3:
+        line = np.repeat(line, heights.shape[1])
+        return {"height": heights.ravel(), "recording": line, "line": line}
+    return {
+        "drop": np.tile(columns["drop"], len(rebounds)),
+        "rebound": np.concatenate(rebounds),
+        "line": np.tile(line, len(rebounds)),
+    }
 
 
 def _without_headings(values: Array) -> dict[str, list[Array]]:
@@ -311,84 +356,83 @@ def _without_headings(values: Array) -> dict[str, list[Array]]:
     return {"time": [first]} if is_label else {}
 
 
+_PAIRS = (
+    ("drops", "drop", "rebound", "m"),
+    ("speeds", "in", "out", "m/s"),
+    ("coefficients", "in", "restitution", ""),
+)
+
+
 def _measured(
-    name: str, columns: dict[str, Array], head: dict[str, str], table: _Table
-) -> Recording:
+    name: str, columns: dict[str, Array], head: dict[str, str], names: list[str]
+) -> tuple[Recording, list[str]]:
+    """Return the recording, and the columns that it was read from."""
     have = columns.keys()
     notes: list[str] = []
+    durations = None
+    uncertainty = None
     for speed in {"in", "out"} & have:
         if np.nanmax(columns[speed]) < 0:
             notes.append("the velocities are all negative: their sizes are the speeds")
         columns[speed] = np.abs(columns[speed])
-    lines = table.lines
-    if {"drop", "rebound"} <= have:
-        kind = "drops"
-        chains = [_pairs(name, lines, columns["drop"], columns["rebound"], "m")]
-    elif {"in", "out"} <= have:
-        kind = "speeds"
-        chains = [_pairs(name, lines, columns["in"], columns["out"], "m/s")]
-    elif {"in", "restitution"} <= have:
-        kind = "coefficients"
-        chains = [_pairs(name, lines, columns["in"], columns["restitution"], "")]
+    pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
+    if pairs is not None:
+        kind, before, after, unit = pairs
+        used = [before, after]
+        chains = [_pairs(name, columns, before, after, unit)]
+        uncertainty = columns.get("uncertainty")
     elif {"time", "position"} <= have:
         kind = "speeds"
-        chains = [_track(name, columns["time"], columns["position"])]
-        notes.append(
-            f"{len(chains[0])} impacts were found where flights meet; gravity is the scale."
-        )
-    elif {"time", "signal"} <= have:
+        used = ["time", "position"]
+        track, is_turned = _track(name, columns)
+        chains = [track]
+        if is_turned:
+            notes.append("the positions grow downwards, as in a picture: they were turned")
+        notes.append(f"{len(track)} impacts were found where flights meet; gravity is the scale.")
+    elif "time" in have and {"force", "signal"} & have:
         kind = "flights"
-        chains = [np.diff(_peaks(name, columns["time"], columns["signal"]))]
-        notes.append(f"{len(chains[0]) + 1} impacts were found in the signal")
-    elif "time" in have or "interval" in have:
+        used = ["time", "force" if "force" in have else "signal"]
+        touches, durations = _touches(name, columns, used[1])
+        chains = [np.diff(touches)]
+        notes.append(f"{len(touches)} impacts were found in the signal")
+    elif {"time", "interval"} & have:
         kind = "flights"
-        chains, of = _flights(name, columns, lines)
+        chains, of = _flights(name, columns)
+        used = [of]
         if {"time", "interval"} <= have:
-            notes.append(f"the file has times and intervals: it is read by its {of}")
-    elif "height" in have or "drop" in have:
+            notes.append(f"the file has times and intervals: it is read by its {of}s")
+    elif {"height", "drop"} & have:
         kind = "heights"
-        tops = columns.get("height", columns.get("drop"))
-        assert tops is not None
-        chains = _parts(tops, columns)
-        _require_falling(name, chains, "height", "m", _HIGHEST)
+        used = ["height" if "height" in have else "drop"]
+        parts = _parts(columns, used[0])
+        chains = _falling(name, parts, "height", "m", _HIGHEST)
     else:
-        known = ", ".join(each for each in table.names if each) or "a table without headings"
+        known = ", ".join(each for each in names if each) or "a table without headings"
         raise Refused(
             f"{name}: no bounces in {known}: times, intervals, heights, speeds or positions are "
             "needed"
         )
-    uncertainty = columns.get("uncertainty")
-    if uncertainty is not None and kind in ("drops", "speeds", "coefficients"):
-        uncertainty = uncertainty[: len(lines)][np.isfinite(uncertainty[: len(lines)])]
+    if uncertainty is not None:
+        uncertainty = uncertainty[np.isfinite(uncertainty)]
         if len(uncertainty) != len(chains[0]) or np.any(uncertainty <= 0):
             raise Refused(f"{name}: each impact needs an uncertainty above 0, or none has one")
-    else:
-        uncertainty = None
-    durations = None
+    given = columns.get("duration", np.empty(0))
+    given = given[np.isfinite(given)]
     if "contact time" in head:
         durations = np.array([in_si("contact time", head["contact time"], "s")])
-    elif "duration" in have and np.isfinite(columns["duration"]).any():
-        durations = columns["duration"][np.isfinite(columns["duration"])]
-        if len(durations) != len(chains[0]):
-            durations = np.array([durations.mean()])
-    return Recording(
-        name=name,
-        kind=kind,
-        chains=tuple(chains),
-        uncertainty=uncertainty,
-        durations=durations,
-        head=head,
-        notes=tuple(notes),
-    )
+    elif len(given):
+        is_each = pairs is not None and len(given) == len(chains[0])
+        durations = given if is_each else np.array([given.mean()])
+    found = Recording(name, kind, tuple(chains), uncertainty, durations, head, tuple(notes))
+    return found, used
 
 
-def _pairs(name: str, lines: list[int], first: Array, second: Array, unit: str) -> Array:
-    good = np.isfinite(first) & np.isfinite(second)
-    pairs = np.column_stack([first, second])[good]
-    if not len(pairs):
+def _pairs(name: str, columns: dict[str, Array], first: str, second: str, unit: str) -> Array:
+    pairs = np.column_stack([columns[first], columns[second]])
+    good = np.isfinite(pairs).all(axis=1)
+    if not good.any():
         raise Refused(f"{name} has no complete line")
-    numbers = np.resize(lines, len(first))[good]
-    for line, (before, after) in zip(numbers, pairs, strict=True):
+    for line, (before, after) in zip(columns["line"][good], pairs[good], strict=True):
         where = f"{name}, line {line}"
         if before <= 0 or after <= 0:
             raise Refused(f"{where}: {before:g} and {after:g} are not both positive")
@@ -398,65 +442,74 @@ def _pairs(name: str, lines: list[int], first: Array, second: Array, unit: str) 
             raise Refused(f"{where}: a speed of {before:.3g} m/s: is it in cm/s? write the unit")
         if after > 1.05 * before and unit:
             raise Refused(
-                f"{where}: it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: are the "
-                "columns exchanged?"
+                f"{where}: it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: is a "
+                "number wrong, or are the columns exchanged?"
             )
         if not unit and after > 1.05:
-            raise Refused(f"{where}: a restitution coefficient of {after:.3g} is above 1")
-    return pairs
+            raise Refused(
+                f"{where}: a restitution coefficient of {after:.3g} is above 1: is it in per cent? "
+                "write (%) in the heading"
+            )
+    return pairs[good]
 
 
-def _parts(values: Array, columns: dict[str, Array]) -> list[Array]:
-    """Return the values of each recording, divided where a line was left out."""
+_Parts = list[tuple[Array, Array]]
+
+
+def _parts(columns: dict[str, Array], of: str) -> _Parts:
+    """Return the values of each recording with their lines, divided where a number is missing."""
+    values = columns[of]
+    if of != "time":
+        values = np.where(values == 0, np.nan, values)
     numbers = columns.get("recording", np.zeros(len(values)))
     found = []
     for number in dict.fromkeys(numbers[np.isfinite(numbers)]):
-        of_this = values[numbers == number]
-        ends = np.flatnonzero(~np.isfinite(of_this) | (of_this == 0))
-        found += [part[np.isfinite(part) & (part != 0)] for part in np.split(of_this, ends)]
-    return [part for part in found if len(part)]
+        both = np.column_stack([values, columns["line"]])[numbers == number]
+        ends = np.flatnonzero(~np.isfinite(both[:, 0]))
+        found += [part[np.isfinite(part[:, 0])].T for part in np.split(both, ends)]
+    return [(part[0], part[1]) for part in found if part.size]
 
 
-def _flights(name: str, columns: dict[str, Array], lines: list[int]) -> tuple[list[Array], str]:
-    """Return the durations of flights, and whether they were read by times or by intervals."""
-    times = columns.get("time")
-    if times is not None:
-        numbers = columns.get("recording", np.zeros(len(times)))
-        rising = all(
-            np.all(np.diff(times[(numbers == each) & np.isfinite(times)]) > 0)
-            for each in np.unique(numbers[np.isfinite(numbers)])
-        )
+def _flights(name: str, columns: dict[str, Array]) -> tuple[list[Array], str]:
+    """Return the durations of flights, and the column that they are of."""
+    if "time" in columns:
+        parts = _parts(columns, "time")
+        steps = [(np.diff(times), lines[1:]) for times, lines in parts if len(times) > 1]
+        rises = np.concatenate([step for step, _ in steps] or [np.empty(0)]) > 0
+        if rises.all():
+            return _falling(name, steps, "flight", "s", _LONGEST), "time"
         # A list of numbers that fall is one of intervals, whatever its heading.
-        if rising:
-            shifted = np.where(times == 0, 1e-12, times)
-            chains = [np.diff(part) for part in _parts(shifted, columns) if len(part) > 1]
-            _require_falling(name, chains, "flight", "s", _LONGEST)
-            return chains, "times"
-    values = columns.get("interval", times)
-    assert values is not None
-    chains = _parts(values, columns)
-    _require_falling(name, chains, "flight", "s", _LONGEST)
-    return chains, "intervals"
+        if "interval" not in columns and rises.mean() > 0.5:
+            step, lines = next(each for each in steps if (each[0] <= 0).any())
+            raise _unsorted(name, lines[step <= 0][0])
+    of = "interval" if "interval" in columns else "time"
+    return _falling(name, _parts(columns, of), "flight", "s", _LONGEST), of
 
 
-def _require_falling(name: str, chains: list[Array], what: str, unit: str, most: float) -> None:
-    for chain in chains:
-        if np.any(chain <= 0):
-            raise Refused(f"{name}: a {what} of {chain.min():.4g} {unit} is not positive")
-        if len(chain) and chain.max() > most:
-            small = "ms" if unit == "s" else "cm"
-            raise Refused(
-                f"{name}: a {what} of {chain.max():.4g} {unit}: is it in {small}? write the unit "
-                f"in the heading, as in '{what} ({small})'"
-            )
-        longer = np.flatnonzero(chain[1:] > _LONGER * chain[:-1])
-        if len(longer):
-            i = int(longer[0])
-            raise Refused(
-                f"{name}: a {what} of {chain[i + 1]:.4g} {unit} follows one of {chain[i]:.4g} "
-                f"{unit}: an impact is missing, or another recording begins (give a column "
-                "'recording', or --leave-out its line)"
-            )
+def _unsorted(name: str, line: float) -> Refused:
+    return Refused(f"{name}, line {line:.0f}: the time is not after the one before: sort the lines")
+
+
+def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> list[Array]:
+    """Return chains without their lines, if they are of a bouncing ball."""
+    for chain, lines in parts:
+        before = np.concatenate([[np.inf], chain[:-1]])
+        for line, value, last in zip(lines, chain, before, strict=True):
+            found = f"{name}, line {line:.0f}: a {what} of {value:.4g} {unit}"
+            if value <= 0:
+                raise Refused(f"{found} is not positive")
+            if value > most:
+                small = "ms" if unit == "s" else "cm"
+                raise Refused(
+                    f"{found}: is it in {small}? write the unit in the heading, as in '{what} "
+                    f"({small})'"
+                )
+            if value > _LONGER * last:
+                raise Refused(
+                    f"{found} follows one of {last:.4g} {unit}: an impact is missing, or another "
+                    "recording begins (give a column 'recording', or --leave-out its line)"
+                )
+    return [chain for chain, _ in parts]
 
 
 def _even(times: Array) -> Array:
@@ -468,57 +521,94 @@ def _even(times: Array) -> Array:
     return even if np.abs(even - times).max() < 0.5 * slope else times
 
 
-def _track(name: str, times: Array, heights: Array) -> Array:
-    """Return speeds before and after impacts, where the parabolas of neighbouring flights meet.
+def _in_time(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Array, Array]:
+    """Return the times, values and lines of a track or a signal."""
+    rows = np.column_stack([columns["time"], columns[of], columns["line"]])
+    times, values, lines = rows[np.isfinite(rows).all(axis=1)].T
+    back = np.flatnonzero(np.diff(times) < 0)
+    if len(back):
+        raise _unsorted(name, lines[back[0] + 1])
+    return times, values, lines
 
-    All flights have one curvature, which is that of gravity and gives the scale.
+
+def _track(name: str, columns: dict[str, Array]) -> tuple[Array, bool]:
+    """Return speeds before and after impacts of a track, and whether it grows downwards.
+
+    Flights are parabolas that are open below: the other way round, they would end at their tops,
+    and parabolas would miss the impacts between them.
+    """
+    times, heights, lines = _in_time(name, columns, "position")
+    if len(times) < _SHORTEST_TRACK:
+        raise Refused(f"{name}: a track of {len(times)} positions is too short")
+    t = _even(times)
+    upwards = _meetings(t, heights)
+    downwards = _meetings(t, -heights)
+    is_turned = downwards[1] < upwards[1]
+    meetings = downwards[0] if is_turned else upwards[0]
+    if not meetings:
+        raise Refused(f"{name}: no impact between two flights of four positions in the track")
+    at, before, after = np.array(meetings).T
+    impacts = {"line": lines[at.astype(int)].astype(int), "in": before, "out": after}
+    return _pairs(name, impacts, "in", "out", "m/s"), bool(is_turned)
+
+
+def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float]:
+    """Return frame, speeds before and after of each impact, and the misfit of the parabolas.
+
+    Two neighbouring flights have one curvature, which is that of gravity and gives the scale.
     """
     from scipy.signal import find_peaks
 
-    good = np.isfinite(times) & np.isfinite(heights)
-    t = _even(times[good])
-    y = heights[good]
-    if len(t) < 8:
-        raise Refused(f"{name}: a track of {len(t)} positions is too short")
-    low, _ = find_peaks(-y, prominence=0.03 * np.ptp(y))
+    low, _ = find_peaks(-y, prominence=_RISE * np.ptp(y))
     edges = [-1, *(int(i) for i in low), len(y)]
-    flights = []
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
-        # The frames beside an impact may show a part of it.
-        inside = np.arange(max(start + 2, 0), min(end - 1, len(y)))
-        flights.append(inside if len(inside) >= 4 else None)
-    pairs = []
-    for before, after in zip(flights[:-1], flights[1:], strict=True):
-        if before is None or after is None:
+    # The frames beside an impact may show a part of it.
+    flights = [
+        np.arange(max(start + 2, 0), min(end - 1, len(y)))
+        for start, end in zip(edges[:-1], edges[1:], strict=True)
+    ]
+    found = []
+    squares = 0.0
+    free = 0
+    for impact, before, after in zip(low, flights[:-1], flights[1:], strict=True):
+        if min(len(before), len(after)) < 4:
             continue
-        pairs.append(_meeting(t[before], y[before], t[after], y[after]))
-    if not pairs:
-        raise Refused(f"{name}: no impact between two flights of four positions in the track")
-    return np.array(pairs)
+        both = np.concatenate([before, after])
+        is_after = np.isin(both, after)
+        time = t[both] - t[impact]
+        rows = np.column_stack([time**2, ~is_after, ~is_after * time, is_after, is_after * time])
+        best = np.linalg.lstsq(rows, y[both], rcond=None)[0]
+        squares += float(np.sum((y[both] - rows @ best) ** 2))
+        free += len(both) - len(best)
+        a, c1, b1, c2, b2 = best
+        meet = (c1 - c2) / (b2 - b1)
+        scale = STANDARD_GRAVITY / (-2 * a)
+        found.append((impact, -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale))
+    return found, squares / free if free else np.inf
 
 
-def _meeting(t1: Array, y1: Array, t2: Array, y2: Array) -> tuple[float, float]:
-    """Return the speeds in m/s at which two flights of one curvature meet."""
-    zero = t2[0]
-    rows1 = np.column_stack([(t1 - zero) ** 2, np.ones_like(t1), t1 - zero, 0 * t1, 0 * t1])
-    rows2 = np.column_stack([(t2 - zero) ** 2, 0 * t2, 0 * t2, np.ones_like(t2), t2 - zero])
-    a, c1, b1, c2, b2 = np.linalg.lstsq(
-        np.vstack([rows1, rows2]), np.concatenate([y1, y2]), rcond=None
-    )[0]
-    meet = -(c2 - c1) / (b2 - b1)
-    scale = STANDARD_GRAVITY / (2 * abs(a))
-    sign = -np.sign(a)
-    return float(-sign * (b1 + 2 * a * meet) * scale), float(sign * (b2 + 2 * a * meet) * scale)
+def _touches(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Array | None]:
+    """Return the times at which impacts begin in a signal, and how long they last in a force.
 
-
-def _peaks(name: str, times: Array, signal: Array) -> Array:
-    """Return the times at which a signal rises above a fifth of its largest peak after silence."""
-    good = np.isfinite(times) & np.isfinite(signal)
-    t = times[good]
-    size = np.abs(signal[good] - np.median(signal[good]))
-    level = max(size.max() / 5, 6 * float(np.median(size)))
-    above = np.flatnonzero(size > level)
-    starts = above[np.diff(t[above], prepend=-np.inf) > _SILENCE] if len(above) else above
+    An impact rises above a fifth of the largest peak after silence. A force has the contact from
+    where it last was below a twentieth of its peak, or in the noise, to where it is so again.
+    """
+    t, signal, _ = _in_time(name, columns, of)
+    size = np.abs(signal - np.median(signal))
+    noise = float(np.median(size))
+    above = np.flatnonzero(size > max(size.max(initial=0.0) / 5, 6 * noise))
+    starts = above[np.diff(t[above], prepend=-np.inf) > _SILENCE]
     if len(starts) < 3:
         raise Refused(f"{name}: {len(starts)} impacts stand out of the signal: three are needed")
-    return t[starts]
+    if of != "force":
+        return t[starts], None
+    contacts = []
+    for start, end in zip(starts, [*starts[1:], len(t)], strict=True):
+        peak = start + int(np.argmax(size[start:end]))
+        low = np.flatnonzero(size <= max(size[peak] / 20, 10 * noise))
+        place = np.searchsorted(low, peak)
+        if 0 < place < len(low):
+            # The force begins and ends between two samples.
+            begin, over = low[place - 1], low[place]
+            contacts.append([t[begin : begin + 2].mean(), t[over - 1 : over + 1].mean()])
+    begins, ends = np.array(contacts).T
+    return begins, ends - begins

@@ -309,13 +309,16 @@ def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
     x = np.log(impacts.speed)
     contrasts = linalg.null_space(np.stack([np.ones_like(x), x - x.mean()]))
     z = contrasts.T @ impacts.log_r
-    if len(z) < 2:
+    if not len(z):
         return 1.0
     still = contrasts.T @ curves.errors.shapes[0] @ contrasts
     squares = float(z @ np.linalg.solve(still, z))
     if is_known:
         return float(special.chdtrc(len(z), squares / curves.errors.sizes[0, 0] ** 2))
     factors = 1 - squares / float(z @ z) * np.linalg.eigvalsh(still)
+    if np.abs(factors).max() < 1e-6:
+        # Errors of readings are like scatter.
+        return 1.0
     steps = np.arange(-30.0, 60.0, 0.05)
     by_step = factors / np.abs(factors).max() * np.exp(steps)[:, None]
     swing = np.sin(np.arctan(by_step).sum(axis=1) / 2)
@@ -331,12 +334,11 @@ def estimates(impacts: Impacts, curves: Curves, is_known: bool) -> tuple[Estimat
     y = impacts.log_r
     shares = curves.errors.shares
     scattering = _estimate(curves, y, shares)
+    if without_scatter(impacts, curves, is_known) < _UNLIKELY:
+        return scattering, None
     still = _estimate(curves, y, np.where(shares == 0, 1.0, 0.0))
-    if still.high - still.low > _ALIKE * (scattering.high - scattering.low):
-        return scattering, None
-    if still.low > 0 or without_scatter(impacts, curves, is_known) < _UNLIKELY:
-        return scattering, None
-    return scattering, still
+    is_alike = still.high - still.low > _ALIKE * (scattering.high - scattering.low)
+    return scattering, None if is_alike or still.low > 0 else still
 
 
 def scatter_of(impacts: Impacts, curves: Curves) -> float:

@@ -37,6 +37,7 @@ from typing import Any
 
 import numpy as np
 from scipy import linalg, optimize, special
+from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
 from bouncing_ball_contacts.recordings import Recording, read
@@ -91,14 +92,13 @@ def _flight_speeds(duration: Array, drag: float) -> tuple[Array, Array]:
     """Return the speeds at the start and the end of flights, with the drag in 1/m."""
     if not drag:
         return G * duration / 2, G * duration / 2
-    low = G * duration / 2
-    high = 4 * G * duration / 2
-    for _ in range(50):
-        up = (low + high) / 2
+
+    def lasts(up: Array) -> Array:
         fall = np.arccosh(np.sqrt(1 + drag * up**2 / G))
-        takes = (np.arctan(up * math.sqrt(drag / G)) + fall) / math.sqrt(drag * G)
-        low = np.where(takes < duration, up, low)
-        high = np.where(takes < duration, high, up)
+        return (np.arctan(up * math.sqrt(drag / G)) + fall) / math.sqrt(drag * G)
+
+    bracket = (G * duration / 2, 2 * G * duration)
+    up = elementwise.find_root(lambda up, all_: lasts(up) - all_, bracket, args=(duration,)).x
     return up, up / np.sqrt(1 + drag * up**2 / G)
 
 
@@ -118,44 +118,33 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     Refused
         If there is no impact between two flights.
     """
-    speeds = []
-    logs = []
-    blocks = []
+    parts = []
     for chain in recording.chains:
-        if recording.kind in ("flights", "heights"):
-            if len(chain) < 2:
-                continue
-            if recording.kind == "flights":
-                up, down = _flight_speeds(chain, drag)
-                # An error of a time enters the flights on both sides of it.
-                of_flights = np.diff(np.diag(1 / chain), axis=0)
-                matrix = of_flights @ np.diff(np.eye(len(chain) + 1), axis=0)
-            else:
-                up, down = _height_speeds(chain, drag)
-                matrix = np.diff(np.diag(0.5 / chain), axis=0)
-            speeds.append(down[:-1])
-            logs.append(np.log(up[1:] / down[:-1]))
-            blocks.append(matrix)
-            continue
-        first, second = chain.T
-        if recording.kind == "drops":
-            down = _height_speeds(first, drag)[1]
-            up = _height_speeds(second, drag)[0]
-            matrix = np.diag(0.5 * np.hypot(1 / first, 1 / second))
-        elif recording.kind == "speeds":
-            down = first
-            up = second
-            matrix = np.diag(np.hypot(1 / first, 1 / second))
-        else:
-            down = first
+        is_pairs = recording.kind not in ("flights", "heights")
+        first, second = chain.T if is_pairs else (chain[:-1], chain[1:])
+        down = first
+        up = second
+        if recording.kind == "flights":
+            down = _flight_speeds(first, drag)[1]
+            up = _flight_speeds(second, drag)[0]
+            # An error of a time enters the flights on both sides of it.
+            of_flights = np.diff(np.diag(1 / chain), axis=0)
+            matrix = of_flights @ np.diff(np.eye(len(chain) + 1), axis=0)
+        elif recording.kind == "coefficients":
             up = first * second
             matrix = np.diag(1 / second)
-        speeds.append(down)
-        logs.append(np.log(up / down))
-        blocks.append(matrix)
-    if not speeds:
+        elif recording.kind == "speeds":
+            matrix = np.diag(np.hypot(1 / first, 1 / second))
+        else:
+            down = _height_speeds(first, drag)[1]
+            up = _height_speeds(second, drag)[0]
+            of_pairs = np.diag(0.5 * np.hypot(1 / first, 1 / second))
+            matrix = of_pairs if is_pairs else np.diff(np.diag(0.5 / chain), axis=0)
+        parts.append((down, np.log(up / down), matrix))
+    if not sum(len(down) for down, _, _ in parts):
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
+    speeds, logs, blocks = zip(*parts, strict=True)
     return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
 
 
@@ -168,10 +157,9 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
         If a contact would last as long as a flight.
     """
     chains = tuple(chain - durations[: len(chain)] for chain in recording.chains)
-    shortest = min(float(chain.min(initial=math.inf)) for chain in chains)
-    if shortest <= 0:
-        raise Refused(f"contact time: {show(float(durations.max()), 's')} is longer than the "
-                      "shortest time between two impacts")  # fmt: skip
+    if any((chain <= 0).any() for chain in chains):
+        longest = show(float(durations.max()), "s")
+        raise Refused(f"contact time: {longest} is longer than the time between two impacts")
     return replace(recording, chains=chains)
 
 

@@ -6,6 +6,8 @@ heights of a drop and its rebound, speeds before and after, restitution coeffici
 time, or a signal in which impacts stand out. Lines ``# key: value`` above it name the ball.
 """
 
+import contextlib
+import io
 import re
 import zipfile
 from collections.abc import Sequence
@@ -55,6 +57,7 @@ _MEANINGS = (
 _UNIT_ROW = re.compile(
     r"|s|ms|µs|us|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
 )
+_PIXELS = ("px", "pixel", "pixels")
 _HIGHEST = 100.0
 _HIGHEST_WITHOUT_UNIT = 10.0
 _FASTEST = 100.0
@@ -127,20 +130,16 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
 
 
 def _decoded(name: str, data: bytes) -> str:
-    if b"\0" in data[:4000] and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
+    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in data[:4000] and not is_wide:
         raise Refused(f"{name} is no text and no spreadsheet")
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16", "replace")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
+    with contextlib.suppress(UnicodeDecodeError):
+        return data.decode("utf-16" if is_wide else "utf-8-sig")
+    return data.decode("latin-1")
 
 
 def _sheet(data: bytes) -> str:
     """Return the first sheet of an xlsx file as lines with tabs."""
-    import io
-
     space = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as book:
@@ -154,10 +153,8 @@ def _sheet(data: bytes) -> str:
             for row in rows:
                 cells: dict[int, str] = {}
                 for cell in row.iter(f"{space}c"):
-                    letters = re.sub(r"\d", "", cell.get("r", "A"))
-                    place = 0
-                    for letter in letters:
-                        place = 26 * place + ord(letter) - 64
+                    letters = reversed(re.sub(r"\d", "", cell.get("r", "A")))
+                    place = sum(26**i * (ord(each) - 64) for i, each in enumerate(letters))
                     text = "".join(cell.itertext())
                     cells[place] = shared[int(text)] if cell.get("t") == "s" else text
                 lines.append(
@@ -182,20 +179,13 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
         raise Refused(f"{name} is empty")
     if missing := leave_out - {number for number, _ in body}:
         raise Refused(f"{name} has no line {min(missing)} of numbers to leave out")
-    table = _table(name, body, leave_out)
-    columns = _columns(name, table)
-    if intervals:
-        if not {"time", "interval"} & columns.keys():
-            raise Refused(f"{name} has no column of intervals")
-        # A list without a heading is one of intervals as well.
-        times = columns.pop("time", np.empty(0))
-        if "interval" not in columns and np.all(np.diff(times[np.isfinite(times)]) > 0):
-            raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
-        columns.setdefault("interval", times)
-    recording, used = _measured(name, columns, head, table.names)
+    values, numbers, headings = _table(name, body, leave_out)
+    columns = _columns(name, values, numbers, headings)
+    known = ", ".join(heading for heading, _ in headings if heading)
+    recording, used = _measured(name, columns, head, intervals, known)
     # Lines that were left out on purpose are known to be missing.
     has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
-    inside = range(table.lines[0], table.lines[-1])
+    inside = range(int(numbers[0]), int(numbers[-1]))
     empty = {number for number in inside if not lines[number - 1].strip()}
     gaps = sorted((empty | set(columns["line"][has_gap])) - leave_out)
     if gaps:
@@ -205,25 +195,23 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     return recording
 
 
-@dataclass(frozen=True)
-class _Table:
-    values: Array
-    lines: list[int]
-    names: list[str]
-    units: list[str]
+_Headings = list[tuple[str, str]]
 
 
-def _table(name: str, body: list[tuple[int, str]], leave_out: set[int]) -> _Table:
+def _table(
+    name: str, body: list[tuple[int, str]], leave_out: set[int]
+) -> tuple[Array, Array, _Headings]:
+    """Return the numbers, NaN where there is none, their lines, and names and units of columns."""
     first_line = body[0][1]
     last = body[-1][1]
-    delimiter: str | None = next((mark for mark in ("\t", ";") if mark in last), None)
-    decimal_comma = delimiter is not None
-    if delimiter is None and "," in last:
+    delimiter: str | None = next((mark for mark in ("\t", ";", ",") if mark in last), None)
+    decimal_comma = delimiter in ("\t", ";")
+    if delimiter == ",":
         # Commas are decimal signs in a single column, whose heading has no comma.
         one_column = all(_is_decimal(line) for _, line in body[1:])
         decimal_comma = one_column and ("," not in first_line or _is_decimal(first_line))
-        delimiter = "\0" if decimal_comma else ","
-    elif delimiter is None and len(last.split()) < 2:
+    is_column = decimal_comma if delimiter == "," else len(last.split()) < 2 and not delimiter
+    if is_column:
         delimiter = "\0"
     cells = [
         [cell.strip().strip('"').strip() for cell in line.rstrip("\n").split(delimiter)]
@@ -243,25 +231,23 @@ def _table(name: str, body: list[tuple[int, str]], leave_out: set[int]) -> _Tabl
         raise Refused(f"{name} has no line of numbers")
     # A row of units or headings may contain digits, but rows of numbers begin with one.
     width = max(len(row) for row in numbers[first:])
-    rows = []
-    kept = []
-    for (line, _), row in zip(body[first:], numbers[first:], strict=True):
-        padded = row + [np.nan] * (width - len(row))
-        rows.append([np.nan] * width if line in leave_out else padded)
-        kept.append(line)
-    names = [""] * width
-    units = [""] * width
+    lines = np.array([line for line, _ in body[first:]])
+    values = np.full((len(lines), width), np.nan)
+    for i in np.flatnonzero(~np.isin(lines, list(leave_out))):
+        row = numbers[first + i]
+        values[i, : len(row)] = row
+    headings = [("", "")] * width
     for texts in cells[:first]:
-        if len(texts) < min(width, 2) or len(texts) > width:
+        if not min(width, 2) <= len(texts) <= width:
             continue
-        empty = width - len(texts)
-        split = [_heading(cell) for cell in texts] + [("", "")] * empty
-        if any(names) and all(_UNIT_ROW.fullmatch(cell.strip("[]()").lower()) for cell in texts):
-            units = [cell.strip("[]()") for cell in texts] + [""] * empty
+        each = texts + [""] * (width - len(texts))
+        units = [cell.strip("[]()") for cell in each]
+        is_below = any(heading for heading, _ in headings)
+        if is_below and all(_UNIT_ROW.fullmatch(unit.lower()) for unit in units):
+            headings = [(old[0], unit) for old, unit in zip(headings, units, strict=True)]
         else:
-            names = [heading for heading, _ in split]
-            units = [unit for _, unit in split]
-    return _Table(np.array(rows, float), kept, names, units)
+            headings = [_heading(cell) for cell in each]
+    return values, lines, headings
 
 
 def _is_decimal(line: str) -> bool:
@@ -270,43 +256,36 @@ def _is_decimal(line: str) -> bool:
 
 def _heading(cell: str) -> tuple[str, str]:
     """Return the name and the unit of a heading such as 'Drop height (cm)' or 'h0/cm'."""
-    found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell)
-    if found is None:
-        units = "s|ms|us|µs|m|cm|mm|px|m/s|cm/s|N|V"
-        found = re.fullmatch(rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell)
+    units = "s|ms|us|µs|m|cm|mm|px|m/s|cm/s|N|V"
+    found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell) or re.fullmatch(
+        rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell
+    )
     if found is None:
         return cell, ""
     return found[1].strip(), "" if found[2] in ("-", "–", "1") else found[2]
 
 
 def _meaning(name: str, unit: str) -> str | None:
-    if unit.lower() in ("px", "pixel", "pixels"):
-        return None if name.lower().startswith("x") else "position"
     plain = re.sub(r"[{}$\\]", "", name).replace("_", " ").lower().strip()
-    for meaning, pattern in _MEANINGS:
-        if plain and re.search(pattern, plain):
-            return meaning
-    return "time" if unit.lower() in ("s", "ms") else None
+    found = next((each for each, pattern in _MEANINGS if plain and re.search(pattern, plain)), None)
+    if found == "height" and unit.lower() in _PIXELS:
+        return "position"
+    return "time" if found is None and unit.lower() in ("s", "ms") else found
 
 
-def _columns(name: str, table: _Table) -> dict[str, Array]:
+def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict[str, Array]:
     """Return what the columns measure, in SI units, and "line", the numbers of the lines."""
-    values = table.values
-    names = table.names
-    units = table.units
-    line = np.array(table.lines)
     columns: dict[str, Array] = {}
-    alike = {re.sub(r"\d+", "", each) for each in names}
-    first = _meaning(names[0], units[0])
+    alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
+    first = _meaning(*headings[0])
     is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
-    if len(names) > 2 and len(alike) == 1 and is_series:
+    if len(headings) > 2 and len(alike) == 1 and is_series:
         # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …
-        line = np.repeat(line, len(names))
+        line = np.repeat(line, len(headings))
         columns["recording"] = line
         values = values.reshape(-1, 1)
-        names = names[:1]
-        units = units[:1]
-    meanings = [_meaning(*each) for each in zip(names, units, strict=True)]
+        headings = headings[:1]
+    meanings = [_meaning(*each) for each in headings]
     if {"time", "height"} <= set(meanings) and len(values) >= _SHORTEST_TRACK:
         place = meanings.index("height")
         rises = values[:, place] - np.fmin.accumulate(values[:, place])
@@ -314,7 +293,7 @@ def _columns(name: str, table: _Table) -> dict[str, Array]:
             # Tops of flights fall, so that these are heights of a track.
             meanings[place] = "position"
     found: dict[str, list[Array]] = {}
-    for column, heading, unit, meaning in zip(values.T, names, units, meanings, strict=True):
+    for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
         if meaning is None or not np.isfinite(column).any():
             continue
         scale = 1.0
@@ -326,8 +305,10 @@ def _columns(name: str, table: _Table) -> dict[str, Array]:
                 f"heading, as in '{heading} (cm)'"
             )
         found.setdefault(meaning, []).append(column * scale)
-    if not any(names):
-        found = _without_headings(values)
+    is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
+    if alike == {""} and (is_label or values.shape[1] == 1):
+        # One column, or labels with start and end.
+        found = {"time": [values[:, 0]]}
     columns |= {meaning: parts[0] for meaning, parts in found.items()} | {"line": line}
     rebounds = found.get("rebound", [])
     if len(rebounds) < 2 or "drop" not in found:
@@ -345,17 +326,6 @@ def _columns(name: str, table: _Table) -> dict[str, Array]:
     }
 
 
-def _without_headings(values: Array) -> dict[str, list[Array]]:
-    """Return the times of a table without headings: one column, or labels with start and end."""
-    first = values[:, 0]
-    rises = bool(np.all(np.diff(first[np.isfinite(first)]) > 0))
-    if values.shape[1] == 1:
-        return {"time": [first]}
-    second = values[:, 1]
-    is_label = rises and bool(np.all(~np.isfinite(second) | (second >= first)))
-    return {"time": [first]} if is_label else {}
-
-
 _PAIRS = (
     ("drops", "drop", "rebound", "m"),
     ("speeds", "in", "out", "m/s"),
@@ -364,7 +334,7 @@ _PAIRS = (
 
 
 def _measured(
-    name: str, columns: dict[str, Array], head: dict[str, str], names: list[str]
+    name: str, columns: dict[str, Array], head: dict[str, str], intervals: bool, known: str
 ) -> tuple[Recording, list[str]]:
     """Return the recording, and the columns that it was read from."""
     have = columns.keys()
@@ -376,6 +346,8 @@ def _measured(
             notes.append("the velocities are all negative: their sizes are the speeds")
         columns[speed] = np.abs(columns[speed])
     pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
+    if intervals and not {"time", "interval"} & have:
+        raise Refused(f"{name} has no column of intervals")
     if pairs is not None:
         kind, before, after, unit = pairs
         used = [before, after]
@@ -397,9 +369,9 @@ def _measured(
         notes.append(f"{len(touches)} impacts were found in the signal")
     elif {"time", "interval"} & have:
         kind = "flights"
-        chains, of = _flights(name, columns)
+        chains, of = _flights(name, columns, intervals)
         used = [of]
-        if {"time", "interval"} <= have:
+        if {"time", "interval"} <= have and not intervals:
             notes.append(f"the file has times and intervals: it is read by its {of}s")
     elif {"height", "drop"} & have:
         kind = "heights"
@@ -407,10 +379,9 @@ def _measured(
         parts = _parts(columns, used[0])
         chains = _falling(name, parts, "height", "m", _HIGHEST)
     else:
-        known = ", ".join(each for each in names if each) or "a table without headings"
         raise Refused(
-            f"{name}: no bounces in {known}: times, intervals, heights, speeds or positions are "
-            "needed"
+            f"{name}: no bounces in {known or 'a table without headings'}: times, intervals, "
+            "heights, speeds or positions are needed"
         )
     if uncertainty is not None:
         uncertainty = uncertainty[np.isfinite(uncertainty)]
@@ -433,23 +404,21 @@ def _pairs(name: str, columns: dict[str, Array], first: str, second: str, unit: 
     if not good.any():
         raise Refused(f"{name} has no complete line")
     for line, (before, after) in zip(columns["line"][good], pairs[good], strict=True):
-        where = f"{name}, line {line}"
+        what, si, most = ("height", "m", _HIGHEST) if unit == "m" else ("speed", "m/s", _FASTEST)
+        wrong = ""
         if before <= 0 or after <= 0:
-            raise Refused(f"{where}: {before:g} and {after:g} are not both positive")
-        if unit == "m" and before > _HIGHEST:
-            raise Refused(f"{where}: a height of {before:.3g} m: is it in cm? write the unit")
-        if unit != "m" and before > _FASTEST:
-            raise Refused(f"{where}: a speed of {before:.3g} m/s: is it in cm/s? write the unit")
-        if after > 1.05 * before and unit:
-            raise Refused(
-                f"{where}: it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: is a "
-                "number wrong, or are the columns exchanged?"
+            wrong = f"{before:g} and {after:g} are not both positive"
+        elif before > most:
+            wrong = f"a {what} of {before:.3g} {si}: is it in c{si}? write the unit"
+        elif not unit and after > 1.05:
+            wrong = f"an r of {after:.3g} is above 1: write (%) in the heading if it is in per cent"
+        elif unit and after > 1.05 * before:
+            wrong = (
+                f"it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: is a number wrong, "
+                "or are the columns exchanged?"
             )
-        if not unit and after > 1.05:
-            raise Refused(
-                f"{where}: a restitution coefficient of {after:.3g} is above 1: is it in per cent? "
-                "write (%) in the heading"
-            )
+        if wrong:
+            raise Refused(f"{name}, line {line}: {wrong}")
     return pairs[good]
 
 
@@ -470,19 +439,21 @@ def _parts(columns: dict[str, Array], of: str) -> _Parts:
     return [(part[0], part[1]) for part in found if part.size]
 
 
-def _flights(name: str, columns: dict[str, Array]) -> tuple[list[Array], str]:
+def _flights(name: str, columns: dict[str, Array], intervals: bool) -> tuple[list[Array], str]:
     """Return the durations of flights, and the column that they are of."""
-    if "time" in columns:
+    of = "interval" if "interval" in columns else "time"
+    if "time" in columns and not (intervals and of == "interval"):
         parts = _parts(columns, "time")
         steps = [(np.diff(times), lines[1:]) for times, lines in parts if len(times) > 1]
         rises = np.concatenate([step for step, _ in steps] or [np.empty(0)]) > 0
+        if rises.all() and intervals:
+            raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
         if rises.all():
             return _falling(name, steps, "flight", "s", _LONGEST), "time"
         # A list of numbers that fall is one of intervals, whatever its heading.
-        if "interval" not in columns and rises.mean() > 0.5:
+        if of == "time" and rises.mean() > 0.5:
             step, lines = next(each for each in steps if (each[0] <= 0).any())
             raise _unsorted(name, lines[step <= 0][0])
-    of = "interval" if "interval" in columns else "time"
     return _falling(name, _parts(columns, of), "flight", "s", _LONGEST), of
 
 
@@ -605,10 +576,9 @@ def _touches(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Arra
     for start, end in zip(starts, [*starts[1:], len(t)], strict=True):
         peak = start + int(np.argmax(size[start:end]))
         low = np.flatnonzero(size <= max(size[peak] / 20, 10 * noise))
-        place = np.searchsorted(low, peak)
-        if 0 < place < len(low):
+        over = int(np.searchsorted(low, peak))
+        if 0 < over < len(low):
             # The force begins and ends between two samples.
-            begin, over = low[place - 1], low[place]
-            contacts.append([t[begin : begin + 2].mean(), t[over - 1 : over + 1].mean()])
+            contacts.append(np.interp(low[over - 1 : over + 1] + [0.5, -0.5], np.arange(len(t)), t))
     begins, ends = np.array(contacts).T
     return begins, ends - begins

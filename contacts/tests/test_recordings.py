@@ -273,6 +273,16 @@ def test_a_track_is_turned_only_if_it_grows_downwards(tmp_path):
     assert fit(path).impacts.speed == pytest.approx(upwards.speed, rel=1e-4)
 
 
+def test_a_force_that_rings_on_shows_no_contact(tmp_path):
+    path = tmp_path / "plate.csv"
+    since = PULSES - TOUCHES[np.searchsorted(TOUCHES, PULSES, side="right") - 1]
+    force = np.where(since >= 0, 50 * np.exp(-since / 0.03), 0)
+    path.write_text("time (s),force (N)\n" + "\n".join(map("{:.4f},{:.3f}".format, PULSES, force)))
+    notes = fit(path).notes
+    assert any("7 impacts were found" in note for note in notes)
+    assert not any("taken off" in note for note in notes)
+
+
 def test_a_contact_time_is_taken_off_flights(tmp_path):
     path = tmp_path / "heard.csv"
     path.write_text("time [s]\n" + column(TOUCHES))

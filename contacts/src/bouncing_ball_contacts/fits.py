@@ -57,8 +57,8 @@ _LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
 # What is less likely than this, compared with something else, is left out.
 _UNLIKELY = 0.05
-# A contact that lasts longer, in s, is not one of a ball.
-_LONGEST_CONTACT = 0.01
+# Contacts of balls rarely last longer, in s.
+_LONG_CONTACT = 0.01
 # Intervals are alike if the narrower one is more than this part of the other one.
 _ALIKE = 0.8
 REJECTED = 0.005
@@ -770,8 +770,6 @@ def fit(
     n = len(impacts.log_r)
     middle = math.exp(float(np.mean(np.log(impacts.speed))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    if n < _FEWEST:
-        notes.append("too few impacts for an interval of their own: it is wide")
     stated = resolution if resolution is not None else head.get("resolution")
     known: float | Array | None = recording.uncertainty
     if stated is not None:
@@ -780,34 +778,32 @@ def fit(
     is_known = known is not None
     curves = curves_of(impacts, errors_of(impacts, known), at)
     scattering, still = estimates(impacts, curves, is_known)
+    above = f"r = {math.exp(scattering.value):.4f} is above 1"
     if scattering.low > 0:
-        raise Refused(
-            f"{recording.name}: r = {math.exp(scattering.value):.4f} is above 1 by more than "
-            "its error: no ball bounces so"
-        )
-    if scattering.value > 0:
-        notes.append(
-            f"r = {math.exp(scattering.value):.4f} is above 1 within its error: 1 is taken"
-        )
+        raise Refused(f"{recording.name}: {above} by more than its error: no ball bounces so")
     restitution = min(math.exp(scattering.value), 1.0)
     if recording.kind == "flights" and durations is None:
         tried = 0.01 * min(float(chain.min(initial=1.0)) for chain in recording.chains)
         shorter = impacts_of(without_contacts(recording, np.array([tried])), drag)
         low, high = _of_logs(still or scattering)
         falls = restitution * float(np.mean(impacts.log_r - shorter.log_r)) / tried
-        if falls * _LONGEST_CONTACT > (high - low) / 2:
+        if falls * _LONG_CONTACT > (high - low) / 2:
             notes.append(
                 f"times between impacts include the contact: r is lower by {falls / 1000:.1g} for "
                 f"each ms that it lasts, which matters from {show((high - low) / 2 / falls, 's')} "
                 "on; give --contact-time"
             )
-    if not 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max():
-        notes.append(f"{at:.3g} m/s is outside of the measured speeds")
-    if not is_known:
-        notes.append("no errors are given: a law can only be said to deviate")
     laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
-    if laws and all(each.probability < REJECTED for each in laws):
-        notes.append("no law fits: r is that of a smooth curve")
+    is_near = 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max()
+    fits = [each for each in laws if not each.probability < REJECTED]
+    further = {
+        "too few impacts for an interval of their own: it is wide": n < _FEWEST,
+        f"{above} within its error: 1 is taken": scattering.value > 0,
+        f"{at:.3g} m/s is outside of the measured speeds": not is_near,
+        "no errors are given: a law can only be said to deviate": not is_known,
+        "no law fits: r is that of a smooth curve": bool(laws) and not fits,
+    }
+    notes += [text for text, holds in further.items() if holds]
     times: list[Timed] = []
     if durations is not None:
         times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)

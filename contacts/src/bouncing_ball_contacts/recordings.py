@@ -66,6 +66,8 @@ _LONGEST = 9.0
 _LONGER = 1.02
 # Between two impacts a signal is silent for this time in s.
 _SILENCE = 0.03
+# A contact that lasts longer, in s, is not one of a ball.
+_LONGEST_CONTACT = 0.03
 _SHORTEST_TRACK = 8
 # A height that rises by this part of the range belongs to another flight.
 _RISE = 0.03
@@ -119,12 +121,11 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
         raise Refused(f"{source!r} is no recording: give a file, a name, or Recording(…)")
     path = Path(source)
     if str(source) in experiments():
-        data = files(__package__).joinpath("experiments", f"{source}.csv").read_bytes()
-    elif path.is_file():
-        data = path.read_bytes()
-    else:
+        path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
+    if not path.is_file():
         raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
-    name = path.name
+    data = path.read_bytes()
+    name = Path(source).name
     text = _sheet(data) if data.startswith(b"PK") else _decoded(name, data)
     return _interpreted(name, text.splitlines(), set(leave_out), intervals)
 
@@ -288,9 +289,9 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
     meanings = [_meaning(*each) for each in headings]
     if {"time", "height"} <= set(meanings) and len(values) >= _SHORTEST_TRACK:
         place = meanings.index("height")
-        rises = values[:, place] - np.fmin.accumulate(values[:, place])
-        if np.nanmax(rises, initial=0.0) > _RISE * np.ptp(values[np.isfinite(rises), place]):
-            # Tops of flights fall, so that these are heights of a track.
+        steps = np.diff(values[:, place])
+        # Tops of flights fall, whereas a track rises in half of its frames.
+        if np.sum(steps > 0) > 0.3 * np.count_nonzero(steps):
             meanings[place] = "position"
     found: dict[str, list[Array]] = {}
     for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
@@ -319,7 +320,7 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
     if total[2] ** 2 * total[0] < total[1] ** 3:
         line = np.repeat(line, heights.shape[1])
         return {"height": heights.ravel(), "recording": line, "line": line}
-    return {
+    return columns | {
         "drop": np.tile(columns["drop"], len(rebounds)),
         "rebound": np.concatenate(rebounds),
         "line": np.tile(line, len(rebounds)),
@@ -349,18 +350,14 @@ def _measured(
     if intervals and not {"time", "interval"} & have:
         raise Refused(f"{name} has no column of intervals")
     if pairs is not None:
-        kind, before, after, unit = pairs
-        used = [before, after]
-        chains = [_pairs(name, columns, before, after, unit)]
+        kind, *used, unit = pairs
+        chains = [_pairs(name, columns, used, unit)]
         uncertainty = columns.get("uncertainty")
     elif {"time", "position"} <= have:
         kind = "speeds"
         used = ["time", "position"]
-        track, is_turned = _track(name, columns)
+        track, notes = _track(name, columns)
         chains = [track]
-        if is_turned:
-            notes.append("the positions grow downwards, as in a picture: they were turned")
-        notes.append(f"{len(track)} impacts were found where flights meet; gravity is the scale.")
     elif "time" in have and {"force", "signal"} & have:
         kind = "flights"
         used = ["time", "force" if "force" in have else "signal"]
@@ -376,8 +373,7 @@ def _measured(
     elif {"height", "drop"} & have:
         kind = "heights"
         used = ["height" if "height" in have else "drop"]
-        parts = _parts(columns, used[0])
-        chains = _falling(name, parts, "height", "m", _HIGHEST)
+        chains = _falling(name, _parts(columns, used[0]), "height", "m", _HIGHEST)
     else:
         raise Refused(
             f"{name}: no bounces in {known or 'a table without headings'}: times, intervals, "
@@ -398,8 +394,8 @@ def _measured(
     return found, used
 
 
-def _pairs(name: str, columns: dict[str, Array], first: str, second: str, unit: str) -> Array:
-    pairs = np.column_stack([columns[first], columns[second]])
+def _pairs(name: str, columns: dict[str, Array], both: Sequence[str], unit: str) -> Array:
+    pairs = np.column_stack([columns[each] for each in both])
     good = np.isfinite(pairs).all(axis=1)
     if not good.any():
         raise Refused(f"{name} has no complete line")
@@ -502,8 +498,8 @@ def _in_time(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Arra
     return times, values, lines
 
 
-def _track(name: str, columns: dict[str, Array]) -> tuple[Array, bool]:
-    """Return speeds before and after impacts of a track, and whether it grows downwards.
+def _track(name: str, columns: dict[str, Array]) -> tuple[Array, list[str]]:
+    """Return speeds before and after impacts of a track, and notes on how it was read.
 
     Flights are parabolas that are open below: the other way round, they would end at their tops,
     and parabolas would miss the impacts between them.
@@ -514,13 +510,15 @@ def _track(name: str, columns: dict[str, Array]) -> tuple[Array, bool]:
     t = _even(times)
     upwards = _meetings(t, heights)
     downwards = _meetings(t, -heights)
-    is_turned = downwards[1] < upwards[1]
-    meetings = downwards[0] if is_turned else upwards[0]
+    meetings, _ = min(upwards, downwards, key=lambda each: each[1])
     if not meetings:
         raise Refused(f"{name}: no impact between two flights of four positions in the track")
+    notes = [f"{len(meetings)} impacts were found where flights meet; gravity is the scale."]
+    if meetings is downwards[0]:
+        notes.append("the positions grow downwards, as in a picture: they were turned")
     at, before, after = np.array(meetings).T
     impacts = {"line": lines[at.astype(int)].astype(int), "in": before, "out": after}
-    return _pairs(name, impacts, "in", "out", "m/s"), bool(is_turned)
+    return _pairs(name, impacts, ("in", "out"), "m/s"), notes
 
 
 def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float]:
@@ -575,10 +573,13 @@ def _touches(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Arra
     contacts = []
     for start, end in zip(starts, [*starts[1:], len(t)], strict=True):
         peak = start + int(np.argmax(size[start:end]))
-        low = np.flatnonzero(size <= max(size[peak] / 20, 10 * noise))
+        low = np.flatnonzero(size <= max(size[peak] / 20, 6 * noise))
         over = int(np.searchsorted(low, peak))
         if 0 < over < len(low):
             # The force begins and ends between two samples.
             contacts.append(np.interp(low[over - 1 : over + 1] + [0.5, -0.5], np.arange(len(t)), t))
     begins, ends = np.array(contacts).T
+    if (ends - begins).max() > _LONGEST_CONTACT:
+        # The signal rings on, so that the end of a contact does not show.
+        return t[starts], None
     return begins, ends - begins

@@ -390,7 +390,15 @@ def _measured(
     elif len(given):
         is_each = pairs is not None and len(given) == len(chains[0])
         durations = given if is_each else np.array([given.mean()])
-    found = Recording(name, kind, tuple(chains), uncertainty, durations, head, tuple(notes))
+    found = Recording(
+        name=name,
+        kind=kind,
+        chains=tuple(chains),
+        uncertainty=uncertainty,
+        durations=durations,
+        head=head,
+        notes=tuple(notes),
+    )
     return found, used
 
 

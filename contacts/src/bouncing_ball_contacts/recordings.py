@@ -287,12 +287,14 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
         values = values.reshape(-1, 1)
         headings = headings[:1]
     meanings = [_meaning(*each) for each in headings]
-    if {"time", "height"} <= set(meanings) and len(values) >= _SHORTEST_TRACK:
+    if {"time", "height"} <= set(meanings):
         place = meanings.index("height")
         steps = np.diff(values[:, place])
         # Tops of flights fall, whereas a track rises in half of its frames.
         if np.sum(steps > 0) > 0.3 * np.count_nonzero(steps):
             meanings[place] = "position"
+        elif np.any(steps) and "interval" not in meanings:
+            meanings[meanings.index("time")] = None
     found: dict[str, list[Array]] = {}
     for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
         if meaning is None or not np.isfinite(column).any():

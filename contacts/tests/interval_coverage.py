@@ -7,6 +7,9 @@ whose interval holds the true r; the median of its half width, beside the bound 
 errors of r, which is the half width that an ideal interval about the same r would have, and beside
 that of a straight line in ln v with known errors; and the share in which the true law is rejected,
 if it is one of the fitted laws.
+
+``python tests/interval_coverage.py both [RECORDINGS]`` prints how often the second interval is
+shown, and how often both hold the true r.
 """
 
 import math
@@ -281,7 +284,7 @@ def study(kind, recordings, seed):
         known = stated[0] if stated else recording.uncertainty
         at = math.exp(float(np.mean(np.log(impacts.speed))))
         curves = curves_of(impacts, errors_of(impacts, known), at)
-        scattering, still = estimates(curves, impacts.log_r)
+        scattering, still = estimates(impacts, curves, known is not None)
         found = scattering if make.keywords["scatter"] or still is None else still
         truth = math.log(float(np.squeeze(r(at))))
         held += found.low <= truth <= found.high
@@ -297,7 +300,70 @@ def study(kind, recordings, seed):
     return held, np.median(widths) * e, spread * e, np.median(best) * e, rejected
 
 
+# Name, true r, recording, resolution. The scatter of ln r is that of r, divided by r.
+BOTH = [
+    (
+        "7 impacts heard to 0.3 ms, scatter 0.01, resolution stated",
+        partial(FLAT, 0.8),
+        partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
+        3e-4,
+    ),
+    (
+        "the same, resolution not stated",
+        partial(FLAT, 0.8),
+        partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
+        None,
+    ),
+    (
+        "6 impacts heard to 0.3 ms, r = 0.6, scatter 0.02",
+        partial(FLAT, 0.6),
+        partial(flights, impacts=6, error=3e-4, scatter=0.033, start=3.75),
+        None,
+    ),
+    (
+        "4 impacts heard to 0.1 ms, r = 0.85, scatter 0.01",
+        partial(FLAT, 0.85),
+        partial(flights, impacts=4, error=1e-4, scatter=0.0118, start=3.75),
+        None,
+    ),
+    (
+        "7 impacts heard to 1 ms, no scatter, v^-0.1",
+        partial(power, 0.8, -0.1),
+        partial(flights, impacts=7, error=1e-3, scatter=0, start=3.35),
+        None,
+    ),
+    (
+        "5 impacts heard to 1 ms, r = 0.9, no scatter",
+        partial(FLAT, 0.9),
+        partial(flights, impacts=5, error=1e-3, scatter=0, start=2.8),
+        None,
+    ),
+]
+
+
+def both(recordings):
+    print("| recording | second interval shown | it holds r | first one holds r |")
+    print("| --- | --- | --- | --- |")
+    for name, r, make, known in BOTH:
+        rng = np.random.default_rng(900)
+        first = []
+        second = []
+        for _ in range(recordings):
+            impacts = impacts_of(make(rng, r))
+            at = math.exp(float(np.mean(np.log(impacts.speed))))
+            curves = curves_of(impacts, errors_of(impacts, known), at)
+            scattering, still = estimates(impacts, curves, known is not None)
+            truth = math.log(float(np.squeeze(r(at))))
+            first.append(scattering.low <= truth <= scattering.high)
+            if still is not None:
+                second.append(still.low <= truth <= still.high)
+        print(f"| {name} | {len(second)} | {sum(second)} | {sum(first)} |", flush=True)
+
+
 def main():
+    if sys.argv[1:2] == ["both"]:
+        both(int((sys.argv[2:] or ["500"])[0]))
+        return
     recordings = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     chosen = [int(each) for each in sys.argv[2:]] or range(len(KINDS))
     print(

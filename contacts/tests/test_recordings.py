@@ -1,6 +1,7 @@
 """Files as instruments, programs and people write them."""
 
 import io
+import re
 import zipfile
 
 import numpy as np
@@ -31,8 +32,26 @@ FRAMES = np.arange(0, TIMES[-1] - 0.05, 1 / 60)
 PULSES = np.arange(0, 4.5, 2e-4)
 
 
-def pulse(t):
-    return 9.0 if np.min(np.abs(t - TIMES)) < 5e-4 else 0.01 * np.sin(99 * t)
+# Between two touches are the contact, here of 8 ms, and the flight.
+CONTACT = 0.008
+TOUCHES = 0.3 + np.concatenate([[0.0], np.cumsum(FLIGHTS + CONTACT)])
+
+
+def push(t):
+    """Return the force of balls that touch at TOUCHES, half a sine, and noise."""
+    since = t - TOUCHES[np.searchsorted(TOUCHES, t, side="right") - 1]
+    is_touching = 0 <= since < CONTACT
+    return 90 * np.sin(np.pi * since / CONTACT) * is_touching + 0.1 * np.sin(99999 * t)
+
+
+def picture(kind):
+    """Return a track as a table with the unit behind, as cameras have it: y grows downwards."""
+    shown = {"-y": lambda y: -y, "2-y": lambda y: 2 - y, "px": lambda y: round(900 - 700 * y)}
+    return "\n".join(f"{t:.4f},{shown[kind](position(t)):.5f}" for t in FRAMES)
+
+
+def track(form="{:.4f},{:.5f}"):
+    return "\n".join(form.format(t, position(t)) for t in FRAMES)
 
 
 SPEEDS = (1.0, 2.0, 3.0, 4.0)
@@ -73,7 +92,26 @@ FILES = {
     "Tracker, decimal commas": "mass_A\nt\tx\ty\n"
     + "\n".join(f"{t:.3f}\t0,001\t{position(t):.5f}" for t in FRAMES).replace(".", ","),
     "force plate with a row of units": "Time,Fz\ns,N\n"
-    + "\n".join(f"{t:.4f},{pulse(t):.3f}" for t in PULSES),
+    + "\n".join(f"{t:.4f},{push(t):.3f}" for t in PULSES),
+    "heard, with a contact time": "# contact time: 8 ms\ntime [s]\n" + column(TOUCHES),
+    "intervals, with a contact time": "time [s],interval [s],duration [ms]\n"
+    + "\n".join(f"{a},{b},8" for a, b in zip(TOUCHES[1:], FLIGHTS + CONTACT, strict=True)),
+    "picture, y negative": "t,y\n" + picture("-y"),
+    "picture, y from above": "t,y\n" + picture("2-y"),
+    "picture, pixels": "t (s),y (px)\n" + picture("px"),
+    "picture, pixels behind": "t,y_px\n" + picture("px"),
+    "picture, heights": "time,height\n" + picture("px"),
+    "track, time and height": "time (s),height (m)\n" + track(),
+    "track, time and position": "time,position\n" + track(),
+    "track, x before y": "time,x position,y position\n" + track("{:.4f},0.001,{:.5f}"),
+    "tops and their times": "time (s),height (m)\n0.4,1\n1.2,0.6724\n1.9,0.4521\n2.4,0.304",
+    "track, t and z": "t (s),z (m)\n" + track(),
+    "one line of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4",
+    "two lines of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4\n80,53.8,36.2,",
+    "two lines of times": "t1 (s),t2 (s),t3 (s)\n0.1,0.92,1.5924\n0.2,0.7,1.11",
+    "several rebounds in one line": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,67.2,67.3",
+    "coefficients in per cent": "speed (m/s),COR (%)\n" + "\n".join(f"{v},82" for v in SPEEDS),
+    "coefficients without unit": "speed (m/s),e (-)\n" + "\n".join(f"{v},0.82" for v in SPEEDS),
 }
 
 
@@ -157,6 +195,15 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("interval [s]\n0.5\n-0.4", "not positive"),
         ("height [m]\n0.5\n0.7\n0.6", "follows one of"),
         ("height [m]\n500\n300\n200", "is it in cm"),
+        ("time [s]\n0.1\n0.9\n1.5\n1.2\n2", "line 5: the time is not after .* sort"),
+        ("t,y\n" + "\n".join(reversed(track().split("\n"))), "line 3: the time .* sort"),
+        ("interval [s]\n0.5\n0.4\n\n0.45", "line 5: a flight of 0.45 s follows one of 0.4 s"),
+        ("time,height\n0.1,0.5\n0.2,0.7\n0.3,0.6", "a track of 3 positions is too short"),
+        ("height [cm]\n50\n-4", "line 3: a height of -0.04 m is not positive"),
+        ("speed,COR\n1,81", "line 2: .* per cent"),
+        ("speed,COR,std (cm)\n1,0.8,0.1", "std.*does not fit"),
+        ("speed,COR\n1,1.04\n2,1.041\n3,1.04\n4,1.041", "above 1 by more than its error"),
+        ("# contact time: 0.6 s\ntime [s]\n0.1\n0.9\n1.4\n1.8", "contact time: 600 ms is longer"),
         ("v_in,v_out\n1,2\n1,2", "exchanged"),
         ("v_in,v_out\n400,200\n300,200", "is it in cm/s"),
         ("speed,COR\n1,1.5", "above 1"),
@@ -187,3 +234,66 @@ def test_every_published_experiment_names_its_source():
     for name in experiments():
         head = read(name).head
         assert {"title", "measured by", "published", "source", "read"} <= head.keys()
+
+
+def test_what_is_no_file_is_refused():
+    with pytest.raises(Refused, match=r"\[1, 2, 3\] is no recording: give a file"):
+        fit([1, 2, 3])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (FILES["picture, y negative"], "downwards, as in a picture"),
+        (
+            "drop [m],rebound [m]\n1,0.64\n0.5,\n\n0.8,0.5\n0.9,nan",
+            "missing in line 3, 4, 6, which",
+        ),
+        (FILES["two lines of heights"], "missing in line 3, which"),
+        (FILES["heard, with a contact time"], "the contact, 8 ms, is taken off"),
+        (FILES["force plate with a row of units"], "the contact, 7.[789]"),
+        # 8 ms move r by 0.0024 here.
+        ("time [s]\n" + column(TOUCHES), "lower by 0.0003 for each ms that it lasts"),
+        ("speed,COR\n1,1.02\n2,0.98\n3,1.03\n4,0.98", "above 1 within its error"),
+    ],
+)
+def test_a_note_says_what_was_done(text, said, tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text(text)
+    assert [note for note in fit(path).notes if re.search(said, note)]
+
+
+def test_a_track_is_turned_only_if_it_grows_downwards(tmp_path):
+    path = tmp_path / "track.csv"
+    for name in ("track, time and height", "Tracker, rounded times"):
+        path.write_text(FILES[name])
+        assert not [note for note in fit(path).notes if "picture" in note]
+    path.write_text(FILES["track, time and height"])
+    upwards = fit(path).impacts
+    path.write_text(FILES["picture, y from above"])
+    assert fit(path).impacts.log_r == pytest.approx(upwards.log_r, abs=1e-4)
+    assert fit(path).impacts.speed == pytest.approx(upwards.speed, rel=1e-4)
+
+
+def test_a_force_that_rings_on_shows_no_contact(tmp_path):
+    path = tmp_path / "plate.csv"
+    since = PULSES - TOUCHES[np.searchsorted(TOUCHES, PULSES, side="right") - 1]
+    force = np.where(since >= 0, 50 * np.exp(-since / 0.03), 0)
+    path.write_text("time (s),force (N)\n" + "\n".join(map("{:.4f},{:.3f}".format, PULSES, force)))
+    notes = fit(path).notes
+    assert any("7 impacts were found" in note for note in notes)
+    assert not any("taken off" in note for note in notes)
+
+
+def test_a_contact_time_is_taken_off_flights(tmp_path):
+    path = tmp_path / "heard.csv"
+    path.write_text("time [s]\n" + column(TOUCHES))
+    as_heard = fit(path)
+    corrected = fit(path, contact_time="8 ms")
+    assert as_heard.restitution > 0.822
+    assert corrected.restitution == pytest.approx(0.82, abs=1e-5)
+    assert corrected.impacts.speed == pytest.approx(G * FLIGHTS[:-1] / 2, rel=1e-5)
+    # The note has the slope of r by the duration.
+    found = next(note for note in as_heard.notes if "each ms" in note)
+    slope = float(re.search(r"lower by (\S+)", found)[1])
+    assert (as_heard.restitution - 0.82) / 8 == pytest.approx(slope, rel=0.2)

@@ -205,13 +205,15 @@ def fit_command(
     found = fit(recording, leave_out=_lines(leave_out), intervals=intervals, **given)
     if intervals and not as_json:
         click.echo("\n".join([*found.intervals, ""]))
+    contact = {name: options[name] for name in ("penetration", "stiffness", "friction")}
     if engine is None:
-        if time_step is not None or script is not None:
-            raise Refused("the engine is missing: --engine mujoco")
+        of_engine = contact | {"time_step": time_step, "pick": pick, "script": script}
+        if needless := [name for name, value in of_engine.items() if value is not None]:
+            option = needless[0].replace("_", "-")
+            raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
         _print(found, as_json)
         return
-    contact = ("penetration", "stiffness", "friction")
-    bounce = found.bounce(**{name: options[name] for name in contact})
+    bounce = found.bounce(**contact)
     written = design(bounce, engine, time_step, tolerance=tolerance, pick=pick)
     _write_script(written, script)
     _print(found, as_json)

@@ -16,7 +16,9 @@ readings are given, σ² (1 - φ) is known.
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
 does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
 scatter, and for weights of φ that are proportional to φ, if they do. The first one is left out if
-the impacts contradict it (it is less than 1/20 as likely as the second one) or if both are alike.
+the impacts contradict it or if both are alike. The impacts contradict it if a test of φ = 0 rejects
+it at 5 %. Its statistic is Q(0)/σ², which has the χ² distribution, if the errors are known, and
+Q(0)/Q(1) otherwise, where Q(φ) is the sum of squares that a power of the speed leaves.
 
 A law is judged by how much worse it fits than a parabola in ln v, for each φ: by the F
 distribution, of whose probabilities the largest one counts among those φ that are at least 1/20 as
@@ -28,13 +30,14 @@ incompatible, but said to deviate.
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy import linalg, optimize, special
+from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
 from bouncing_ball_contacts.recordings import Recording, read
@@ -54,6 +57,8 @@ _LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
 # What is less likely than this, compared with something else, is left out.
 _UNLIKELY = 0.05
+# Contacts of balls rarely last longer, in s.
+_LONG_CONTACT = 0.01
 # Intervals are alike if the narrower one is more than this part of the other one.
 _ALIKE = 0.8
 REJECTED = 0.005
@@ -87,14 +92,13 @@ def _flight_speeds(duration: Array, drag: float) -> tuple[Array, Array]:
     """Return the speeds at the start and the end of flights, with the drag in 1/m."""
     if not drag:
         return G * duration / 2, G * duration / 2
-    low = G * duration / 2
-    high = 4 * G * duration / 2
-    for _ in range(50):
-        up = (low + high) / 2
+
+    def lasts(up: Array) -> Array:
         fall = np.arccosh(np.sqrt(1 + drag * up**2 / G))
-        takes = (np.arctan(up * math.sqrt(drag / G)) + fall) / math.sqrt(drag * G)
-        low = np.where(takes < duration, up, low)
-        high = np.where(takes < duration, high, up)
+        return (np.arctan(up * math.sqrt(drag / G)) + fall) / math.sqrt(drag * G)
+
+    bracket = (G * duration / 2, 2 * G * duration)
+    up = elementwise.find_root(lambda up, all_: lasts(up) - all_, bracket, args=(duration,)).x
     return up, up / np.sqrt(1 + drag * up**2 / G)
 
 
@@ -114,45 +118,49 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     Refused
         If there is no impact between two flights.
     """
-    speeds = []
-    logs = []
-    blocks = []
+    parts = []
     for chain in recording.chains:
-        if recording.kind in ("flights", "heights"):
-            if len(chain) < 2:
-                continue
-            if recording.kind == "flights":
-                up, down = _flight_speeds(chain, drag)
-                # An error of a time enters the flights on both sides of it.
-                of_flights = np.diff(np.diag(1 / chain), axis=0)
-                matrix = of_flights @ np.diff(np.eye(len(chain) + 1), axis=0)
-            else:
-                up, down = _height_speeds(chain, drag)
-                matrix = np.diff(np.diag(0.5 / chain), axis=0)
-            speeds.append(down[:-1])
-            logs.append(np.log(up[1:] / down[:-1]))
-            blocks.append(matrix)
-            continue
-        first, second = chain.T
-        if recording.kind == "drops":
-            down = _height_speeds(first, drag)[1]
-            up = _height_speeds(second, drag)[0]
-            matrix = np.diag(0.5 * np.hypot(1 / first, 1 / second))
-        elif recording.kind == "speeds":
-            down = first
-            up = second
-            matrix = np.diag(np.hypot(1 / first, 1 / second))
-        else:
-            down = first
+        is_pairs = recording.kind not in ("flights", "heights")
+        first, second = chain.T if is_pairs else (chain[:-1], chain[1:])
+        down = first
+        up = second
+        if recording.kind == "flights":
+            down = _flight_speeds(first, drag)[1]
+            up = _flight_speeds(second, drag)[0]
+            # An error of a time enters the flights on both sides of it.
+            of_flights = np.diff(np.diag(1 / chain), axis=0)
+            matrix = of_flights @ np.diff(np.eye(len(chain) + 1), axis=0)
+        elif recording.kind == "coefficients":
             up = first * second
             matrix = np.diag(1 / second)
-        speeds.append(down)
-        logs.append(np.log(up / down))
-        blocks.append(matrix)
-    if not speeds:
+        elif recording.kind == "speeds":
+            matrix = np.diag(np.hypot(1 / first, 1 / second))
+        else:
+            down = _height_speeds(first, drag)[1]
+            up = _height_speeds(second, drag)[0]
+            of_pairs = np.diag(0.5 * np.hypot(1 / first, 1 / second))
+            matrix = of_pairs if is_pairs else np.diff(np.diag(0.5 / chain), axis=0)
+        parts.append((down, np.log(up / down), matrix))
+    if not sum(len(down) for down, _, _ in parts):
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
+    speeds, logs, blocks = zip(*parts, strict=True)
     return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
+
+
+def without_contacts(recording: Recording, durations: Array) -> Recording:
+    """Return the recording with flights from release to touch.
+
+    Raises
+    ------
+    Refused
+        If a contact would last as long as a flight.
+    """
+    chains = tuple(chain - durations[: len(chain)] for chain in recording.chains)
+    if any((chain <= 0).any() for chain in chains):
+        longest = show(float(durations.max()), "s")
+        raise Refused(f"contact time: {longest} is longer than the time between two impacts")
+    return replace(recording, chains=chains)
 
 
 @dataclass(frozen=True)
@@ -279,20 +287,46 @@ def _estimate(curves: Curves, y: Array, by_share: Array) -> Estimate:
     return Estimate(centre + middle, low, high, float(np.sum(weights * slope)))
 
 
-def estimates(curves: Curves, y: Array) -> tuple[Estimate, Estimate | None]:
+def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
+    """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
+
+    The deviations are those from a power of the speed. A ratio of two squares is larger than the
+    measured one if a sum of squares of normal numbers with certain factors is positive: the
+    integral for that is of J. P. Imhof, Biometrika 48 (1961) 419.
+    """
+    x = np.log(impacts.speed)
+    contrasts = linalg.null_space(np.stack([np.ones_like(x), x - x.mean()]))
+    z = contrasts.T @ impacts.log_r
+    if not len(z):
+        return 1.0
+    still = contrasts.T @ curves.errors.shapes[0] @ contrasts
+    squares = float(z @ np.linalg.solve(still, z))
+    if is_known:
+        return float(special.chdtrc(len(z), squares / curves.errors.sizes[0, 0] ** 2))
+    factors = 1 - squares / float(z @ z) * np.linalg.eigvalsh(still)
+    if np.abs(factors).max() < 1e-6:
+        # Errors of readings are like scatter.
+        return 1.0
+    steps = np.arange(-30.0, 60.0, 0.05)
+    by_step = factors / np.abs(factors).max() * np.exp(steps)[:, None]
+    swing = np.sin(np.arctan(by_step).sum(axis=1) / 2)
+    damped = np.exp(-np.log1p(by_step**2).sum(axis=1) / 4)
+    return 0.5 + float(np.trapezoid(swing * damped, steps)) / math.pi
+
+
+def estimates(impacts: Impacts, curves: Curves, is_known: bool) -> tuple[Estimate, Estimate | None]:
     """Return what a recording says if impacts scatter, and if they do not.
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
+    y = impacts.log_r
     shares = curves.errors.shares
-    likelihood = curves.posterior(y - np.mean(y))[0].sum(axis=(1, 2))
     scattering = _estimate(curves, y, shares)
-    if likelihood[0] < _UNLIKELY * float(shares @ likelihood) / shares.sum():
+    if without_scatter(impacts, curves, is_known) < _UNLIKELY:
         return scattering, None
     still = _estimate(curves, y, np.where(shares == 0, 1.0, 0.0))
-    if still.high - still.low > _ALIKE * (scattering.high - scattering.low):
-        return scattering, None
-    return scattering, still
+    is_alike = still.high - still.low > _ALIKE * (scattering.high - scattering.low)
+    return scattering, None if is_alike or still.low > 0 else still
 
 
 def scatter_of(impacts: Impacts, curves: Curves) -> float:
@@ -697,7 +731,8 @@ def fit(
     mass, diameter : Quantity, optional
         Of the ball, with which the drag of the air is removed from flights and heights.
     contact_time : Quantity, optional
-        A measured one, in place of those of the recording: it gives the laws their stiffness.
+        A measured one, in place of those of the recording: it gives the laws their stiffness, and
+        is taken off times between impacts, which are from touch to touch.
     leave_out : tuple of int
         Lines of the file.
     intervals : bool
@@ -706,7 +741,7 @@ def fit(
     Raises
     ------
     Refused
-        If the recording cannot be read or has fewer than three impacts.
+        If the recording cannot be read, no impact lies between two flights, or r is above 1.
     """
     recording = source if isinstance(source, Recording) else read(source, leave_out, intervals)
     head = recording.head
@@ -722,31 +757,53 @@ def fit(
             notes.append(f"the drag of the air is removed, {drag:.2g} of the speed per metre")
         else:
             notes.append("the drag of the air is not removed: give the mass and the diameter")
+    durations = recording.durations
+    if contact_time is not None:
+        durations = np.array([positive("contact time", contact_time, "s")])
+    if recording.kind == "flights" and durations is not None:
+        recording = without_contacts(recording, durations)
+        # The first and the last touch are no impacts between two flights.
+        durations = durations[1:-1] if len(durations) > 2 else durations
+        lasts = show(float(durations.mean()), "s")
+        notes.append(f"the contact, {lasts}, is taken off each time between two impacts")
     impacts = impacts_of(recording, drag)
     n = len(impacts.log_r)
     middle = math.exp(float(np.mean(np.log(impacts.speed))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    if n < _FEWEST:
-        notes.append(f"{n} impacts are too few for an interval of its own: it is wide")
     stated = resolution if resolution is not None else head.get("resolution")
     known: float | Array | None = recording.uncertainty
     if stated is not None:
         unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s"}
         known = positive("resolution", stated, unit.get(recording.kind, ""))
-    curves = curves_of(impacts, errors_of(impacts, known), at)
-    scattering, still = estimates(curves, impacts.log_r)
-    if not 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max():
-        notes.append(f"{at:.3g} m/s is outside of the measured speeds")
     is_known = known is not None
-    if not is_known:
-        notes.append("no errors are given: a law can only be said to deviate")
-    laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
-    if laws and all(each.probability < REJECTED for each in laws):
-        notes.append("no law fits: r is that of a smooth curve")
-    durations = recording.durations
-    if contact_time is not None:
-        durations = np.array([positive("contact time", contact_time, "s")])
+    curves = curves_of(impacts, errors_of(impacts, known), at)
+    scattering, still = estimates(impacts, curves, is_known)
+    above = f"r = {math.exp(scattering.value):.4f} is above 1"
+    if scattering.low > 0:
+        raise Refused(f"{recording.name}: {above} by more than its error: no ball bounces so")
     restitution = min(math.exp(scattering.value), 1.0)
+    if recording.kind == "flights" and durations is None:
+        tried = 0.01 * min(float(chain.min(initial=1.0)) for chain in recording.chains)
+        shorter = impacts_of(without_contacts(recording, np.array([tried])), drag)
+        low, high = _of_logs(still or scattering)
+        falls = restitution * float(np.mean(impacts.log_r - shorter.log_r)) / tried
+        if falls * _LONG_CONTACT > (high - low) / 2:
+            notes.append(
+                f"times between impacts include the contact: r is lower by {falls / 1000:.1g} for "
+                f"each ms that it lasts, which matters from {show((high - low) / 2 / falls, 's')} "
+                "on; give --contact-time"
+            )
+    laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
+    is_near = 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max()
+    fits = [each for each in laws if not each.probability < REJECTED]
+    further = {
+        "too few impacts for an interval of their own: it is wide": n < _FEWEST,
+        f"{above} within its error: 1 is taken": scattering.value > 0,
+        f"{at:.3g} m/s is outside of the measured speeds": not is_near,
+        "no errors are given: a law can only be said to deviate": not is_known,
+        "no law fits: r is that of a smooth curve": bool(laws) and not fits,
+    }
+    notes += [text for text, holds in further.items() if holds]
     times: list[Timed] = []
     if durations is not None:
         times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)

@@ -6,10 +6,12 @@ heights of a drop and its rebound, speeds before and after, restitution coeffici
 time, or a signal in which impacts stand out. Lines ``# key: value`` above it name the ball.
 """
 
+import contextlib
+import io
 import re
 import zipfile
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree
@@ -25,10 +27,11 @@ UNITS = {
     "drop": "m",
     "rebound": "m",
     "height": "m",
-    "position": "m",
     "in": "m/s",
     "out": "m/s",
     "duration": "s",
+    "restitution": "",
+    "uncertainty": "",
 }
 # What a heading means: the first pattern that is found in it, in lower case and without units.
 _MEANINGS = (
@@ -41,18 +44,20 @@ _MEANINGS = (
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
     ("in", r"(impact|incoming|falling)\b.*\b(speed|velocity)"),
     ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
-    ("rebound", r"rebound|bounce height|^h ?(1|2|'|′|after|out|r)\b|^h'"),
+    ("rebound", r"rebound|bounce height|^h ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
     ("drop", r"drop|release|initial height|start height|^h ?(0|before|in|i)\b"),
     ("height", r"height|^h$"),
     ("recording", r"recording|^run\b|trial|series|ball\b"),
     ("count", r"number|^(no|nr)\.?$|^n$|^#$|index|^(event|bounce|impact)s?$"),
     ("time", r"^t ?\d*$|time|second"),
-    ("position", r"^y$|position.*y|^z$|vertical"),
-    ("signal", r"^f[a-z]?$|force|volt|ampl|sound|accel|pressure|^ch ?\d|recording|audio|load"),
+    ("position", r"^[yz]\b|^(?!x\b).*\bposition\b(?!.*\bx\b)|vertical"),
+    ("force", r"^f[a-z]?$|force|load"),
+    ("signal", r"volt|ampl|sound|accel|pressure|^ch ?\d|audio"),
 )
 _UNIT_ROW = re.compile(
     r"|s|ms|µs|us|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
 )
+_PIXELS = ("px", "pixel", "pixels")
 _HIGHEST = 100.0
 _HIGHEST_WITHOUT_UNIT = 10.0
 _FASTEST = 100.0
@@ -61,6 +66,11 @@ _LONGEST = 9.0
 _LONGER = 1.02
 # Between two impacts a signal is silent for this time in s.
 _SILENCE = 0.03
+# A contact that lasts longer, in s, is not one of a ball.
+_LONGEST_CONTACT = 0.03
+_SHORTEST_TRACK = 8
+# A height that rises by this part of the range belongs to another flight.
+_RISE = 0.03
 
 
 @dataclass(frozen=True)
@@ -70,9 +80,10 @@ class Recording:
     ``kind`` is "flights" (durations of successive flights in s), "heights" (successive tops),
     "drops" (pairs of heights), "speeds" (pairs) or "coefficients" (pairs of speed and r).
 
-    ``chains`` are arrays, one for each recording; those of pairs have two columns. ``uncertainty``
-    has standard deviations of r, ``durations`` contact times in s, one or one for each impact;
-    ``head`` has what the file says of the ball.
+    ``chains`` are arrays, one for each recording; those of pairs have two columns. A flight is the
+    time from touch to touch, which includes the contact at its begin. ``uncertainty`` has standard
+    deviations of r, ``durations`` contact times in s, one or one for each impact (of flights: for
+    each touch); ``head`` has what the file says of the ball.
     """
 
     name: str
@@ -106,33 +117,30 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
     Refused
         If the file has no bounces, or numbers that are no bounces.
     """
+    if not isinstance(source, str | Path):
+        raise Refused(f"{source!r} is no recording: give a file, a name, or Recording(…)")
     path = Path(source)
     if str(source) in experiments():
-        data = files(__package__).joinpath("experiments", f"{source}.csv").read_bytes()
-    elif path.is_file():
-        data = path.read_bytes()
-    else:
+        path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
+    if not path.is_file():
         raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
-    name = path.name
+    data = path.read_bytes()
+    name = Path(source).name
     text = _sheet(data) if data.startswith(b"PK") else _decoded(name, data)
     return _interpreted(name, text.splitlines(), set(leave_out), intervals)
 
 
 def _decoded(name: str, data: bytes) -> str:
-    if b"\0" in data[:4000] and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
+    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in data[:4000] and not is_wide:
         raise Refused(f"{name} is no text and no spreadsheet")
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16", "replace")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
+    with contextlib.suppress(UnicodeDecodeError):
+        return data.decode("utf-16" if is_wide else "utf-8-sig")
+    return data.decode("latin-1")
 
 
 def _sheet(data: bytes) -> str:
     """Return the first sheet of an xlsx file as lines with tabs."""
-    import io
-
     space = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as book:
@@ -146,10 +154,8 @@ def _sheet(data: bytes) -> str:
             for row in rows:
                 cells: dict[int, str] = {}
                 for cell in row.iter(f"{space}c"):
-                    letters = re.sub(r"\d", "", cell.get("r", "A"))
-                    place = 0
-                    for letter in letters:
-                        place = 26 * place + ord(letter) - 64
+                    letters = reversed(re.sub(r"\d", "", cell.get("r", "A")))
+                    place = sum(26**i * (ord(each) - 64) for i, each in enumerate(letters))
                     text = "".join(cell.itertext())
                     cells[place] = shared[int(text)] if cell.get("t") == "s" else text
                 lines.append(
@@ -174,38 +180,39 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
         raise Refused(f"{name} is empty")
     if missing := leave_out - {number for number, _ in body}:
         raise Refused(f"{name} has no line {min(missing)} of numbers to leave out")
-    table = _table(name, body, leave_out)
-    columns = _columns(name, table)
-    if intervals:
-        if not {"time", "interval"} & columns.keys():
-            raise Refused(f"{name} has no column of intervals")
-        # A list without a heading is one of intervals as well.
-        times = columns.pop("time", np.empty(0))
-        if "interval" not in columns and np.all(np.diff(times[np.isfinite(times)]) > 0):
-            raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
-        columns.setdefault("interval", times)
-    return _measured(name, columns, head, table)
+    values, numbers, headings = _table(name, body, leave_out)
+    columns = _columns(name, values, numbers, headings)
+    known = ", ".join(heading for heading, _ in headings if heading)
+    recording, used = _measured(name, columns, head, intervals, known)
+    # Lines that were left out on purpose are known to be missing.
+    has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
+    inside = range(int(numbers[0]), int(numbers[-1]))
+    empty = {number for number in inside if not lines[number - 1].strip()}
+    gaps = sorted((empty | set(columns["line"][has_gap])) - leave_out)
+    if gaps:
+        shown = ", ".join(f"{number:.0f}" for number in gaps[:5]) + (", …" if gaps[5:] else "")
+        note = f"a number is missing in line {shown}, which is left out"
+        return replace(recording, notes=(*recording.notes, note))
+    return recording
 
 
-@dataclass(frozen=True)
-class _Table:
-    values: Array
-    lines: list[int]
-    names: list[str]
-    units: list[str]
+_Headings = list[tuple[str, str]]
 
 
-def _table(name: str, body: list[tuple[int, str]], leave_out: set[int]) -> _Table:
+def _table(
+    name: str, body: list[tuple[int, str]], leave_out: set[int]
+) -> tuple[Array, Array, _Headings]:
+    """Return the numbers, NaN where there is none, their lines, and names and units of columns."""
     first_line = body[0][1]
     last = body[-1][1]
-    delimiter: str | None = next((mark for mark in ("\t", ";") if mark in last), None)
-    decimal_comma = delimiter is not None
-    if delimiter is None and "," in last:
+    delimiter: str | None = next((mark for mark in ("\t", ";", ",") if mark in last), None)
+    decimal_comma = delimiter in ("\t", ";")
+    if delimiter == ",":
         # Commas are decimal signs in a single column, whose heading has no comma.
         one_column = all(_is_decimal(line) for _, line in body[1:])
         decimal_comma = one_column and ("," not in first_line or _is_decimal(first_line))
-        delimiter = "\0" if decimal_comma else ","
-    elif delimiter is None and len(last.split()) < 2:
+    is_column = decimal_comma if delimiter == "," else len(last.split()) < 2 and not delimiter
+    if is_column:
         delimiter = "\0"
     cells = [
         [cell.strip().strip('"').strip() for cell in line.rstrip("\n").split(delimiter)]
@@ -225,25 +232,23 @@ def _table(name: str, body: list[tuple[int, str]], leave_out: set[int]) -> _Tabl
         raise Refused(f"{name} has no line of numbers")
     # A row of units or headings may contain digits, but rows of numbers begin with one.
     width = max(len(row) for row in numbers[first:])
-    rows = []
-    kept = []
-    for (line, _), row in zip(body[first:], numbers[first:], strict=True):
-        padded = row + [np.nan] * (width - len(row))
-        rows.append([np.nan] * width if line in leave_out else padded)
-        kept.append(line)
-    names = [""] * width
-    units = [""] * width
+    lines = np.array([line for line, _ in body[first:]])
+    values = np.full((len(lines), width), np.nan)
+    for i in np.flatnonzero(~np.isin(lines, list(leave_out))):
+        row = numbers[first + i]
+        values[i, : len(row)] = row
+    headings = [("", "")] * width
     for texts in cells[:first]:
-        if len(texts) < min(width, 2) or len(texts) > width:
+        if not min(width, 2) <= len(texts) <= width:
             continue
-        empty = width - len(texts)
-        split = [_heading(cell) for cell in texts] + [("", "")] * empty
-        if any(names) and all(_UNIT_ROW.fullmatch(cell.strip("[]()").lower()) for cell in texts):
-            units = [cell.strip("[]()") for cell in texts] + [""] * empty
+        each = texts + [""] * (width - len(texts))
+        units = [cell.strip("[]()") for cell in each]
+        is_below = any(heading for heading, _ in headings)
+        if is_below and all(_UNIT_ROW.fullmatch(unit.lower()) for unit in units):
+            headings = [(old[0], unit) for old, unit in zip(headings, units, strict=True)]
         else:
-            names = [heading for heading, _ in split]
-            units = [unit for _, unit in split]
-    return _Table(np.array(rows, float), kept, names, units)
+            headings = [_heading(cell) for cell in each]
+    return values, lines, headings
 
 
 def _is_decimal(line: str) -> bool:
@@ -252,33 +257,46 @@ def _is_decimal(line: str) -> bool:
 
 def _heading(cell: str) -> tuple[str, str]:
     """Return the name and the unit of a heading such as 'Drop height (cm)' or 'h0/cm'."""
-    found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell)
+    units = "s|ms|us|µs|m|cm|mm|px|m/s|cm/s|N|V"
+    found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell) or re.fullmatch(
+        rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell
+    )
     if found is None:
-        found = re.fullmatch(r"(.+?)(?:\s*/\s*|[_ ]| in )(s|ms|us|µs|m|cm|mm|m/s|cm/s|N|V)", cell)
-    return (found[1].strip(), found[2]) if found else (cell, "")
+        return cell, ""
+    return found[1].strip(), "" if found[2] in ("-", "–", "1") else found[2]
 
 
 def _meaning(name: str, unit: str) -> str | None:
     plain = re.sub(r"[{}$\\]", "", name).replace("_", " ").lower().strip()
-    for meaning, pattern in _MEANINGS:
-        if plain and re.search(pattern, plain):
-            return meaning
-    return "time" if unit.lower() in ("s", "ms") else None
+    found = next((each for each, pattern in _MEANINGS if plain and re.search(pattern, plain)), None)
+    if found == "height" and unit.lower() in _PIXELS:
+        return "position"
+    return "time" if found is None and unit.lower() in ("s", "ms") else found
 
 
-def _columns(name: str, table: _Table) -> dict[str, Array]:
-    values = table.values
-    names = table.names
-    units = table.units
-    alike = {re.sub(r"\d+", "", each) for each in names}
-    if len(values) == 1 and len(names) > 2 and len(alike) == 1:
-        # One recording in one line, as "Time 1 (s)", "Time 2 (s)", …
-        values = values.T
-        names = names[:1]
-        units = units[:1]
+def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict[str, Array]:
+    """Return what the columns measure, in SI units, and "line", the numbers of the lines."""
+    columns: dict[str, Array] = {}
+    alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
+    first = _meaning(*headings[0])
+    is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
+    if len(headings) > 2 and len(alike) == 1 and is_series:
+        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …
+        line = np.repeat(line, len(headings))
+        columns["recording"] = line
+        values = values.reshape(-1, 1)
+        headings = headings[:1]
+    meanings = [_meaning(*each) for each in headings]
+    if {"time", "height"} <= set(meanings):
+        place = meanings.index("height")
+        steps = np.diff(values[:, place])
+        # Tops of flights fall, whereas a track rises in half of its frames.
+        if np.sum(steps > 0) > 0.3 * np.count_nonzero(steps):
+            meanings[place] = "position"
+        elif np.any(steps) and "interval" not in meanings:
+            meanings[meanings.index("time")] = None
     found: dict[str, list[Array]] = {}
-    for column, heading, unit in zip(values.T, names, units, strict=True):
-        meaning = _meaning(heading, unit)
+    for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
         if meaning is None or not np.isfinite(column).any():
             continue
         scale = 1.0
@@ -290,88 +308,91 @@ def _columns(name: str, table: _Table) -> dict[str, Array]:
                 f"heading, as in '{heading} (cm)'"
             )
         found.setdefault(meaning, []).append(column * scale)
-    if not any(names):
-        found = _without_headings(values)
-    columns = {meaning: parts[0] for meaning, parts in found.items()}
-    if len(found.get("rebound", [])) > 1 and "drop" in columns:
-        # Several rebounds of one drop height, each in a column.
-        columns["drop"] = np.tile(columns["drop"], len(found["rebound"]))
-        columns["rebound"] = np.concatenate(found["rebound"])
-    return columns
+    is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
+    if alike == {""} and (is_label or values.shape[1] == 1):
+        # One column, or labels with start and end.
+        found = {"time": [values[:, 0]]}
+    columns |= {meaning: parts[0] for meaning, parts in found.items()} | {"line": line}
+    rebounds = found.get("rebound", [])
+    if len(rebounds) < 2 or "drop" not in found:
+        return columns
+    heights = np.column_stack([columns["drop"], *rebounds])
+    total = heights[np.isfinite(heights[:, :3]).all(axis=1), :3].sum(axis=0)
+    # Of successive bounces, heights fall from each to the next: h₂/h₁ is nearer to h₁/h₀ than to 1.
+    if total[2] ** 2 * total[0] < total[1] ** 3:
+        line = np.repeat(line, heights.shape[1])
+        return {"height": heights.ravel(), "recording": line, "line": line}
+    return columns | {
+        "drop": np.tile(columns["drop"], len(rebounds)),
+        "rebound": np.concatenate(rebounds),
+        "line": np.tile(line, len(rebounds)),
+    }
 
 
-def _without_headings(values: Array) -> dict[str, list[Array]]:
-    """Return the times of a table without headings: one column, or labels with start and end."""
-    first = values[:, 0]
-    rises = bool(np.all(np.diff(first[np.isfinite(first)]) > 0))
-    if values.shape[1] == 1:
-        return {"time": [first]}
-    second = values[:, 1]
-    is_label = rises and bool(np.all(~np.isfinite(second) | (second >= first)))
-    return {"time": [first]} if is_label else {}
+_PAIRS = (
+    ("drops", "drop", "rebound", "m"),
+    ("speeds", "in", "out", "m/s"),
+    ("coefficients", "in", "restitution", ""),
+)
 
 
 def _measured(
-    name: str, columns: dict[str, Array], head: dict[str, str], table: _Table
-) -> Recording:
+    name: str, columns: dict[str, Array], head: dict[str, str], intervals: bool, known: str
+) -> tuple[Recording, list[str]]:
+    """Return the recording, and the columns that it was read from."""
     have = columns.keys()
     notes: list[str] = []
+    durations = None
+    uncertainty = None
     for speed in {"in", "out"} & have:
         if np.nanmax(columns[speed]) < 0:
             notes.append("the velocities are all negative: their sizes are the speeds")
         columns[speed] = np.abs(columns[speed])
-    lines = table.lines
-    if {"drop", "rebound"} <= have:
-        kind = "drops"
-        chains = [_pairs(name, lines, columns["drop"], columns["rebound"], "m")]
-    elif {"in", "out"} <= have:
-        kind = "speeds"
-        chains = [_pairs(name, lines, columns["in"], columns["out"], "m/s")]
-    elif {"in", "restitution"} <= have:
-        kind = "coefficients"
-        chains = [_pairs(name, lines, columns["in"], columns["restitution"], "")]
+    pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
+    if intervals and not {"time", "interval"} & have:
+        raise Refused(f"{name} has no column of intervals")
+    if pairs is not None:
+        kind, *used, unit = pairs
+        chains = [_pairs(name, columns, used, unit)]
+        uncertainty = columns.get("uncertainty")
     elif {"time", "position"} <= have:
         kind = "speeds"
-        chains = [_track(name, columns["time"], columns["position"])]
-        notes.append(
-            f"{len(chains[0])} impacts were found where flights meet; gravity is the scale."
-        )
-    elif {"time", "signal"} <= have:
+        used = ["time", "position"]
+        track, notes = _track(name, columns)
+        chains = [track]
+    elif "time" in have and {"force", "signal"} & have:
         kind = "flights"
-        chains = [np.diff(_peaks(name, columns["time"], columns["signal"]))]
-        notes.append(f"{len(chains[0]) + 1} impacts were found in the signal")
-    elif "time" in have or "interval" in have:
+        used = ["time", "force" if "force" in have else "signal"]
+        touches, durations = _touches(name, columns, used[1])
+        chains = [np.diff(touches)]
+        notes.append(f"{len(touches)} impacts were found in the signal")
+    elif {"time", "interval"} & have:
         kind = "flights"
-        chains, of = _flights(name, columns, lines)
-        if {"time", "interval"} <= have:
-            notes.append(f"the file has times and intervals: it is read by its {of}")
-    elif "height" in have or "drop" in have:
+        chains, of = _flights(name, columns, intervals)
+        used = [of]
+        if {"time", "interval"} <= have and not intervals:
+            notes.append(f"the file has times and intervals: it is read by its {of}s")
+    elif {"height", "drop"} & have:
         kind = "heights"
-        tops = columns.get("height", columns.get("drop"))
-        assert tops is not None
-        chains = _parts(tops, columns)
-        _require_falling(name, chains, "height", "m", _HIGHEST)
+        used = ["height" if "height" in have else "drop"]
+        chains = _falling(name, _parts(columns, used[0]), "height", "m", _HIGHEST)
     else:
-        known = ", ".join(each for each in table.names if each) or "a table without headings"
         raise Refused(
-            f"{name}: no bounces in {known}: times, intervals, heights, speeds or positions are "
-            "needed"
+            f"{name}: no bounces in {known or 'a table without headings'}: times, intervals, "
+            "heights, speeds or positions are needed"
         )
-    uncertainty = columns.get("uncertainty")
-    if uncertainty is not None and kind in ("drops", "speeds", "coefficients"):
-        uncertainty = uncertainty[: len(lines)][np.isfinite(uncertainty[: len(lines)])]
+    if uncertainty is not None:
+        uncertainty = uncertainty[np.isfinite(uncertainty)]
         if len(uncertainty) != len(chains[0]) or np.any(uncertainty <= 0):
             raise Refused(f"{name}: each impact needs an uncertainty above 0, or none has one")
-    else:
-        uncertainty = None
-    durations = None
+    given = columns.get("duration", np.empty(0))
+    given = given[np.isfinite(given)]
     if "contact time" in head:
         durations = np.array([in_si("contact time", head["contact time"], "s")])
-    elif "duration" in have and np.isfinite(columns["duration"]).any():
-        durations = columns["duration"][np.isfinite(columns["duration"])]
-        if len(durations) != len(chains[0]):
-            durations = np.array([durations.mean()])
-    return Recording(
+    elif len(given):
+        is_each = pairs is not None and len(given) == len(chains[0])
+        durations = given if is_each else np.array([given.mean()])
+    found = Recording(
         name=name,
         kind=kind,
         chains=tuple(chains),
@@ -380,83 +401,92 @@ def _measured(
         head=head,
         notes=tuple(notes),
     )
+    return found, used
 
 
-def _pairs(name: str, lines: list[int], first: Array, second: Array, unit: str) -> Array:
-    good = np.isfinite(first) & np.isfinite(second)
-    pairs = np.column_stack([first, second])[good]
-    if not len(pairs):
+def _pairs(name: str, columns: dict[str, Array], both: Sequence[str], unit: str) -> Array:
+    pairs = np.column_stack([columns[each] for each in both])
+    good = np.isfinite(pairs).all(axis=1)
+    if not good.any():
         raise Refused(f"{name} has no complete line")
-    numbers = np.resize(lines, len(first))[good]
-    for line, (before, after) in zip(numbers, pairs, strict=True):
-        where = f"{name}, line {line}"
+    for line, (before, after) in zip(columns["line"][good], pairs[good], strict=True):
+        what, si, most = ("height", "m", _HIGHEST) if unit == "m" else ("speed", "m/s", _FASTEST)
+        wrong = ""
         if before <= 0 or after <= 0:
-            raise Refused(f"{where}: {before:g} and {after:g} are not both positive")
-        if unit == "m" and before > _HIGHEST:
-            raise Refused(f"{where}: a height of {before:.3g} m: is it in cm? write the unit")
-        if unit != "m" and before > _FASTEST:
-            raise Refused(f"{where}: a speed of {before:.3g} m/s: is it in cm/s? write the unit")
-        if after > 1.05 * before and unit:
-            raise Refused(
-                f"{where}: it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: are the "
-                "columns exchanged?"
+            wrong = f"{before:g} and {after:g} are not both positive"
+        elif before > most:
+            wrong = f"a {what} of {before:.3g} {si}: is it in c{si}? write the unit"
+        elif not unit and after > 1.05:
+            wrong = f"an r of {after:.3g} is above 1: write (%) in the heading if it is in per cent"
+        elif unit and after > 1.05 * before:
+            wrong = (
+                f"it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: is a number wrong, "
+                "or are the columns exchanged?"
             )
-        if not unit and after > 1.05:
-            raise Refused(f"{where}: a restitution coefficient of {after:.3g} is above 1")
-    return pairs
+        if wrong:
+            raise Refused(f"{name}, line {line}: {wrong}")
+    return pairs[good]
 
 
-def _parts(values: Array, columns: dict[str, Array]) -> list[Array]:
-    """Return the values of each recording, divided where a line was left out."""
+_Parts = list[tuple[Array, Array]]
+
+
+def _parts(columns: dict[str, Array], of: str) -> _Parts:
+    """Return the values of each recording with their lines, divided where a number is missing."""
+    values = columns[of]
+    if of != "time":
+        values = np.where(values == 0, np.nan, values)
     numbers = columns.get("recording", np.zeros(len(values)))
     found = []
     for number in dict.fromkeys(numbers[np.isfinite(numbers)]):
-        of_this = values[numbers == number]
-        ends = np.flatnonzero(~np.isfinite(of_this) | (of_this == 0))
-        found += [part[np.isfinite(part) & (part != 0)] for part in np.split(of_this, ends)]
-    return [part for part in found if len(part)]
+        both = np.column_stack([values, columns["line"]])[numbers == number]
+        ends = np.flatnonzero(~np.isfinite(both[:, 0]))
+        found += [part[np.isfinite(part[:, 0])].T for part in np.split(both, ends)]
+    return [(part[0], part[1]) for part in found if part.size]
 
 
-def _flights(name: str, columns: dict[str, Array], lines: list[int]) -> tuple[list[Array], str]:
-    """Return the durations of flights, and whether they were read by times or by intervals."""
-    times = columns.get("time")
-    if times is not None:
-        numbers = columns.get("recording", np.zeros(len(times)))
-        rising = all(
-            np.all(np.diff(times[(numbers == each) & np.isfinite(times)]) > 0)
-            for each in np.unique(numbers[np.isfinite(numbers)])
-        )
+def _flights(name: str, columns: dict[str, Array], intervals: bool) -> tuple[list[Array], str]:
+    """Return the durations of flights, and the column that they are of."""
+    of = "interval" if "interval" in columns else "time"
+    if "time" in columns and not (intervals and of == "interval"):
+        parts = _parts(columns, "time")
+        steps = [(np.diff(times), lines[1:]) for times, lines in parts if len(times) > 1]
+        rises = np.concatenate([step for step, _ in steps] or [np.empty(0)]) > 0
+        if rises.all() and intervals:
+            raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
+        if rises.all():
+            return _falling(name, steps, "flight", "s", _LONGEST), "time"
         # A list of numbers that fall is one of intervals, whatever its heading.
-        if rising:
-            shifted = np.where(times == 0, 1e-12, times)
-            chains = [np.diff(part) for part in _parts(shifted, columns) if len(part) > 1]
-            _require_falling(name, chains, "flight", "s", _LONGEST)
-            return chains, "times"
-    values = columns.get("interval", times)
-    assert values is not None
-    chains = _parts(values, columns)
-    _require_falling(name, chains, "flight", "s", _LONGEST)
-    return chains, "intervals"
+        if of == "time" and rises.mean() > 0.5:
+            step, lines = next(each for each in steps if (each[0] <= 0).any())
+            raise _unsorted(name, lines[step <= 0][0])
+    return _falling(name, _parts(columns, of), "flight", "s", _LONGEST), of
 
 
-def _require_falling(name: str, chains: list[Array], what: str, unit: str, most: float) -> None:
-    for chain in chains:
-        if np.any(chain <= 0):
-            raise Refused(f"{name}: a {what} of {chain.min():.4g} {unit} is not positive")
-        if len(chain) and chain.max() > most:
-            small = "ms" if unit == "s" else "cm"
-            raise Refused(
-                f"{name}: a {what} of {chain.max():.4g} {unit}: is it in {small}? write the unit "
-                f"in the heading, as in '{what} ({small})'"
-            )
-        longer = np.flatnonzero(chain[1:] > _LONGER * chain[:-1])
-        if len(longer):
-            i = int(longer[0])
-            raise Refused(
-                f"{name}: a {what} of {chain[i + 1]:.4g} {unit} follows one of {chain[i]:.4g} "
-                f"{unit}: an impact is missing, or another recording begins (give a column "
-                "'recording', or --leave-out its line)"
-            )
+def _unsorted(name: str, line: float) -> Refused:
+    return Refused(f"{name}, line {line:.0f}: the time is not after the one before: sort the lines")
+
+
+def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> list[Array]:
+    """Return chains without their lines, if they are of a bouncing ball."""
+    for chain, lines in parts:
+        before = np.concatenate([[np.inf], chain[:-1]])
+        for line, value, last in zip(lines, chain, before, strict=True):
+            found = f"{name}, line {line:.0f}: a {what} of {value:.4g} {unit}"
+            if value <= 0:
+                raise Refused(f"{found} is not positive")
+            if value > most:
+                small = "ms" if unit == "s" else "cm"
+                raise Refused(
+                    f"{found}: is it in {small}? write the unit in the heading, as in '{what} "
+                    f"({small})'"
+                )
+            if value > _LONGER * last:
+                raise Refused(
+                    f"{found} follows one of {last:.4g} {unit}: an impact is missing, or another "
+                    "recording begins (give a column 'recording', or --leave-out its line)"
+                )
+    return [chain for chain, _ in parts]
 
 
 def _even(times: Array) -> Array:
@@ -468,57 +498,98 @@ def _even(times: Array) -> Array:
     return even if np.abs(even - times).max() < 0.5 * slope else times
 
 
-def _track(name: str, times: Array, heights: Array) -> Array:
-    """Return speeds before and after impacts, where the parabolas of neighbouring flights meet.
+def _in_time(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Array, Array]:
+    """Return the times, values and lines of a track or a signal."""
+    rows = np.column_stack([columns["time"], columns[of], columns["line"]])
+    times, values, lines = rows[np.isfinite(rows).all(axis=1)].T
+    back = np.flatnonzero(np.diff(times) < 0)
+    if len(back):
+        raise _unsorted(name, lines[back[0] + 1])
+    return times, values, lines
 
-    All flights have one curvature, which is that of gravity and gives the scale.
+
+def _track(name: str, columns: dict[str, Array]) -> tuple[Array, list[str]]:
+    """Return speeds before and after impacts of a track, and notes on how it was read.
+
+    Flights are parabolas that are open below: the other way round, they would end at their tops,
+    and parabolas would miss the impacts between them.
+    """
+    times, heights, lines = _in_time(name, columns, "position")
+    if len(times) < _SHORTEST_TRACK:
+        raise Refused(f"{name}: a track of {len(times)} positions is too short")
+    t = _even(times)
+    upwards = _meetings(t, heights)
+    downwards = _meetings(t, -heights)
+    meetings, _ = min(upwards, downwards, key=lambda each: each[1])
+    if not meetings:
+        raise Refused(f"{name}: no impact between two flights of four positions in the track")
+    notes = [f"{len(meetings)} impacts were found where flights meet; gravity is the scale."]
+    if meetings is downwards[0]:
+        notes.append("the positions grow downwards, as in a picture: they were turned")
+    at, before, after = np.array(meetings).T
+    impacts = {"line": lines[at.astype(int)].astype(int), "in": before, "out": after}
+    return _pairs(name, impacts, ("in", "out"), "m/s"), notes
+
+
+def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float]:
+    """Return frame, speeds before and after of each impact, and the misfit of the parabolas.
+
+    Two neighbouring flights have one curvature, which is that of gravity and gives the scale.
     """
     from scipy.signal import find_peaks
 
-    good = np.isfinite(times) & np.isfinite(heights)
-    t = _even(times[good])
-    y = heights[good]
-    if len(t) < 8:
-        raise Refused(f"{name}: a track of {len(t)} positions is too short")
-    low, _ = find_peaks(-y, prominence=0.03 * np.ptp(y))
+    low, _ = find_peaks(-y, prominence=_RISE * np.ptp(y))
     edges = [-1, *(int(i) for i in low), len(y)]
-    flights = []
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
-        # The frames beside an impact may show a part of it.
-        inside = np.arange(max(start + 2, 0), min(end - 1, len(y)))
-        flights.append(inside if len(inside) >= 4 else None)
-    pairs = []
-    for before, after in zip(flights[:-1], flights[1:], strict=True):
-        if before is None or after is None:
+    # The frames beside an impact may show a part of it.
+    flights = [
+        np.arange(max(start + 2, 0), min(end - 1, len(y)))
+        for start, end in zip(edges[:-1], edges[1:], strict=True)
+    ]
+    found = []
+    squares = 0.0
+    free = 0
+    for impact, before, after in zip(low, flights[:-1], flights[1:], strict=True):
+        if min(len(before), len(after)) < 4:
             continue
-        pairs.append(_meeting(t[before], y[before], t[after], y[after]))
-    if not pairs:
-        raise Refused(f"{name}: no impact between two flights of four positions in the track")
-    return np.array(pairs)
+        both = np.concatenate([before, after])
+        is_after = np.isin(both, after)
+        time = t[both] - t[impact]
+        rows = np.column_stack([time**2, ~is_after, ~is_after * time, is_after, is_after * time])
+        best = np.linalg.lstsq(rows, y[both], rcond=None)[0]
+        squares += float(np.sum((y[both] - rows @ best) ** 2))
+        free += len(both) - len(best)
+        a, c1, b1, c2, b2 = best
+        meet = (c1 - c2) / (b2 - b1)
+        scale = STANDARD_GRAVITY / (-2 * a)
+        found.append((impact, -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale))
+    return found, squares / free if free else np.inf
 
 
-def _meeting(t1: Array, y1: Array, t2: Array, y2: Array) -> tuple[float, float]:
-    """Return the speeds in m/s at which two flights of one curvature meet."""
-    zero = t2[0]
-    rows1 = np.column_stack([(t1 - zero) ** 2, np.ones_like(t1), t1 - zero, 0 * t1, 0 * t1])
-    rows2 = np.column_stack([(t2 - zero) ** 2, 0 * t2, 0 * t2, np.ones_like(t2), t2 - zero])
-    a, c1, b1, c2, b2 = np.linalg.lstsq(
-        np.vstack([rows1, rows2]), np.concatenate([y1, y2]), rcond=None
-    )[0]
-    meet = -(c2 - c1) / (b2 - b1)
-    scale = STANDARD_GRAVITY / (2 * abs(a))
-    sign = -np.sign(a)
-    return float(-sign * (b1 + 2 * a * meet) * scale), float(sign * (b2 + 2 * a * meet) * scale)
+def _touches(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Array | None]:
+    """Return the times at which impacts begin in a signal, and how long they last in a force.
 
-
-def _peaks(name: str, times: Array, signal: Array) -> Array:
-    """Return the times at which a signal rises above a fifth of its largest peak after silence."""
-    good = np.isfinite(times) & np.isfinite(signal)
-    t = times[good]
-    size = np.abs(signal[good] - np.median(signal[good]))
-    level = max(size.max() / 5, 6 * float(np.median(size)))
-    above = np.flatnonzero(size > level)
-    starts = above[np.diff(t[above], prepend=-np.inf) > _SILENCE] if len(above) else above
+    An impact rises above a fifth of the largest peak after silence. A force has the contact from
+    where it last was below a twentieth of its peak, or in the noise, to where it is so again.
+    """
+    t, signal, _ = _in_time(name, columns, of)
+    size = np.abs(signal - np.median(signal))
+    noise = float(np.median(size))
+    above = np.flatnonzero(size > max(size.max(initial=0.0) / 5, 6 * noise))
+    starts = above[np.diff(t[above], prepend=-np.inf) > _SILENCE]
     if len(starts) < 3:
         raise Refused(f"{name}: {len(starts)} impacts stand out of the signal: three are needed")
-    return t[starts]
+    if of != "force":
+        return t[starts], None
+    contacts = []
+    for start, end in zip(starts, [*starts[1:], len(t)], strict=True):
+        peak = start + int(np.argmax(size[start:end]))
+        low = np.flatnonzero(size <= max(size[peak] / 20, 6 * noise))
+        over = int(np.searchsorted(low, peak))
+        if 0 < over < len(low):
+            # The force begins and ends between two samples.
+            contacts.append(np.interp(low[over - 1 : over + 1] + [0.5, -0.5], np.arange(len(t)), t))
+    begins, ends = np.array(contacts).T
+    if (ends - begins).max() > _LONGEST_CONTACT:
+        # The signal rings on, so that the end of a contact does not show.
+        return t[starts], None
+    return begins, ends - begins

@@ -1,4 +1,4 @@
-"""Stage: balls from random starts on a contact, in the restitution model and in the corrected model.
+"""Stage: balls from random starts on a contact, in the restitution and in the corrected model.
 
 Each ball is followed until its motion is known: it repeats, the ball rests on the table, or the
 largest Lyapunov exponent is positive. The averages are over the balls whose motions are chaotic,

@@ -96,6 +96,10 @@ VARIABLES = datasets.VARIABLES | {
     # Map
     "level": Variable("frequency ratio of a line of the map", "ϖ"),
     "judge": Variable("whose frequency ratio is tried"),
+    "least_gap": Variable(
+        "least gap of the restitution model's flights over the product of the times since the "
+        "impact and until the next one"
+    ),
     "lower_threshold": Variable(
         "frequency ratio at which the height is too small by the tolerance", "ϖ"
     ),

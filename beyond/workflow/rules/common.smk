@@ -67,7 +67,7 @@ MODULES = {
     "stiffness_map": [*ERRORS, *STUDIES, *SAVING],
     "contact_laws": [*ERRORS, "bouncing_ball_beyond/named_laws", *STUDIES, *SAVING],
     "phases": [*ERRORS, "bouncing_ball_beyond/named_laws", "studies/waveforms", *SAVING],
-    "events": [*modules("bouncing_ball_beyond", "balls", "one_ball", "simulation"), *SAVING],
+    "events": [*ORBITS, "bouncing_ball_beyond/motions", *SAVING],
     "explorer": [*ERRORS, *STUDIES, *SAVING],
     "draw": DRAWING,
     "tables": TABULATING,

@@ -94,7 +94,7 @@ rule compute_phases:
 
 
 rule compute_events:
-    """Impact speeds of chaotic balls on a contact and in both models"""
+    """Motions from random starts on a contact and in both models"""
     input:
         code=code("events"),
     output:

@@ -8,7 +8,7 @@ ABOUT = {
     "ext_map": "how stiff a contact must be for the greatest height, over r and Λ",
     "ext_laws": "errors of both models on contacts of five laws",
     "ext_phase": "what the phase of the touch tells about a contact",
-    "ext_event": "impact speeds of chaotic balls, a dataset without a figure",
+    "ext_event": "motions from random starts, a dataset without a figure",
 }
 
 

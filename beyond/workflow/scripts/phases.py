@@ -268,30 +268,26 @@ def balls_with(balls: Balls, ball: Ball) -> Balls:
 # What thresholds do not tell
 
 
-def by_law(r: float, duration: float) -> NDArray:
-    """Λ of saddle-node and period doubling on a linear contact, by the error law."""
-    impact = free_impact(linear(r, duration), 1)
-    errors = law_errors(impact, amplitude=1.0)
-    values = restitution_values(impact, 1.0)
-    names = "saddle_node", "period_doubling"
-    return np.array([values[name] * (1 + errors[name]) for name in names])
+def bifurcations(ball: Ball) -> NDArray:
+    """Λ of saddle-node and period doubling, shape (bifurcation, ...), for n = 1."""
+    values = contact_values(ball, amplitude=1.0, quantities=["saddle_node", "period_doubling"])
+    return np.array([*values.values()])
 
 
 def counterfeit(parameters: dict) -> tuple:
-    """D + κ from Λ of the saddle-node and of the period doubling, over the true one."""
+    """D + κ of the linear contact with the same two bifurcations, over the true one."""
     r = parameters["shown_restitution"]
     shares = np.array(parameters["contact_share"])
     found = []
     for law in LAWS:
         ball = contacts(law, r, 2 * np.pi * shares)
-        impact = free_impact(ball, 1)
-        exact = contact_values(ball, amplitude=1.0, quantities=["saddle_node", "period_doubling"])
-        through = impact.centroid * (1 + r) / r
+        through = np.broadcast_to(free_impact(ball, 1).centroid * (1 + r) / r, shares.shape)
         ratios = []
-        for column, true in enumerate(np.broadcast_to(through, shares.shape)):
-            sought = np.array([values[column] for values in exact.values()])
-            solution = root(lambda x, sought=sought: by_law(*x) - sought, [r, true], tol=1e-13)
-            ratios.append(solution.x[1] / true)
+        for true, sought in zip(through, bifurcations(ball).T, strict=True):
+            solution = root(
+                lambda x, sought=sought: bifurcations(linear(*x)) - sought, [r, true], tol=1e-12
+            )
+            ratios.append(solution.x[1] / true if solution.success else np.nan)
         found.append(ratios)
     return ("law", "contact_share"), found
 

@@ -265,6 +265,21 @@ def families_of(n: NDArray, r: NDArray, position: NDArray) -> Families:
     return Families(n, r, low, high, amplitude, lift)
 
 
+def least_gaps(known: Families) -> NDArray:
+    """The least gap of the restitution model's flights in each family, over the product of the
+    times since the impact and until the next one.
+
+    It tells how far all nodes are from grazing. The quotient is smooth up to both impacts, so that
+    samples between them show its least value.
+    """
+    low, n = (each[:, np.newaxis, np.newaxis] for each in (known.low, known.n))
+    amplitude, lift = (each[..., np.newaxis] for each in (known.amplitude, known.lift))
+    time = 2 * np.pi * n * np.linspace(0, 1, 501)[1:-1]
+    ball = lift + n * np.pi * time - time**2 / 2
+    gap = ball - amplitude * np.sin(np.arctan2(lift, low) + time)
+    return (gap / (time * (2 * np.pi * n - time))).min(axis=(1, 2))
+
+
 def heights_of(known: Families, ratios: NDArray, tolerance: float) -> dict[str, tuple]:
     """The ϖ from which on the height is within the tolerance at all nodes, and lines of one ϖ."""
     n = known.n
@@ -385,6 +400,7 @@ def ext_map(parameters: dict) -> xr.Dataset:
         "saddle_node_amplitude": ((), known.low),
         "period_doubling_amplitude": ((), known.high),
         "amplitude": (("position",), known.amplitude),
+        "least_gap": ((), least_gaps(known)),
         **heights,
         "stability_threshold": (("position",), stable),
         "stability_by_law": (("position",), stable_by_law),

@@ -3,12 +3,12 @@
 As in the replication, a template has text and names of numbers, and no numbers.
 """
 
-from decimal import Decimal
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
 from pathlib import Path
 
 import numpy as np
 
-from bouncing_ball.article import environment
+from bouncing_ball.article import environment, rounded
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
@@ -17,7 +17,7 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 def filled_in(name: str, datasets: Datasets) -> str:
     """The text of a template, Markdown: "article", "appendix", or "figures", the list of all."""
     templates = environment(TEMPLATES)
-    templates.filters["digits"] = digits
+    templates.filters.update(digits=digits, bound=bound, bound_digits=bound_digits)
     return templates.get_template(f"{name}.md.j2").render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
@@ -25,7 +25,7 @@ def filled_in(name: str, datasets: Datasets) -> str:
     )
 
 
-def digits(value: float, count: int) -> str:
+def digits(value: float, count: int, rounding: str = ROUND_HALF_EVEN) -> str:
     """A number with a number of digits, small ones with a power of ten.
 
     >>> digits(82.177, 2), digits(1.5812, 4), digits(3.63e-6, 2), digits(5613.2, 2)
@@ -34,9 +34,29 @@ def digits(value: float, count: int) -> str:
     number = float(value)
     if not np.isfinite(number):
         return "–"
-    rounded = Decimal(f"{number:.{count - 1}e}")
+    exact = Decimal(repr(number))
+    rounded = exact.quantize(Decimal(1).scaleb(exact.adjusted() - count + 1), rounding=rounding)
     exponent = rounded.adjusted()
     if exponent < -3:
         power = str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
         return f"{rounded.scaleb(-exponent)}·10{power}".replace("-", "−")
     return f"{rounded:f}".replace("-", "−")
+
+
+def bound(value: float, decimals: int) -> str:
+    """An upper bound with a number of decimals, rounded up, as `at_most` does in per cent.
+
+    >>> bound(0.324, 1), bound(0.0055, 3), bound(0.3, 1)
+    ('0.4', '0.006', '0.3')
+    """
+    number = float(value)
+    return rounded(Decimal(repr(number)), decimals, ROUND_CEILING) if np.isfinite(number) else "–"
+
+
+def bound_digits(value: float, count: int) -> str:
+    """An upper bound with a number of digits, rounded up.
+
+    >>> bound_digits(5613.2, 2), bound_digits(25.61, 2), bound_digits(5597.1, 2)
+    ('5700', '26', '5600')
+    """
+    return digits(value, count, ROUND_CEILING)

@@ -34,7 +34,7 @@ from studies.variables import LAW_NAMES
 TITLES: Mapping[str, str] = {
     "max_height": r"greatest height $\max\,z$",
     "bounce_velocity": r"bouncing-off velocity $z'_b$",
-    "phase": r"phase of impact $\varphi$",
+    "phase": r"phase of touch $\varphi$",
     "apparent_restitution": "apparent restitution $r_a$",
     "saddle_node": r"saddle-node $\Lambda_{SN}$",
     "period_doubling": r"period doubling $\Lambda_{PD}$",
@@ -127,9 +127,25 @@ def ext_instant(data: xr.Dataset) -> Figure:
     for axes in (top, below):
         axes.axvline(meeting, **GUIDE)
     below.annotate("$t^*$", (meeting, 0), (3, 3), textcoords="offset points")
+    # The delay t_c, below the instant, and its depth v t_c under the level of the table there.
+    arrow: Look = {
+        "arrowstyle": "<->",
+        "color": "0.3",
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "linewidth": 0.8,
+    }
+    level = float(np.interp(meeting, time, data.table))
     depth = float(data.table[touching].max()) - low
+    under = low - 0.12 * depth
+    top.annotate("", (0, under), (meeting, under), arrowprops=arrow)
+    top.annotate("$t_c$", (meeting / 2, under), (0, 3), textcoords="offset points", ha="center")
+    top.annotate("", (meeting, low), (meeting, level), arrowprops=arrow)
+    middle = low + 0.75 * (level - low)
+    top.annotate(r"$v\,t_c$", (meeting, middle), (5, 0), textcoords="offset points", va="center")
+    top.axvline(0, **GUIDE)
     top.set(ylabel=r"height, in units of $g/\Omega^2$")
-    top.set_ylim(low - 0.12 * depth, low + 1.6 * depth)
+    top.set_ylim(low - 0.25 * depth, low + 1.6 * depth)
     top.set_title(title(data, "n", "restitution", "amplitude", "frequency_ratio"))
     top.margins(x=0)
     below.set(xlabel=r"time since the touch, $\tau-\varphi$", ylabel="force / weight")
@@ -202,7 +218,7 @@ def ext_orders(data: xr.Dataset) -> Figure:
         along_ratio(axes, ratio)
         axes.set_xticks([1, 100, 10000])
         # Errors are below 1 but next to a phase of 0; the orders have the room above.
-        axes.set_ylim(1e-11, 1e4)
+        axes.set_ylim(1e-10, 1e4)
     beside.set_axis_off()
     figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")
     lines, names = first.get_legend_handles_labels()
@@ -212,8 +228,8 @@ def ext_orders(data: xr.Dataset) -> Figure:
 
 
 def draw_slope(axes: Axes, ratio: xr.DataArray, error: np.ndarray, order: float) -> None:
-    """A guide with the slope of an order in 1/ϖ through the last point of an error."""
-    axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
+    """A guide with the slope of an order in 1/ϖ, beside the last point of an error."""
+    axes.plot(ratio, 3 * error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
 
 
 def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:
@@ -235,7 +251,7 @@ POSITIONS = (0, 0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 1)
 BELOW = (0, 0.001, 0.005, 0.02, 0.05, 0.1)
 """Distances from the saddle-node that are named; the axis is even in their square roots."""
 
-LEVELS = (15, 20, 25, 30, 40, 50, 60, 70, 80, 90)
+LEVELS = (15, 20, 30, 40, 50, 60, 70, 80, 90)
 """Contours of the ϖ from which on the height is right, where it leaves the tolerance downwards."""
 
 EXACT: Look = {"color": "black", "linewidth": 0.8}

@@ -96,6 +96,10 @@ VARIABLES = datasets.VARIABLES | {
     # Map
     "level": Variable("frequency ratio of a line of the map", "ϖ"),
     "judge": Variable("whose frequency ratio is tried"),
+    "least_gap": Variable(
+        "least gap of the restitution model's flights over the product of the times since the "
+        "impact and until the next one"
+    ),
     "lower_threshold": Variable(
         "frequency ratio at which the height is too small by the tolerance", "ϖ"
     ),
@@ -191,7 +195,7 @@ VARIABLES = datasets.VARIABLES | {
         "restitution coefficient from one phase, as if the contact took no time", "r"
     ),
     "counterfeit": Variable(
-        "D + κ from the thresholds over the true one, as if r did not depend on the speed",
+        "D + κ of the linear contact with the same two bifurcations, over the true one",
         tolerance=1e-6,
     ),
     "width_change": Variable("relative change of Λ_PD² - Λ_SN² by the contact, to first order"),
@@ -214,16 +218,25 @@ VARIABLES = datasets.VARIABLES | {
         tolerance=0.02,
         floor=1.0,
     ),
-    # Chaotic motions: averages agree as well as those of so many balls do, within five errors.
+    # Averages agree as well as those of so many chaotic balls do, within five errors. Rounding may
+    # decide when a ball comes to rest, and it does so for most of the balls of a row together.
+    "chaotic_share": Variable("share of balls whose motions are chaotic", tolerance=0.7, floor=1.0),
+    "repeating_share": Variable(
+        "share of balls whose motions are known to repeat, or to end at rest",
+        tolerance=0.2,
+        floor=1.0,
+    ),
     "mean_square": Variable(
-        "mean square of the closing speed at the touch",
+        "mean square of the closing speed at the touch, chaotic motions",
         "⟨u²⟩",
         tolerance=5.0,
         tolerance_scale="mean_square_error",
     ),
     "mean_square_error": Variable("its standard error", tolerance=0.5),
     "slow_share": Variable(
-        "share of touches with a closing speed below 4 t_c (1 + Λ)", tolerance=0.01, floor=1.0
+        "share of touches with a closing speed below 4 t_c (1 + Λ), chaotic motions",
+        tolerance=0.01,
+        floor=1.0,
     ),
     # Explorer
     "trace": Variable("trace of the derivative of the return map", "tr"),

@@ -229,7 +229,8 @@ def ext_orders(data: xr.Dataset) -> Figure:
 
 def draw_slope(axes: Axes, ratio: xr.DataArray, error: np.ndarray, order: float) -> None:
     """A guide with the slope of an order in 1/ϖ, beside the last point of an error."""
-    axes.plot(ratio, 3 * error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
+    ends = ratio.values[[0, -1]]
+    axes.plot(ends, 3 * error[-1] * (ends[-1] / ends) ** order, **GUIDE)
 
 
 def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:

@@ -126,8 +126,10 @@ VARIABLES = datasets.VARIABLES | {
         "Λ sin ψ up to which the height is too large by the tolerance at some frequency ratio",
         "Y₀",
     ),
+    # The place of a greatest error, where this is level: rounding of 1e-10 of the error moves it by
+    # the root of that. Two processors differed by 4.5e-5.
     "jump_ratio": Variable(
-        "frequency ratio of this error at this Λ sin ψ", "ϖ", tolerance=1e-5, floor=1.0
+        "frequency ratio of this error at this Λ sin ψ", "ϖ", tolerance=1e-3, floor=1.0
     ),
     "too_high_lift": Variable(
         "Λ sin ψ up to which the height is too large by the tolerance at this frequency ratio or "

@@ -99,7 +99,8 @@ def drake(one, other, height):
 
 
 DIRECT = {"solref": "-20000 -30", "solimp": "1e-4 1e-4 0.001"}
-SPRING = {"contactStiffness": 2e4, "contactDamping": 10.0, "linearDamping": 0.0}
+AHEAD = {"contactProcessingThreshold": 0.0, "contactSlop": 0.0}
+SPRING = {"contactStiffness": 2e4, "contactDamping": 10.0, "linearDamping": 0.0, **AHEAD}
 WORLD = ("contactERP", "contactSlop", "restitutionVelocityThreshold")
 SAP = {"point_contact_stiffness": 2e4, "relaxation_time": 0.002}
 LAGGED = {"point_contact_stiffness": 2e4, "hunt_crossley_dissipation": 0.1}
@@ -157,14 +158,18 @@ def main():
             heights = np.asarray(run(one, other or {}, height))
             measured.append(rebound(heights, height))
         rest = -float(np.mean(heights[-2000:]))
-        low, _, high = found.outcome.restitution
+        low, mean, high = found.outcome.restitution
         agrees = low - 1e-3 <= min(measured) and max(measured) <= high + 1e-3
-        agrees &= bool(np.isclose(rest, found.outcome.rest, rtol=0.02))
+        # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
+        agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
+        # Without a threshold and a slop the ball never comes to rest.
+        agrees &= not found.outcome.rest or bool(np.isclose(rest, found.outcome.rest, rtol=0.02))
         wrong += not agrees
         table = "the same" if other is one else in_words(other)
         texts = [name, in_words(one), table, f"{low:.4f} to {high:.4f}"]
         texts += [f"{min(measured):.4f} to {max(measured):.4f}"]
-        texts += [f"{found.outcome.rest * 1e3:.4g}", f"{rest * 1e3:.4g}"]
+        rests = (found.outcome.rest, rest) if found.outcome.rest else (math.nan, math.nan)
+        texts += ["–" if math.isnan(depth) else f"{depth * 1e3:.4g}" for depth in rests]
         print(f"| {' | '.join(texts)} |{'' if agrees else ' (differs)'}", flush=True)
     sys.exit(wrong > 0)
 

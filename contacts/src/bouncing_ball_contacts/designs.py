@@ -664,8 +664,7 @@ def _too_long(
         other = YOURS if chosen == WANTED else WANTED
         found.append(
             f"your step of {show(step, 's')} cannot keep what you gave: the row for "
-            f"{show(rows[chosen].step, 's')} is written (--pick {other!r} for the row that "
-            f"{'has your step' if chosen == WANTED else 'keeps it'})"
+            f"{show(rows[chosen].step, 's')} is written (--pick {other!r} for the other one)"
         )
     return found
 

@@ -82,13 +82,13 @@ class Diagnosis:
             )
         lines += [f"! {reason}" for reason in self.reasons]
         if self.change is not None:
-            step = ""
-            if not math.isclose(self.change.step, self.time_step):
-                step = f" and a step of {show(self.change.step, 's')}"
-            value = _typed(self.change.value)
+            is_here = math.isclose(self.change.step, self.time_step)
+            step = "" if is_here else f" and a step of {show(self.change.step, 's')}"
+            misses = self.change.outcome.deviation(wanted) > TOLERANCE
+            leaves = f", which leaves the tolerance of {TOLERANCE:g}" if misses else ""
             lines.append(
-                f"Least change: {self.change.name} = {value}{step} gives r = "
-                f"{self.change.outcome.around}{self._misses(wanted)}."
+                f"Least change: {_listed({self.change.name: self.change.value})}{step} gives r = "
+                f"{self.change.outcome.around}{leaves}."
             )
         if wanted is None:
             lines.append("With --restitution there is a least change, for the r that is wanted.")
@@ -107,10 +107,6 @@ class Diagnosis:
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
         return lines
-
-    def _misses(self, wanted: float) -> str:
-        misses = self.change is not None and self.change.outcome.deviation(wanted) > TOLERANCE
-        return f", which leaves the tolerance of {TOLERANCE:g}" if misses else ""
 
     def __repr__(self) -> str:
         return "\n".join(self.lines[:2])
@@ -507,7 +503,8 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
 
     bracket: tuple[float, float] | None = (1e-4, 1.0)
     if not rises:
-        bracket = _damped(mean, target, _start(pair, name))
+        given = np.abs(np.atleast_1d(pair.one[name])[-1])
+        bracket = _damped(mean, target, float(given) or 1.0)
     if bracket is None:
         return None
     low, high = bracket
@@ -525,11 +522,6 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
     if misses or outcome.restitution[2] > 1.02:
         return None
     return Change(name, of(value), step, outcome)
-
-
-def _start(pair: _Pair, name: str) -> float:
-    given = abs(pair.one[name][1] if name == "solref" else pair.one[name])
-    return float(given) if given > 0 else 1.0
 
 
 def _damped(

@@ -116,7 +116,7 @@ class Engine:
 
     name: str
     names: tuple[str, str]
-    scheme: Scheme
+    scheme: SemiImplicit | Implicit
     write: Callable[[Law, Setting], dict[str, Any]]
     read: Callable[[Parameters, Setting], Law]
     meaning: str

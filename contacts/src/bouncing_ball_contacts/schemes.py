@@ -298,9 +298,6 @@ class Impulse(_Explicit):
 class Scheme(Protocol):
     """How an engine steps a contact."""
 
-    @property
-    def text(self) -> str: ...
-
     def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         """Return the velocity after the step; `free` is that without the contact."""
 
@@ -351,11 +348,6 @@ class Implicit:
 @dataclass(frozen=True)
 class Impulsive:
     """A body is thrown back by its restitution coefficient, see :class:`Impulse`."""
-
-    @property
-    def text(self) -> str:
-        """The scheme in a few words."""
-        return "impulse"
 
     def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         thrown = np.where(free < -law.threshold, -law.restitution * free, 0.0)

@@ -333,8 +333,8 @@ class Problem:
     def drops(self, law: Law, step: Array | float, trials: Trials = _COARSE) -> Drops:
         """Return the drops of contacts at time steps in s."""
         scheme = self.engine.scheme_of(law)
-        bounce = self.bounce
-        return drop(law, scheme, step, bounce.impact_speed, bounce.load, trials, self.drag)
+        speed = self.bounce.impact_speed
+        return drop(law, scheme, step, speed, self.bounce.load, trials, drag=self.drag)
 
     def outcome(self, law: Law, step: float, trials: Trials = _FINE) -> Outcome:
         """Return what one contact does at a time step in s."""
@@ -352,11 +352,9 @@ class Problem:
     def row(self, law: Law, step: float) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
         step = _rounded(step)
-        setting = self.setting(step)
-        combined = self.engine.write(law, setting)
-        engine = self.engine
-        written = engine.of_one(combined) if self.one_body else engine.of_each(combined)
-        parameters = {name: _rounded(value) for name, value in written.items()}
+        combined = self.engine.write(law, self.setting(step))
+        of_body = self.engine.of_one if self.one_body else self.engine.of_each
+        parameters = {name: _rounded(value) for name, value in of_body(combined).items()}
         stiffness = float(law.stiffness) * self.bounce.reduced_mass
         outcome = self.outcome(self.law_of(parameters, step), step)
         return Row(step, stiffness, outcome, parameters)
@@ -460,7 +458,9 @@ def design(
     keeps = False
     if step is not None:
         if step <= rows[WANTED].step:
-            yours: Row | None = _kept(problem, kept or bounce.limit, step, None, kept is not None)
+            yours: Row | None = _kept(
+                problem, kept or bounce.limit, step, is_fixed=kept is not None
+            )
         else:
             yours = _keeping(problem, step, largest, kept)
         keeps = yours is not None
@@ -500,7 +500,7 @@ def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None
     # Damped, the contact becomes more compliant, and its r better.
     if not np.any(error <= 2 * tolerance):
         return None
-    row = _kept(problem, depth, step, None, kept is not None)
+    row = _kept(problem, depth, step, is_fixed=kept is not None)
     limit = math.inf if kept else depth
     return row if _is_good(problem, row, tolerance, limit) else None
 
@@ -539,7 +539,7 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
     target = problem.target
     if not problem.engine.fixed_steps:
         step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
-        return _kept(problem, kept or limit, step, None, kept is not None)
+        return _kept(problem, kept or limit, step, is_fixed=kept is not None)
     for counts in _STEPS:
         depth = np.full(counts.shape, kept or limit)
         ratio: Array | None = None
@@ -554,13 +554,13 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
             break
     best = int(good[0]) if good.size else int(np.argmin(found.error(target)))
     step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
-    return _kept(problem, float(depth[best]), step_of, None, kept is not None)
+    return _kept(problem, float(depth[best]), step_of, is_fixed=kept is not None)
 
 
-def _kept(problem: Problem, depth: float, step: float, start: Array | None, is_fixed: bool) -> Row:
+def _kept(problem: Problem, depth: float, step: float, *, is_fixed: bool) -> Row:
     """Return the contact at a step that keeps the limit, or that has the depth if it `is_fixed`."""
     limit = problem.bounce.limit
-    ratio = start
+    ratio: Array | None = None
     for _ in range(8):
         ratio = problem.ratios(np.array([depth]), np.array([step]), ratio)
         law = problem.law(np.asarray(depth), ratio[0])

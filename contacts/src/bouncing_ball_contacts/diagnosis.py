@@ -163,9 +163,7 @@ def _unknown(engine: Engine, typed: str, names: list[str]) -> str:
     """Return what is said of a parameter that an engine does not have."""
     text = f"{engine.name} has no {typed!r}: it has {', '.join(names)}"
     family = engine.name.split("-")[0]
-    others = [
-        row.name for row in ENGINES.values() if row.name.startswith(family) and typed in row.names
-    ]
+    others = [name for name in ENGINES if name.startswith(family) and typed in ENGINES[name].names]
     near = difflib.get_close_matches(typed, names, 1, 0.6)
     if others:
         text += f"; {' and '.join(others)} has it"
@@ -175,9 +173,8 @@ def _unknown(engine: Engine, typed: str, names: list[str]) -> str:
 
 
 def _not_computed(engine: Engine) -> str:
-    if not engine.impulse or text_of(f"{engine.name}-impulse"):
-        return ""
-    return f"; a bounce by {engine.impulse} is not computed"
+    is_known = text_of(f"{engine.name}-impulse") or not engine.impulse
+    return "" if is_known else f"; a bounce by {engine.impulse} is not computed"
 
 
 def _value(engine: Engine, name: str, value: Any) -> Any:

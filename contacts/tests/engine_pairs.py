@@ -16,17 +16,18 @@ from bouncing_ball_contacts.engines import UNDISTURBED
 HEIGHT = 0.5
 G = 9.80665
 BALL = Bounce(mass=1.0, drop_height=HEIGHT, radius=0.1)
-STEP = 1e-3
+SHORT = 1e-3
+LONG = 1 / 240
 
 
-def mujoco(one, other, height):
+def mujoco(one, other, height, step):
     import mujoco
 
     def geom(values):
         return " ".join(f'{name}="{value}"' for name, value in values.items())
 
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="{STEP}" gravity="0 0 {-G}"/><worldbody>
+        f"""<mujoco><option timestep="{step}" gravity="0 0 {-G}"/><worldbody>
         <geom type="plane" size="1 1 1" {geom(other)}/>
         <body pos="0 0 {0.1 + height}"><freejoint/><geom size="0.1" mass="1" {geom(one)}/></body>
         </worldbody></mujoco>"""
@@ -39,14 +40,14 @@ def mujoco(one, other, height):
     return heights
 
 
-def pybullet(one, other, height):
+def pybullet(one, other, height, step):
     import pybullet
 
     if not pybullet.isConnected():
         pybullet.connect(pybullet.DIRECT)
     pybullet.resetSimulation()
     pybullet.setGravity(0, 0, -G)
-    pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP, numSubSteps=1)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=1)
     table = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
     sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.1)
     ball = pybullet.createMultiBody(1, sphere, basePosition=[0, 0, 0.1 + height])
@@ -64,12 +65,12 @@ def pybullet(one, other, height):
     return heights
 
 
-def drake(one, other, height):
+def drake(one, other, height, step):
     import pydrake.all as pydrake
 
     builder = pydrake.DiagramBuilder()
     near = "sap" if "relaxation_time" in one else "lagged"
-    config = pydrake.MultibodyPlantConfig(time_step=STEP, discrete_contact_approximation=near)
+    config = pydrake.MultibodyPlantConfig(time_step=step, discrete_contact_approximation=near)
     plant, _ = pydrake.AddMultibodyPlant(config, builder)
     plant.mutable_gravity_field().set_gravity_vector([0, 0, -G])
     inertia = pydrake.SpatialInertia.SolidSphereWithMass(1.0, 0.1)
@@ -92,7 +93,7 @@ def drake(one, other, height):
         here = pydrake.RigidTransform([0, 0, place])
         plant.RegisterCollisionGeometry(body, here, shape, body.name(), properties)
     plant.Finalize()
-    log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, STEP)
+    log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, step)
     simulator = pydrake.Simulator(builder.Build())
     simulator.AdvanceTo(20.0)
     return log.FindLog(simulator.get_context()).data()[6, 1:] + height
@@ -104,17 +105,19 @@ SPRING = {"contactStiffness": 2e4, "contactDamping": 10.0, "linearDamping": 0.0,
 WORLD = ("contactERP", "contactSlop", "restitutionVelocityThreshold")
 SAP = {"point_contact_stiffness": 2e4, "relaxation_time": 0.002}
 LAGGED = {"point_contact_stiffness": 2e4, "hunt_crossley_dissipation": 0.1}
-# Engine, its drop, and the parameters of the ball and of the table; None are the defaults.
+SOFT = {"contactStiffness": 1e4, "contactDamping": 1.5}
+# Engine, its drop, the parameters of the ball and of the table, and the step in s; None are the
+# defaults.
 CASES = [
-    ("mujoco", mujoco, DIRECT, None),
-    ("mujoco", mujoco, DIRECT, {"solref": "-5000 -60", "solimp": "0.2 0.2 0.001"}),
-    ("mujoco", mujoco, {"solref": "0.05 0.1"}, {"solref": "0.02 0.3"}),
-    ("pybullet", pybullet, SPRING, None),
-    ("pybullet", pybullet, SPRING, {"contactStiffness": 1e4, "contactDamping": 2.0}),
+    ("mujoco", mujoco, DIRECT, None, SHORT),
+    ("mujoco", mujoco, DIRECT, {"solref": "-5000 -60", "solimp": "0.2 0.2 0.001"}, SHORT),
+    ("mujoco", mujoco, {"solref": "0.05 0.1"}, {"solref": "0.02 0.3"}, SHORT),
+    ("pybullet", pybullet, SPRING, None, SHORT),
+    ("pybullet", pybullet, SPRING, {"contactStiffness": 1e4, "contactDamping": 2.0}, SHORT),
+    ("pybullet", pybullet, SOFT, SOFT, SHORT),
     *(
-        ("pybullet", pybullet, both, both)
+        ("pybullet", pybullet, both, both, LONG)
         for both in (
-            {"contactStiffness": 1e4, "contactDamping": 1.5},
             {"restitution": 0.9},
             {"restitution": 0.5},
             {"restitution": 0.9, "linearDamping": 0.0, "contactERP": 0.0},
@@ -122,14 +125,15 @@ CASES = [
             {},
         )
     ),
-    ("pybullet", pybullet, {"restitution": 0.9}, {"restitution": 0.7}),
-    ("drake", drake, SAP, {"point_contact_stiffness": 6e4, "relaxation_time": 0.001}),
-    ("drake", drake, SAP, None),
+    ("pybullet", pybullet, {"restitution": 0.9}, {"restitution": 0.7}, LONG),
+    ("drake", drake, SAP, {"point_contact_stiffness": 6e4, "relaxation_time": 0.001}, SHORT),
+    ("drake", drake, SAP, None, SHORT),
     (
         "drake-hunt-crossley",
         drake,
         LAGGED,
         {"point_contact_stiffness": 8e4, "hunt_crossley_dissipation": 0.8},
+        SHORT,
     ),
 ]
 
@@ -148,14 +152,14 @@ def rebound(heights, height):
 
 def main():
     wrong = 0
-    print("| engine | ball | table | r | engine | at rest, mm | engine |")
-    print("| --- | --- | --- | --- | --- | --- | --- |")
-    for name, run, one, other in CASES:
-        found = diagnose(BALL, name, one, STEP, other=other, one_body=other is None)
-        way = math.sqrt(2 * G * HEIGHT) * STEP
+    print("| engine | ball | table | step | r | engine | at rest, mm | engine |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for name, run, one, other, step in CASES:
+        found = diagnose(BALL, name, one, step, other=other, one_body=other is None)
+        way = math.sqrt(2 * G * HEIGHT) * step
         measured = []
         for height in HEIGHT + way * np.linspace(0, 1, 16):
-            heights = np.asarray(run(one, other or {}, height))
+            heights = np.asarray(run(one, other or {}, height, step))
             measured.append(rebound(heights, height))
         rest = -float(np.mean(heights[-2000:]))
         low, mean, high = found.outcome.restitution
@@ -166,7 +170,7 @@ def main():
         agrees &= not found.outcome.rest or bool(np.isclose(rest, found.outcome.rest, rtol=0.02))
         wrong += not agrees
         table = "the same" if other is one else in_words(other)
-        texts = [name, in_words(one), table, f"{low:.4f} to {high:.4f}"]
+        texts = [name, in_words(one), table, f"{step * 1e3:.4g} ms", f"{low:.4f} to {high:.4f}"]
         texts += [f"{min(measured):.4f} to {max(measured):.4f}"]
         rests = (found.outcome.rest, rest) if found.outcome.rest else (math.nan, math.nan)
         texts += ["–" if math.isnan(depth) else f"{depth * 1e3:.4g}" for depth in rests]

@@ -268,3 +268,12 @@ def test_the_step_is_needed():
         asked(0.8, "lammps", {"kn": 1e5, "gamma_n": 2}, None)
     with pytest.raises(Refused, match="not both"):
         asked(0.8, "drake", {}, "1 ms", one_body=True, other={"relaxation_time": 0.1})
+
+
+def test_an_engine_without_numbers_per_unit_of_mass_has_no_hint_of_them():
+    """The steps of Drake give the wanted r here, which short steps would not."""
+    spring = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-5}
+    r = asked(None, "drake", spring, "1 ms", body={"mass": "2 kg"}).outcome.restitution[1]
+    found = asked(r, "drake", spring, "1 ms", body={"mass": "2 kg"})
+    assert abs(found.free - r) > 0.02
+    assert not any("per unit of mass" in reason for reason in found.reasons)

@@ -29,6 +29,16 @@ _SHORT = 1000
 _FEW = 10
 # Parameters from 0 to 1 with which r rises.
 _SHARES = ("e", "coefficientRestitution", "restitution", "soft_erp", "contactERP")
+# Parameters that are per unit of mass.
+_PER_MASS = {
+    "mujoco": ("solref",),
+    "newton-mujoco": ("ke", "kd"),
+    "lammps": ("gamma_n",),
+    "lammps-limit-damping": ("gamma_n",),
+    "liggghts": ("gamman",),
+    "liggghts-limit-force": ("gamman",),
+    "chrono": ("gn",),
+}
 
 
 @dataclass(frozen=True)
@@ -412,13 +422,19 @@ def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[s
     mass = problem.bounce.reduced_mass
     if abs(free - wanted) < TOLERANCE:
         return
-    for name, divided in _per_mass(pair):
-        mean = divided.mean(step)
-        if abs(mean - wanted) < min(TOLERANCE, 0.3 * abs(free - wanted)) and mass != 1:
-            yield (
-                f"{name} is per unit of mass in {engine.name}: divided by {mass:g} kg, r is "
-                f"{mean:.3f}"
-            )
+    names = _PER_MASS.get(engine.name, ())
+    divided = pair
+    for name in names:
+        values = tuple(value / mass for value in np.atleast_1d(pair.one[name]))
+        divided = divided.changed(name, values if name == "solref" else values[0])
+    mean = divided.mean(step)
+    is_near = abs(mean - wanted) < min(TOLERANCE, 0.3 * abs(free - wanted))
+    # A positive solref is a time constant and a damping ratio.
+    if names and is_near and mass != 1 and np.all(np.asarray(pair.one.get("solref", -1)) <= 0):
+        yield (
+            f"{' and '.join(names)} is per unit of mass in {engine.name}: divided by {mass:g} kg, "
+            f"r is {mean:.3f}"
+        )
     if ratio < 1:
         pulling = math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2))
         if abs(pulling - wanted) < 0.005:
@@ -426,21 +442,6 @@ def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[s
                 "this damping is that of a contact whose damper pulls until the end, "
                 f"r = exp(-πζ/√(1 - ζ²)); in {engine.name} it ends earlier"
             )
-
-
-def _per_mass(pair: _Pair) -> Iterator[tuple[str, _Pair]]:
-    """Yield the parameters that are per unit of mass, and the pair with them divided by it."""
-    mass = pair.problem.bounce.reduced_mass
-    name = pair.problem.engine.name
-    if name == "mujoco" and pair.one["solref"][0] < 0:
-        scaled = tuple(value / mass for value in pair.one["solref"])
-        yield "solref", pair.changed("solref", scaled)
-    if name == "newton-mujoco":
-        scaled_pair = pair.changed("ke", pair.one["ke"] / mass)
-        yield "ke and kd", scaled_pair.changed("kd", pair.one["kd"] / mass)
-    if name in ("lammps", "lammps-limit-damping", "liggghts", "liggghts-limit-force", "chrono"):
-        damping = pair.problem.engine.names[1]
-        yield damping, pair.changed(damping, pair.one[damping] / mass)
 
 
 def _another(pair: _Pair, step: float) -> str:

@@ -698,7 +698,7 @@ _ALL = {
                 "The snippet lifts max_vel, which limits the correction",
             ),
             impulse="restitution_coefficient of the surface",
-            caution="max_vel is taken as lifted: with Gazebo's default of 0.01 m/s nothing bounces",
+            caution="max_vel is taken as lifted: Gazebo's default caps the rebound at 0.01 m/s",
         ),
         Engine(
             name="chrono",

@@ -8,6 +8,7 @@ import pytest
 
 BALL = 'design --mass "50 g" --restitution 0.8'
 MUJOCO = "diagnose --engine mujoco --mass 1 --time-step 2ms"
+PYBULLET = "diagnose --engine pybullet --mass 1 --time-step 1/240"
 LAMMPS = "diagnose --engine lammps --mass 1 --time-step 2ms"
 
 
@@ -35,10 +36,16 @@ def test_without_a_command_the_help_is_shown(typed):
     assert (status, err) == (0, "") and "Examples:\n  bounce design" in out
 
 
+@pytest.mark.parametrize("option", ["--help", "-h"])
 @pytest.mark.parametrize("command", ["", "design", "diagnose", "fit", "engines"])
-def test_help(typed, command):
-    status, out, _ = typed(f"{command} --help")
+def test_help(typed, command, option):
+    status, out, _ = typed(f"{command} {option}")
     assert status == 0 and "Usage" in out
+
+
+def test_the_version(typed):
+    status, out, _ = typed("--version")
+    assert status == 0 and out.startswith("bounce, version ")
 
 
 def test_engines_are_listed_with_what_was_run(typed):
@@ -108,7 +115,8 @@ MISTAKES = {
     f"{BALL} --tolerance 0": "not between",
     f"{BALL} --tolerance 5": "not between",
     f"{BALL} --pick nothing": "none of this answer",
-    f"{BALL} --pick impulse": "none of this answer",
+    f"{BALL} --pick impulse --engine pybullet": "none of this answer",
+    f'{BALL} --radius "2 mm" --penetration "5 mm"': "is deeper than the radius of 2 mm",
     f"{BALL} --time-step 1ms --pick impulse --engine drake": "no impulse is written for drake",
     "design --mass 1 --restitution 0.5 --radius 0.05 --time-step 1ms --engine pybullet --one-body "
     "--pick impulse": "has none alone",
@@ -119,6 +127,8 @@ MISTAKES = {
     f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
     f"{BALL} --script drop.py --engine physx": "no script is written for physx",
     f"{BALL} --script /no/such/folder/drop.py --engine mujoco": "cannot be written",
+    f"{BALL} --script mine.csv --engine mujoco": "does not end in .py",
+    f"{BALL} --script {__file__} --engine mujoco": "exists, and is not overwritten",
     f"{BALL} --script mujoco.py --engine mujoco": "hides the module of the engine",
     f"{BALL} --script drake.py --engine drake-hunt-crossley": "hides the module of the engine",
     f"{BALL} --script warp.py --engine newton": "hides the module of the engine",
@@ -138,6 +148,15 @@ MISTAKES = {
     f"{MUJOCO} solref=1,2,3": "two numbers",
     f"{MUJOCO} solreff=0.02": "did you mean solref",
     f"{MUJOCO} kn=1": "it has solref, solimp, refsafe",
+    f"{PYBULLET} contactStiffness=1e4": "give both",
+    f"{PYBULLET} contactStiffness='1e4 N/m' contactDamping=1": "write a plain number as in '0.8'",
+    "diagnose --engine gazebo --mass 1 --time-step 1ms": "by restitution_coefficient of "
+    "the surface is not computed",
+    "diagnose --engine ode bounce=0.8 --mass 1 --time-step 1ms": "it has soft_cfm, soft_erp",
+    "diagnose --engine physx restitution=0.8 --mass 1 --time-step 1ms": "it has compliantContact",
+    "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
+    "drake-hunt-crossley has it",
+    "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",
     LAMMPS: "kn is missing",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
@@ -165,6 +184,7 @@ def test_a_mistake_is_one_line(typed, line):
     assert (status, out) == (2, "")
     assert err.startswith("bounce: ") and err.count("\n") == 1
     assert MISTAKES[line] in err
+    assert "1.2 %" not in err
 
 
 def test_the_command_starts_quickly():

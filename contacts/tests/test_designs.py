@@ -87,6 +87,45 @@ def test_a_stiffer_contact_can_be_asked_for():
     assert len({round(k) for k in contacts}) == 4
 
 
+@pytest.mark.parametrize("step", ["176 us", "200 us", "250 us"])
+def test_a_step_that_keeps_the_penetration_and_the_tolerance_is_written(step):
+    """It was called too long, because r was not within half of the tolerance."""
+    wanted = dict(mass="200 g", restitution=0.7, drop_height="50 cm", radius="4 cm")
+    found = design(Bounce(**wanted, penetration="6 mm"), "drake", step)
+    shortest = found.rows[WANTED]
+    assert shortest.step < found.row.step and found.chosen == YOURS
+    # As compliant as the penetration permits.
+    assert 5.9e-3 <= found.row.outcome.depth[1] <= 6e-3
+    assert found.row.outcome.deviation(0.7) <= 0.02
+    assert "cannot keep" not in str(found)
+
+
+def test_a_step_that_cannot_keep_the_penetration_says_which_row_is_written():
+    wanted = Bounce(**BALL, penetration="1 mm")
+    found = design(wanted, "drake", "2 ms")
+    text = f"the row for {found.row.step * 1e6:.1f} µs is written (--pick 'your step'"
+    assert found.chosen == WANTED and text in str(found)
+    picked = design(wanted, "drake", "2 ms", pick=YOURS)
+    assert "the row for 2 ms is written (--pick 'what you want'" in str(picked)
+
+
+def test_a_spring_that_gains_energy_is_said_so():
+    found = design(Bounce(mass="1 kg", restitution=1, radius="10 cm"), "mujoco", "1 ms")
+    most = found.row.outcome.restitution[2]
+    assert most > 1.001 and f"up to {most:.3f}: at some instants the body gains" in repr(found)
+
+
+def test_the_impulse_is_shown_where_an_engine_has_it_or_no_spring_works():
+    assert IMPULSE in design(Bounce(**BALL), "physx", "1 ms").rows
+    assert IMPULSE not in design(Bounce(**BALL), "lammps", "1 ms").rows
+    assert IMPULSE in design(Bounce(**BALL), "lammps", "10 ms").rows
+
+
+def test_a_bounce_is_needed():
+    with pytest.raises(Refused, match="give a bounce"):
+        design(None, "mujoco")
+
+
 def test_a_step_that_is_short_enough_is_taken_with_what_was_given():
     found = design(Bounce(**BALL, stiffness="2 kN/m"), "mujoco", "20 us")
     assert found.chosen == YOURS
@@ -148,7 +187,9 @@ def test_grains_are_not_lost_in_a_wall(name, step):
 
 def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
     found = design(Bounce(mass="50 g", restitution=0.8), "pybullet", "1/240", pick=IMPULSE)
-    assert found.parameters == {"restitution": pytest.approx(math.sqrt(0.798), abs=0.003)}
+    assert found.parameters["restitution"] == pytest.approx(math.sqrt(0.798), abs=0.003)
+    # The snippet sets the others to 0 as well.
+    assert [name for name, value in found.parameters.items() if value] == ["restitution"]
     assert "restitution=0.89" in found.snippet
     assert found.row.outcome.error < 0.01
     with pytest.raises(Refused, match="no impulse is written for mujoco"):

@@ -1,9 +1,11 @@
 """What parameters do, why, and the least change."""
 
+import math
+
 import pytest
 
 from bouncing_ball_contacts import Bounce, Refused, design, diagnose
-from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM
+from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM, UNDISTURBED
 
 KILO = dict(mass="1 kg", radius="10 cm")
 
@@ -86,7 +88,8 @@ def test_steps_that_damp_too_much_are_named_with_the_most_and_the_impulse():
     most = asked(None, "pybullet", {**spring, "contactDamping": 0}, "1/240").outcome.restitution[1]
     assert f"damps by itself: r is {most:.2f}" in reason and " at most" in reason
     impulse = design(found.bounce, "pybullet", "1/240", pick="impulse")
-    assert f"restitution = {impulse.parameters['restitution']:.6g} without a spring" in reason
+    assert f"restitution = {impulse.parameters['restitution']:.6g}, linearDamping = 0" in reason
+    assert " without a spring has " in reason
 
 
 def test_the_defaults_of_mujoco_do_not_bounce():
@@ -123,11 +126,71 @@ def test_a_damping_by_the_formula_of_a_damper_that_pulls_is_recognized():
 
 def test_a_spring_that_is_off_is_an_impulse():
     """contactStiffness = -1 is PyBullet's default, and was refused."""
-    found = asked(0.8, "pybullet", {"contactStiffness": -1}, "1/240")
+    unset = {"contactStiffness": -1, **UNDISTURBED}
+    found = asked(0.8, "pybullet", unset, "1/240")
     assert found.outcome.restitution == (0, 0, 0)
     assert found.change.name == "restitution"
     # Both bodies multiply it.
     assert found.change.value == pytest.approx(0.8**0.5, abs=0.01)
+
+
+def test_a_restitution_by_number_is_that_of_pybullet():
+    """It was 0.496 ± 0.503 with any restitution. Drops of PyBullet 3.2.7, of a ball of steel."""
+    ball = Bounce(mass="1 kg")
+    found = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240")
+    assert found.outcome.restitution == pytest.approx((0.737, 0.812, 0.849), abs=0.015)
+    assert math.isnan(found.stiffness) and "linearDamping = 0.04 lowers r" in str(found)
+    half = diagnose(ball, "pybullet", {"restitution": 0.5}, "1/240")
+    assert half.outcome.restitution == pytest.approx((0.202, 0.267, 0.295), abs=0.015)
+    assert diagnose(ball, "pybullet", None, "1/240").outcome.restitution == (0, 0, 0)
+    # One body's restitution counts for nothing if the other one has none.
+    alone = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240", one_body=True)
+    assert alone.outcome.restitution == (0, 0, 0)
+    picked = design(Bounce(mass="1 kg", restitution=0.9), "pybullet", "1/240", pick="impulse")
+    again = diagnose(ball, "pybullet", picked.parameters, "1/240")
+    assert again.outcome.restitution == pytest.approx(picked.row.outcome.restitution, abs=1e-5)
+
+
+def test_the_linear_damping_of_pybullet_is_in_the_answer_with_its_effect():
+    """Diagnosed were 0.836, and PyBullet had 0.794 to 0.798."""
+    spring = {"contactStiffness": 1e4, "contactDamping": 1.5}
+    found = diagnose(Bounce(mass="1 kg"), "pybullet", spring, "1 ms")
+    low, mean, high = found.outcome.restitution
+    assert low < 0.794 and high > 0.798
+    still = diagnose(Bounce(mass="1 kg"), "pybullet", {**spring, "linearDamping": 0}, "1 ms")
+    without = still.outcome.restitution[1]
+    assert f"linearDamping = 0.04 lowers r from {without:.3f} to {mean:.3f}" in found.reasons[0]
+    assert not any("linearDamping" in reason for reason in still.reasons)
+
+
+def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
+    """The radius of steel was assumed silently, and the other body's numbers were missing."""
+    other = {"solref": "-3e4 -20"}
+    text = str(diagnose(Bounce(mass="1 kg"), "mujoco", {"solref": "-2e4 -0"}, "1 ms", other=other))
+    assert 'solref = "-20000 -0"; of the other body solref = "-30000 -20"; mass 1 kg.' in text
+    assert 'the defaults solimp = "0.9 0.95 0.001", refsafe = 1; a drop from 1 m' in text
+    assert "a solid ball of steel (--radius or --density), radius 31.2 mm." in text
+    undamped = str(diagnose(Bounce(mass="1 kg"), "mujoco", {"solref": "-2e4 -0"}, "1 ms"))
+    assert "a damping ratio of 0;" in undamped
+    assert "max_vel is taken as lifted" in str(asked(None, "gazebo", {"kp": 1e5, "kd": 1}, "1 ms"))
+
+
+@pytest.mark.parametrize(
+    ("engine", "names"),
+    [
+        ("physx", ("compliant_contact_stiffness", "compliant_contact_damping")),
+        ("chrono", ("SetKn", "SetGn")),
+        ("mercurydpm", ("setStiffness", "setDissipation")),
+        ("simscape", ("Stiffness", "Damping", "Transition Region Width")),
+        ("adams", ("Stiffness", "Damping", "Penetration Depth")),
+    ],
+)
+def test_names_are_known_as_the_snippet_writes_them(engine, names):
+    found = design(Bounce(**KILO, restitution=0.7), engine)
+    assert all(name in found.snippet for name in names)
+    typed = dict(zip(names, found.parameters.values(), strict=True))
+    step = None if engine in ("simscape", "adams") else found.row.step
+    assert asked(0.7, engine, typed, step).given == found.parameters
 
 
 def test_damping_on_approach_bounces_where_it_was_said_not_to():
@@ -205,3 +268,12 @@ def test_the_step_is_needed():
         asked(0.8, "lammps", {"kn": 1e5, "gamma_n": 2}, None)
     with pytest.raises(Refused, match="not both"):
         asked(0.8, "drake", {}, "1 ms", one_body=True, other={"relaxation_time": 0.1})
+
+
+def test_an_engine_without_numbers_per_unit_of_mass_has_no_hint_of_them():
+    """The steps of Drake give the wanted r here, which short steps would not."""
+    spring = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-5}
+    r = asked(None, "drake", spring, "1 ms", body={"mass": "2 kg"}).outcome.restitution[1]
+    found = asked(r, "drake", spring, "1 ms", body={"mass": "2 kg"})
+    assert abs(found.free - r) > 0.02
+    assert not any("per unit of mass" in reason for reason in found.reasons)

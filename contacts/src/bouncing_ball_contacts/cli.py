@@ -68,7 +68,12 @@ Examples:
         )
 
 
-@click.group(cls=_Examples, invoke_without_command=True)
+@click.group(
+    cls=_Examples,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+@click.version_option(package_name="bouncing-ball-contacts", prog_name="bounce")
 @click.pass_context
 def main(context: click.Context) -> None:
     """The bounce of a physics engine: what to write, what numbers do, what a recording shows."""
@@ -108,8 +113,13 @@ def _write_script(found: Design, path: str | None) -> None:
     imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
     if Path(path).stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
         raise Refused(f"a script named {Path(path).name} hides the module of the engine: rename it")
+    if Path(path).suffix != ".py":
+        raise Refused(f"{path} does not end in .py")
     try:
-        Path(path).write_text(text, "utf-8")
+        with Path(path).open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise Refused(f"{path} exists, and is not overwritten") from None
     except OSError as error:
         raise Refused(f"{path} cannot be written: {error.strerror}") from None
 

@@ -13,7 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.engines import Engine, Setting, engine_named, filled, text_of
+from bouncing_ball_contacts.engines import (
+    UNDISTURBED,
+    Engine,
+    Setting,
+    engine_named,
+    filled,
+    text_of,
+)
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     Array,
@@ -162,6 +169,11 @@ class Bounce:
             raise Refused(f"points = {self.points!r} is no whole number from 1 on")
         if self.points > 1:
             shown["points"] = str(self.points)
+        if self.penetration is not None and self.penetration > self.size:
+            raise Refused(
+                f"the penetration of {shown['penetration']} is deeper than the {self.size_name} of "
+                f"{show(self.size, 'm')} (--radius)"
+            )
         if self.other_mass is not None and self.speed is None:
             raise Refused(
                 "two free bodies need the speed at which they approach each other: --speed '2 m/s'"
@@ -224,8 +236,8 @@ class Bounce:
         return min(self.size / 10, self.impact_speed**2 / (10 * self.gravity))
 
     @property
-    def assumed(self) -> tuple[str, ...]:
-        """What was not given, in words."""
+    def assumed_body(self) -> list[str]:
+        """What was not given of the drop and of the body, in words."""
         found = []
         if self.drop_height is None and self.speed is None:
             found.append("a drop from 1 m (--drop-height or --speed)")
@@ -233,12 +245,18 @@ class Bounce:
             of = "steel (--radius or --density)" if self.density is None else "this density"
             body = "ball" if self.points == 1 else "cube"
             found.append(f"a solid {body} of {of}, {self.size_name} {show(self.size, 'm')}")
+        return found
+
+    @property
+    def assumed(self) -> list[str]:
+        """What was not given of a design, in words."""
+        found = self.assumed_body
         if (self.penetration, self.stiffness, self.contact_time) == (None, None, None):
             by = f"a tenth of the {self.size_name}"
             if self.limit < self.size / 10:
                 by = "a fifth of the drop height"
             found.append(f"it may sink {show(self.limit, 'm')}, {by} (--penetration)")
-        return tuple(found)
+        return found
 
     def slower(self, share: float) -> "Bounce":
         """Return the same bounce at a share of the impact speed."""
@@ -296,6 +314,7 @@ class Problem:
     bounce: Bounce
     engine: Engine
     one_body: bool = False
+    drag: float = 0.0
 
     @property
     def target(self) -> float:
@@ -314,7 +333,8 @@ class Problem:
     def drops(self, law: Law, step: Array | float, trials: Trials = _COARSE) -> Drops:
         """Return the drops of contacts at time steps in s."""
         scheme = self.engine.scheme_of(law)
-        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, trials)
+        speed = self.bounce.impact_speed
+        return drop(law, scheme, step, speed, self.bounce.load, trials, drag=self.drag)
 
     def outcome(self, law: Law, step: float, trials: Trials = _FINE) -> Outcome:
         """Return what one contact does at a time step in s."""
@@ -332,11 +352,9 @@ class Problem:
     def row(self, law: Law, step: float) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
         step = _rounded(step)
-        setting = self.setting(step)
-        combined = self.engine.write(law, setting)
-        engine = self.engine
-        written = engine.of_one(combined) if self.one_body else engine.of_each(combined)
-        parameters = {name: _rounded(value) for name, value in written.items()}
+        combined = self.engine.write(law, self.setting(step))
+        of_body = self.engine.of_one if self.one_body else self.engine.of_each
+        parameters = {name: _rounded(value) for name, value in of_body(combined).items()}
         stiffness = float(law.stiffness) * self.bounce.reduced_mass
         outcome = self.outcome(self.law_of(parameters, step), step)
         return Row(step, stiffness, outcome, parameters)
@@ -410,8 +428,8 @@ def design(
     engine : str
         A name of :data:`.ENGINES`.
     time_step : Quantity, optional
-        Of the engine. If it is too long for the contact that is wanted, the stiffest contact whose
-        r is within the tolerance at this step is a second row.
+        Of the engine. The second row is the contact that is wanted at this step; if its r is not
+        within the tolerance, it is the stiffest contact whose r is.
     tolerance : Quantity
         The largest deviation of r.
     one_body : bool
@@ -424,6 +442,8 @@ def design(
     Refused
         If there is no such contact.
     """
+    if not isinstance(bounce, Bounce):
+        raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
     if bounce.restitution is None:
         raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
     row = engine_named(engine)
@@ -435,22 +455,26 @@ def design(
     kept = _undamped_depth(problem)
     rows = {WANTED: _wanted(problem, largest, kept)}
     chosen = WANTED
-    notes: list[str] = []
-    if step is not None and step <= rows[WANTED].step:
-        rows[YOURS] = _kept(problem, kept or bounce.limit, step, None, kept is not None)
-        chosen = YOURS
-    elif step is not None:
-        at_step = _at_step(problem, step, largest)
-        if at_step is not None:
-            rows[YOURS] = at_step
-        has_limit = (bounce.penetration, kept) != (None, None)
-        if at_step is not None and not has_limit:
-            chosen = YOURS
-        notes += _too_long(problem, step, rows, largest)
-    if step is not None and bounce.points == 1:
-        rows[IMPULSE] = _impulse(problem, step)
+    keeps = False
+    if step is not None:
+        if step <= rows[WANTED].step:
+            yours: Row | None = _kept(
+                problem, kept or bounce.limit, step, is_fixed=kept is not None
+            )
+        else:
+            yours = _keeping(problem, step, largest, kept)
+        keeps = yours is not None
+        yours = yours or _at_step(problem, step, largest)
+        if yours is not None:
+            rows[YOURS] = yours
+            keeps = keeps or (not kept and _is_good(problem, yours, largest, bounce.limit))
+            if keeps or (bounce.penetration, kept) == (None, None):
+                chosen = YOURS
+        if bounce.points == 1 and (row.impulse or yours is None):
+            rows[IMPULSE] = _impulse(problem, step)
     if pick is not None:
         chosen = _picked(pick, rows, problem)
+    notes = [] if step is None or keeps else _too_long(problem, step, rows, largest, chosen)
     notes += _notes(problem, rows[chosen], largest, chosen == WANTED)
     return Design(
         bounce=bounce,
@@ -463,12 +487,30 @@ def design(
     )
 
 
+def _is_good(problem: Problem, row: Row, tolerance: float, limit: float) -> bool:
+    """Return whether a row keeps the tolerance and a limit of the penetration in m."""
+    keeps = row.outcome.deviation(problem.target) <= tolerance
+    return keeps and row.outcome.depth[1] <= limit
+
+
+def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None) -> Row | None:
+    """Return the most compliant contact that keeps what was given and the tolerance at a step."""
+    depth = kept or problem.bounce.limit
+    _, error, _ = _tried(problem, np.array([depth]), step)
+    # Damped, the contact becomes more compliant, and its r better.
+    if not np.any(error <= 2 * tolerance):
+        return None
+    row = _kept(problem, depth, step, is_fixed=kept is not None)
+    limit = math.inf if kept else depth
+    return row if _is_good(problem, row, tolerance, limit) else None
+
+
 def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:
     name = pick.strip().lower()
-    if name not in rows:
-        raise Refused(f"row {pick!r} is none of this answer: {', '.join(map(repr, rows))}")
     if name == IMPULSE and not text_of(f"{problem.engine.name}-impulse"):
         raise Refused(f"no impulse is written for {problem.engine.name}: only for pybullet")
+    if name not in rows:
+        raise Refused(f"row {pick!r} is none of this answer: {', '.join(map(repr, rows))}")
     if name == IMPULSE and problem.one_body:
         raise Refused("pybullet multiplies the restitution of both bodies: one body has none alone")
     return name
@@ -497,7 +539,7 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
     target = problem.target
     if not problem.engine.fixed_steps:
         step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
-        return _kept(problem, kept or limit, step, None, kept is not None)
+        return _kept(problem, kept or limit, step, is_fixed=kept is not None)
     for counts in _STEPS:
         depth = np.full(counts.shape, kept or limit)
         ratio: Array | None = None
@@ -512,13 +554,13 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
             break
     best = int(good[0]) if good.size else int(np.argmin(found.error(target)))
     step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
-    return _kept(problem, float(depth[best]), step_of, None, kept is not None)
+    return _kept(problem, float(depth[best]), step_of, is_fixed=kept is not None)
 
 
-def _kept(problem: Problem, depth: float, step: float, start: Array | None, is_fixed: bool) -> Row:
+def _kept(problem: Problem, depth: float, step: float, *, is_fixed: bool) -> Row:
     """Return the contact at a step that keeps the limit, or that has the depth if it `is_fixed`."""
     limit = problem.bounce.limit
-    ratio = start
+    ratio: Array | None = None
     for _ in range(8):
         ratio = problem.ratios(np.array([depth]), np.array([step]), ratio)
         law = problem.law(np.asarray(depth), ratio[0])
@@ -591,16 +633,16 @@ def _impulse(problem: Problem, step: float) -> Row:
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
     each = _rounded(math.sqrt(best))
     found = problem.outcome(Impulse(np.asarray(each**2)), step)
-    return Row(_rounded(step), math.nan, found, {"restitution": each})
+    return Row(_rounded(step), math.nan, found, {"restitution": each, **UNDISTURBED})
 
 
 def _too_long(
-    problem: Problem, step: float, rows: Mapping[str, Row], tolerance: float
+    problem: Problem, step: float, rows: Mapping[str, Row], tolerance: float, chosen: str
 ) -> list[str]:
     """Return what a step that is too long for the wanted contact costs."""
     bounce = problem.bounce
     wanted = rows[WANTED]
-    what = f"{show(wanted.outcome.depth[1], 'm')} needs a step of {show(wanted.step, 's')}"
+    what = f"at {show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
     way = f"it moves {show(bounce.impact_speed * step, 'm')} in a step"
     if YOURS not in rows:
         return [
@@ -617,13 +659,12 @@ def _too_long(
         reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
         found.append(f"at your step it sinks {show(sinks, 'm')}, {how}{reason}; {what}")
     if rows[YOURS].outcome.deviation(problem.target) > tolerance:
-        found.append(
-            f"at your step no spring has r within {tolerance:g}: the nearest one is written"
-        )
+        found.append(f"at your step no spring has r within {tolerance:g}: the nearest one is shown")
     if bounce.penetration is not None or _undamped_depth(problem) is not None:
+        other = YOURS if chosen == WANTED else WANTED
         found.append(
             f"your step of {show(step, 's')} cannot keep what you gave: the row for "
-            f"{show(wanted.step, 's')} is written (--pick {YOURS!r} for the other one)"
+            f"{show(rows[chosen].step, 's')} is written (--pick {other!r} for the other one)"
         )
     return found
 
@@ -647,6 +688,8 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
             f"this contact has no damping, and r is still {mean:.3f} at most, because the steps "
             "damp by themselves: a shorter step has more"
         )
+    if high > 1.0005:
+        found.append(f"r is up to {high:.3f}: at some instants the body gains energy")
     sinks = row.outcome.depth[1]
     if sinks > problem.engine.deepest * bounce.size:
         found.append(

@@ -19,7 +19,7 @@ from bouncing_ball_contacts.designs import (
     Quantity,
     design,
 )
-from bouncing_ball_contacts.engines import Engine, engine_named, text_of
+from bouncing_ball_contacts.engines import ENGINES, UNDISTURBED, Engine, engine_named, text_of
 from bouncing_ball_contacts.schemes import Impedance, Implicit, Impulse, Law, Linear
 from bouncing_ball_contacts.units import Refused, in_si, positive, show
 
@@ -28,7 +28,17 @@ _SHORT = 1000
 # Fewer steps than these are named as a reason.
 _FEW = 10
 # Parameters from 0 to 1 with which r rises.
-_SHARES = ("e", "coefficientRestitution", "restitution", "soft_erp")
+_SHARES = ("e", "coefficientRestitution", "restitution", "soft_erp", "contactERP")
+# Parameters that are per unit of mass.
+_PER_MASS = {
+    "mujoco": ("solref",),
+    "newton-mujoco": ("ke", "kd"),
+    "lammps": ("gamma_n",),
+    "lammps-limit-damping": ("gamma_n",),
+    "liggghts": ("gamman",),
+    "liggghts-limit-force": ("gamman",),
+    "chrono": ("gn",),
+}
 
 
 @dataclass(frozen=True)
@@ -47,13 +57,16 @@ class Diagnosis:
 
     ``limit`` is r in the limit of short steps and ``free`` the same without gravity; ``stiffness``
     in N/m and ``damping_ratio`` are those of all points together, NaN if the contact is none of a
-    spring and a damper.
+    spring and a damper. ``given`` are those of the ``parameters`` that are no defaults, and
+    ``other`` the same of another body that differs.
     """
 
     engine: str
     bounce: Bounce
     time_step: float
     parameters: Mapping[str, Any]
+    given: Mapping[str, Any]
+    other: Mapping[str, Any] | None
     outcome: Outcome
     limit: float
     free: float
@@ -79,28 +92,31 @@ class Diagnosis:
             )
         lines += [f"! {reason}" for reason in self.reasons]
         if self.change is not None:
-            step = ""
-            if not math.isclose(self.change.step, self.time_step):
-                step = f" and a step of {show(self.change.step, 's')}"
-            value = _typed(self.change.value)
+            is_here = math.isclose(self.change.step, self.time_step)
+            step = "" if is_here else f" and a step of {show(self.change.step, 's')}"
+            misses = self.change.outcome.deviation(wanted) > TOLERANCE
+            leaves = f", which leaves the tolerance of {TOLERANCE:g}" if misses else ""
             lines.append(
-                f"Least change: {self.change.name} = {value}{step} gives r = "
-                f"{self.change.outcome.around}{self._misses(wanted)}."
+                f"Least change: {_listed({self.change.name: self.change.value})}{step} gives r = "
+                f"{self.change.outcome.around}{leaves}."
             )
         if wanted is None:
             lines.append("With --restitution there is a least change, for the r that is wanted.")
-        lines.append(f"Given: {', '.join(_pairs(self.parameters))}; {self._given()}.")
         row = engine_named(self.engine)
+        given = [_listed(self.given)] if self.given else []
+        if self.other is not None:
+            given.append(f"of the other body {_listed(self.other) or 'the defaults'}")
+        given.append(", ".join(f"{name} {value}" for name, value in self.bounce.given.items()))
+        lines.append(f"Given: {'; '.join(given)}.")
+        names = self.parameters.keys() - self.given.keys()
+        defaults = {name: self.parameters[name] for name in row.defaults if name in names}
+        assumed = [f"the defaults {_listed(defaults)}"] if defaults else []
+        assumed += self.bounce.assumed_body
+        if assumed:
+            lines.append(f"Assumed: {'; '.join(assumed)}.")
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
         return lines
-
-    def _misses(self, wanted: float) -> str:
-        misses = self.change is not None and self.change.outcome.deviation(wanted) > TOLERANCE
-        return f", which leaves the tolerance of {TOLERANCE:g}" if misses else ""
-
-    def _given(self) -> str:
-        return ", ".join(f"{name} {value}" for name, value in self.bounce.given.items())
 
     def __repr__(self) -> str:
         return "\n".join(self.lines[:2])
@@ -119,43 +135,63 @@ def _typed(value: Any) -> str:
     return f"{value:.6g}"
 
 
-def _pairs(parameters: Mapping[str, Any]) -> Iterator[str]:
-    for name, value in parameters.items():
-        yield f"{name} = {_typed(value)}"
+def _listed(parameters: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name} = {_typed(value)}" for name, value in parameters.items())
+
+
+def _spelled(name: str) -> str:
+    """Return a name as compliant_contact_stiffness, SetKn and kn are spelled alike."""
+    return name.replace("_", "").replace(" ", "").lower().removeprefix("set")
 
 
 def parameters_of(engine: Engine, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a body in an engine, with the defaults for those that are not given.
+    """Return the parameters of a body in an engine as numbers, without those that are not given.
 
     Raises
     ------
     Refused
         If a name is unknown, a value is no number or out of its range, or one is missing.
     """
-    known = [*dict.fromkeys(engine.names), *engine.optional]
+    names = list(engine.rules)
+    known = {_spelled(name): name for name in names}
     values: dict[str, Any] = {}
-    for name, value in given.items():
-        if name not in known:
-            near = difflib.get_close_matches(name, known, 1, 0.4)
-            meant = f"; did you mean {near[0]}?" if near else ""
-            raise Refused(f"{engine.name} has no {name!r}: it has {', '.join(known)}{meant}")
+    for typed, value in given.items():
+        name = known.get(_spelled(typed))
+        if name is None:
+            raise Refused(_unknown(engine, typed, names))
         values[name] = _value(engine, name, value)
     found = {**engine.defaults, **values}
-    missing = [name for name in engine.names if name not in found]
+    missing = [name for name in names if name not in found]
     if missing:
-        raise Refused(
-            f"{missing[0]} is missing, and {engine.name} has no default: give "
-            f"{' and '.join(dict.fromkeys(engine.names))}"
-        )
-    return found
+        raise Refused(f"{missing[0]} is missing: give {' and '.join(names)}{_not_computed(engine)}")
+    if engine.name == "pybullet" and (found[names[0]] < 0) != (found[names[1]] < 0):
+        raise Refused(f"PyBullet refuses {names[0]} or {names[1]} alone: give both")
+    return values
+
+
+def _unknown(engine: Engine, typed: str, names: list[str]) -> str:
+    """Return what is said of a parameter that an engine does not have."""
+    text = f"{engine.name} has no {typed!r}: it has {', '.join(names)}"
+    family = engine.name.split("-")[0]
+    others = [name for name in ENGINES if name.startswith(family) and typed in ENGINES[name].names]
+    near = difflib.get_close_matches(typed, names, 1, 0.6)
+    if others:
+        text += f"; {' and '.join(others)} has it"
+    elif near:
+        text += f"; did you mean {near[0]}?"
+    return text + _not_computed(engine)
+
+
+def _not_computed(engine: Engine) -> str:
+    is_known = text_of(f"{engine.name}-impulse") or not engine.impulse
+    return "" if is_known else f"; a bounce by {engine.impulse} is not computed"
 
 
 def _value(engine: Engine, name: str, value: Any) -> Any:
     if name in ("solref", "solimp"):
         return _numbers(name, value)
     number = in_si(name, value, "")
-    unset = engine.name == "pybullet" and number == -1
-    if number < 0 and not unset:
+    if number < 0 and number != engine.defaults.get(name):
         raise Refused(f"{name} = {number:g} is negative")
     if name == engine.names[0] and number == 0:
         raise Refused(f"{name} = 0 is no contact")
@@ -221,29 +257,29 @@ def diagnose(
     row = engine_named(engine)
     if time_step is None and row.fixed_steps:
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
-    of_one = parameters_of(row, parameters or {})
+    given = parameters_of(row, parameters or {})
     if one_body and other:
         raise Refused("give either the parameters of the other body or --one-body, not both")
-    of_other = of_one
-    if other:
-        of_other = parameters_of(row, other)
-    elif one_body:
-        of_other = parameters_of(row, {})
-    problem = Problem(bounce, row)
+    other_given = None
+    if other or one_body:
+        other_given = parameters_of(row, other or {})
+    of_one = {**row.defaults, **given}
+    of_other = of_one if other_given is None else {**row.defaults, **other_given}
+    problem = Problem(bounce, row, drag=of_one.get("linearDamping", 0.0))
+    pair = _Pair(problem, of_one, of_other)
     if time_step is None:
-        law = row.read(row.combined(of_one, of_other), problem.setting(1.0))
-        step = float(law.duration(bounce.impact_speed)) / _SHORT
+        step = float(pair.law(1.0).duration(bounce.impact_speed)) / _SHORT
     else:
         step = positive("time step", time_step, "s")
-    pair = _Pair(problem, of_one, of_other)
     law = pair.law(step)
     outcome = problem.outcome(law, step)
     limit = free = outcome.restitution[1]
+    unused: tuple[str, ...] = row.names
     if not isinstance(law, Impulse):
-        short = float(law.duration(bounce.impact_speed)) / _SHORT
-        limit = float(problem.drops(law, min(short, step)).mean)
-        weightless = _without_gravity(problem)
-        free = float(weightless.drops(law, min(short, step)).mean)
+        short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
+        limit = float(replace(problem, drag=0.0).drops(law, short).mean)
+        free = float(_without_gravity(problem).drops(law, short).mean)
+        unused = tuple(name for name in UNDISTURBED if name != "linearDamping")
     stiffness, ratio = _spring(problem, law)
     reasons = tuple(_reasons(pair, step, law, outcome, limit, free))
     change = None
@@ -256,7 +292,9 @@ def diagnose(
         engine=row.name,
         bounce=bounce,
         time_step=step,
-        parameters=of_one,
+        parameters={name: value for name, value in of_one.items() if name not in unused},
+        given=given,
+        other=other_given,
         outcome=outcome,
         limit=limit,
         free=free,
@@ -297,7 +335,7 @@ def _without_gravity(problem: Problem) -> Problem:
     alone = replace(
         bounce, drop_height=None, speed=bounce.impact_speed, other_mass=1e9 * bounce.reduced_mass
     )
-    return replace(problem, bounce=alone)
+    return replace(problem, bounce=alone, drag=0.0)
 
 
 def _spring(problem: Problem, law: Law) -> tuple[float, float]:
@@ -320,10 +358,28 @@ def _reasons(
     """Yield what keeps r from the wanted one, and what else is wrong with this contact."""
     problem = pair.problem
     bounce = problem.bounce
-    low, mean, high = outcome.restitution
+    _, mean, high = outcome.restitution
+    if problem.drag:
+        dragged = mean
+        mean = float(replace(problem, drag=0.0).drops(law, step).mean)
+        if mean - dragged > 5e-4:
+            yield (
+                f"linearDamping = {problem.drag:g} lowers r from {mean:.3f} to {dragged:.3f}; "
+                "designs set it to 0, and PyBullet's default is 0.04"
+            )
     if isinstance(law, Impulse):
         yield "no spring is set: this is an impact by the number restitution, of both bodies"
+        alike = replace(problem, drag=0.0).outcome(Impulse(law.restitution), step)
+        if alike.around != outcome.around:
+            yield (
+                f"PyBullet sees the surface {show(law.ahead, 'm')} ahead and pushes the body out; "
+                f"with {_listed(UNDISTURBED)} r is {alike.around}"
+            )
         return
+    if problem.engine.caution:
+        yield problem.engine.caution
+    if pair.one.get("restitution"):
+        yield "what a restitution beside a spring adds is not computed"
     steps = float(law.duration(bounce.impact_speed)) / step
     if high > 1.02:
         yield f"unstable: a contact takes {steps:.2g} steps, and the body leaves faster than before"
@@ -366,13 +422,19 @@ def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[s
     mass = problem.bounce.reduced_mass
     if abs(free - wanted) < TOLERANCE:
         return
-    for name, divided in _per_mass(pair):
-        mean = divided.mean(step)
-        if abs(mean - wanted) < min(TOLERANCE, 0.3 * abs(free - wanted)) and mass != 1:
-            yield (
-                f"{name} is per unit of mass in {engine.name}: divided by {mass:g} kg, r is "
-                f"{mean:.3f}"
-            )
+    names = _PER_MASS.get(engine.name, ())
+    divided = pair
+    for name in names:
+        values = tuple(value / mass for value in np.atleast_1d(pair.one[name]))
+        divided = divided.changed(name, values if name == "solref" else values[0])
+    mean = divided.mean(step)
+    is_near = abs(mean - wanted) < min(TOLERANCE, 0.3 * abs(free - wanted))
+    # A positive solref is a time constant and a damping ratio.
+    if names and is_near and mass != 1 and np.all(np.asarray(pair.one.get("solref", -1)) <= 0):
+        yield (
+            f"{' and '.join(names)} is per unit of mass in {engine.name}: divided by {mass:g} kg, "
+            f"r is {mean:.3f}"
+        )
     if ratio < 1:
         pulling = math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2))
         if abs(pulling - wanted) < 0.005:
@@ -382,27 +444,14 @@ def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[s
             )
 
 
-def _per_mass(pair: _Pair) -> Iterator[tuple[str, _Pair]]:
-    """Yield the parameters that are per unit of mass, and the pair with them divided by it."""
-    mass = pair.problem.bounce.reduced_mass
-    name = pair.problem.engine.name
-    if name == "mujoco" and pair.one["solref"][0] < 0:
-        scaled = tuple(value / mass for value in pair.one["solref"])
-        yield "solref", pair.changed("solref", scaled)
-    if name == "newton-mujoco":
-        scaled_pair = pair.changed("ke", pair.one["ke"] / mass)
-        yield "ke and kd", scaled_pair.changed("kd", pair.one["kd"] / mass)
-    if name in ("lammps", "lammps-limit-damping", "liggghts", "liggghts-limit-force", "chrono"):
-        damping = pair.problem.engine.names[1]
-        yield damping, pair.changed(damping, pair.one[damping] / mass)
-
-
 def _another(pair: _Pair, step: float) -> str:
     """Return what has r at this step if no damping of the given contact has it."""
     problem = pair.problem
     engine = problem.engine
-    text = f"no damping of this contact keeps r within {TOLERANCE:g} at this step"
-    if isinstance(engine.scheme, Implicit) and not isinstance(pair.law(step), Impulse):
+    is_impulse = isinstance(pair.law(step), Impulse)
+    what = "restitution" if is_impulse else "damping of this contact"
+    text = f"no {what} keeps r within {TOLERANCE:g} at this step"
+    if isinstance(engine.scheme, Implicit) and not is_impulse:
         name = engine.names[1]
         most = pair.changed(name, 1.0 if name in _SHARES else 0.0).mean(step)
         text += f", which damps by itself: r is {most:.3f} at most"
@@ -411,12 +460,12 @@ def _another(pair: _Pair, step: float) -> str:
     except Refused:
         return text
     row = found.row
-    values = ", ".join(_pairs(row.parameters))
+    values = _listed(row.parameters)
     at = "" if math.isclose(row.step, step, rel_tol=1e-4) else f", at {show(row.step, 's')}"
     text += f"; {values} has {row.outcome.around}{at}"
     if text_of(f"{engine.name}-impulse") and IMPULSE in found.rows:
         impulse = found.rows[IMPULSE]
-        text += f"; {', '.join(_pairs(impulse.parameters))} without a spring has "
+        text += f"; {_listed(impulse.parameters)} without a spring has "
         text += f"{impulse.outcome.around}"
     return text
 
@@ -452,7 +501,8 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
 
     bracket: tuple[float, float] | None = (1e-4, 1.0)
     if not rises:
-        bracket = _damped(mean, target, _start(pair, name))
+        given = np.abs(np.atleast_1d(pair.one[name])[-1])
+        bracket = _damped(mean, target, float(given) or 1.0)
     if bracket is None:
         return None
     low, high = bracket
@@ -470,11 +520,6 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
     if misses or outcome.restitution[2] > 1.02:
         return None
     return Change(name, of(value), step, outcome)
-
-
-def _start(pair: _Pair, name: str) -> float:
-    given = abs(pair.one[name][1] if name == "solref" else pair.one[name])
-    return float(given) if given > 0 else 1.0
 
 
 def _damped(

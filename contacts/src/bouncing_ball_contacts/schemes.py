@@ -19,14 +19,14 @@ small changes of the step and of the damping: in a contact of few steps r may be
 offsets for one step, and not for a step beside it.
 """
 
+import math
 from dataclasses import dataclass, fields, replace
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 MOST_STEPS = 3000
 """In a contact. Finer steps change r by less than 0.001, and are not computed."""
@@ -264,9 +264,18 @@ class Impedance(_Explicit):
 
 @dataclass(frozen=True)
 class Impulse(_Explicit):
-    """An impact without a duration, whose restitution coefficient is a number."""
+    """An impact without a duration, whose restitution coefficient is a number, as Bullet has it.
+
+    A step from the height z below `ahead` that would have the velocity u has at least
+    e (-u)₊ - E (z + s)/h, where e is the restitution if -u exceeds the `threshold`, s the `slop`,
+    and E the share `erp` of the penetration that a step takes back, or 1 above the surface.
+    """
 
     restitution: Array
+    erp: float = 0.0
+    threshold: float = 0.0
+    slop: float = 0.0
+    ahead: float = 0.0
 
     @property
     def stiffness(self) -> Array:
@@ -280,7 +289,7 @@ class Impulse(_Explicit):
         raise NotImplementedError("an impulse is no force")
 
     def rest(self, gravity: float) -> Array:
-        return np.zeros(np.shape(self.restitution))
+        return np.full(np.shape(self.restitution), self.slop)
 
     def duration(self, speed: float) -> Array:
         return np.zeros(np.shape(self.restitution))
@@ -288,12 +297,6 @@ class Impulse(_Explicit):
 
 class Scheme(Protocol):
     """How an engine steps a contact."""
-
-    @property
-    def text(self) -> str: ...
-
-    def touches(self, z: Array, free: Array, h: Array) -> Mask:
-        """Return whether the contact acts in a step from z with the velocity `free`."""
 
     def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         """Return the velocity after the step; `free` is that without the contact."""
@@ -317,13 +320,10 @@ class SemiImplicit:
             return "semi-implicit, the damper pulls"
         return "semi-implicit, damped on approach" if self.approach else "semi-implicit"
 
-    def touches(self, z: Array, free: Array, h: Array) -> Mask:
-        return z < 0
-
     def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         rate = np.maximum(-v, 0.0) if self.approach else -v
         push = law.push(-z, rate, g)
-        return free + h * (push if self.pulls else np.maximum(push, 0.0))
+        return np.where(z < 0, free + h * (push if self.pulls else np.maximum(push, 0.0)), free)
 
 
 @dataclass(frozen=True)
@@ -340,27 +340,20 @@ class Implicit:
         """The scheme in a few words."""
         return "implicit, found ahead" if self.ahead else "implicit"
 
-    def touches(self, z: Array, free: Array, h: Array) -> Mask:
-        return z + h * free < 0 if self.ahead else z < 0
-
     def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        return np.maximum(free, law.implicit_velocity(z, free, h))
+        touching = z + h * free < 0 if self.ahead else z < 0
+        return np.where(touching, np.maximum(free, law.implicit_velocity(z, free, h)), free)
 
 
 @dataclass(frozen=True)
 class Impulsive:
-    """A body below the surface is thrown back by its restitution coefficient."""
+    """A body is thrown back by its restitution coefficient, see :class:`Impulse`."""
 
-    @property
-    def text(self) -> str:
-        """The scheme in a few words."""
-        return "impulse"
-
-    def touches(self, z: Array, free: Array, h: Array) -> Mask:
-        return z < 0
-
-    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        return np.where(free < 0, -law.restitution * free, free)  # type: ignore[attr-defined]
+    def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
+        thrown = np.where(free < -law.threshold, -law.restitution * free, 0.0)
+        gap = z + law.slop
+        pushed = thrown - np.where(gap > 0, 1.0, law.erp) * gap / h
+        return np.where((z < 0) | (z < law.ahead), np.maximum(free, pushed), free)
 
 
 @dataclass(frozen=True)
@@ -395,8 +388,27 @@ def _beside(law: Law, trials: Trials) -> Law:
     return replace(law, **arrays)  # type: ignore[type-var]
 
 
+def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
+    """Return speeds in m/s up to one of them, and those without drag from or to the same height.
+
+    The height is ∫ v dv/(g + D v (1 + v)); D is negative in a fall, which has a terminal speed.
+    """
+    if drag < 0:
+        most = min(most, 0.9999 * (math.sqrt(0.25 - gravity / drag) - 0.5))
+    v = np.linspace(0.0, most, 4001)
+    rate = v / (gravity + drag * v * (1 + v))
+    height = np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2) * v[1]])
+    return v, np.sqrt(2 * gravity * height)
+
+
 def drop(
-    law: Law, scheme: Scheme, step: Array | float, speed: float, gravity: float, trials: Trials
+    law: Law,
+    scheme: Scheme,
+    step: Array | float,
+    speed: float,
+    gravity: float,
+    trials: Trials,
+    drag: float = 0.0,
 ) -> Drops:
     """Drop bodies from the height speed²/(2g), or throw them without gravity.
 
@@ -412,6 +424,8 @@ def drop(
     gravity : float
         In m/s²; 0 for two free bodies.
     trials : Trials, of n drops
+    drag : float
+        D in 1/s of Bullet's linear damping, which decelerates a body by D v (1 + |v|/(1 m/s)).
     """
     columns = _beside(law, trials)
     at = trials.at
@@ -422,21 +436,22 @@ def drop(
         height = speed**2 / (2 * g)
         lag = h * (0.5 - at)
         arrival = g * (np.sqrt(lag**2 + 2 * height / g) - lag)
+        if drag:
+            arrival = np.interp(arrival, *_drag_free(1.1 * speed, gravity, -drag)[::-1])
     else:
         height = np.zeros_like(at)
         arrival = speed + 0 * h * at
-    # The step that ends below the surface comes first, for contacts that are found ahead.
-    z = (1 - at) * arrival * h
-    v = g * h - arrival
+    # The step that ends below the surface is the second one, for contacts that are found ahead.
+    v = 2 * g * h - arrival
+    z = (2 - at) * arrival * h - g * h * h
     depth = np.zeros(z.shape)
     peak = np.zeros(z.shape)
     found = np.zeros(z.shape)
     inside = np.ones(z.shape, bool)
     # A contact that is stable has ended, or has come to rest, within a few contact times.
-    for _ in range(20 + int(np.max(12 * duration / h))):
-        free = v - g * h
-        touching = scheme.touches(z, free, h)
-        new = np.where(touching, scheme.velocity(columns, z, v, free, h, g), free)
+    for _ in range(200 + int(np.max(12 * duration / h))):
+        free = v - h * (g + drag * v * (1 + np.abs(v)))
+        new = scheme.velocity(columns, z, v, free, h, g)
         peak = np.maximum(peak, np.where(inside, new - free, 0.0))
         rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)
         sinks_again = (v > 0) & (new <= 0) & (z < 0)
@@ -447,8 +462,11 @@ def drop(
         if leaves.any():
             if gravity:
                 # The highest of the steps that follow: n more of them raise the body.
-                n = np.floor(np.maximum(v, 0.0) / (g * h))
-                rise = np.maximum(z + n * h * v - g * h**2 * n * (n + 1) / 2, 0.0)
+                upward = np.maximum(v, 0.0)
+                if drag:
+                    upward = np.interp(upward, *_drag_free(2 * speed, gravity, drag))
+                n = np.floor(upward / (g * h))
+                rise = np.maximum(z + n * h * upward - g * h**2 * n * (n + 1) / 2, 0.0)
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
                 found = np.where(leaves, v / speed, found)

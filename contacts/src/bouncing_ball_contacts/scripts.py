@@ -6,8 +6,7 @@ from bouncing_ball_contacts.designs import Design
 from bouncing_ball_contacts.engines import filled, text_of
 from bouncing_ball_contacts.units import Refused, span
 
-# The scripts of engines with several contacts are the same.
-_FAMILIES = {
+FAMILIES = {
     "mujoco": "mujoco",
     "pybullet": "pybullet",
     "drake": "drake",
@@ -17,6 +16,7 @@ _FAMILIES = {
     "lammps-hertz": "lammps",
     "newton": "newton",
 }
+"""The engines that have scripts; those of engines with several contacts are the same."""
 # A ball, and a box with four contact points, in those engines that have boxes.
 _SHAPES = {
     "mujoco": (
@@ -47,9 +47,9 @@ def drop_script(design: Design) -> str:
         If there is no script for the engine or for this bounce.
     """
     bounce = design.bounce
-    family = _FAMILIES.get(design.engine)
+    family = FAMILIES.get(design.engine)
     if family is None:
-        known = ", ".join(_FAMILIES)
+        known = ", ".join(FAMILIES)
         raise Refused(f"no script is written for {design.engine}: only for {known}")
     is_pair = bounce.other_mass is not None
     if is_pair and family not in _PAIRS:

@@ -122,7 +122,8 @@ def _converted(name: str, quantity: Any, unit: str, text: str) -> float:
 
 
 def _wanted(unit: str) -> str:
-    return f"write it as in '{_EXAMPLES[unit]}'"
+    what = "it" if unit else "a plain number"
+    return f"write {what} as in '{_EXAMPLES[unit]}'"
 
 
 def positive(name: str, value: Any, unit: str) -> float:
@@ -137,7 +138,7 @@ def within(name: str, value: Any, low: float, high: float) -> float:
     """Return a number without a unit, which may be in per cent, and refuse it outside a range."""
     number = in_si(name, value, "")
     if not low <= number <= high:
-        is_share = high == 1 < number <= 100
+        is_share = high == 1 and 10 <= number <= 100
         meant = f"; {number:g} % is written {number / 100:g} or '{number:g} %'" if is_share else ""
         raise Refused(f"{name} = {number:g} is not between {low:g} and {high:g}{meant}")
     return number

@@ -107,9 +107,9 @@ class Rows(NamedTuple):
     def joined(self, real, imaginary):
         """Results (k, rows) and derivatives (k, rows, directions) in the shape of the values."""
         if not self.directions:
-            return real.reshape(-1, *self.shape)
+            return real.reshape(len(real), *self.shape)
         values = real[:, np.newaxis] + 1j * np.moveaxis(imaginary, 2, 1)
-        return values.reshape(-1, *self.shape)
+        return values.reshape(len(values), *self.shape)
 
 
 def values_by_row(values):

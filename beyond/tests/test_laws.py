@@ -519,15 +519,13 @@ class TestUnits:
             lambda: law_thresholds(without, amplitude=1.0),
             lambda: error_thresholds(without, amplitude=1.0),
             lambda: path_follow(one, along="frequency", to=1.1),
-            lambda: path_follow(
-                orbit(Corrected(without), amplitude=1.0), along="frequency", to=1.1
-            ),
+            lambda: path_follow(corrected, along="frequency", to=1.1),
             lambda: without.in_si(mass=1.0, length=1.0, time=1.0),
         ):
             with pytest.raises(ValueError, match="units: needed here") as error:
                 question()
             one_line(error)
-        with pytest.raises(ValueError, match="units: kk is no parameter of the law, which has k, c") as error:
+        with pytest.raises(ValueError, match="units: kk is no parameter") as error:
             ForceLaw(force, values, units={"kk": (1, 0, -2)})
         one_line(error)
 

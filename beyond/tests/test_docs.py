@@ -1,7 +1,10 @@
 """The pages of docs: their examples, their links, and the names on the page of all functions."""
 
+import ast
 import doctest
 import re
+import sys
+import tomllib
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,6 +12,7 @@ import pytest
 
 import bouncing_ball_beyond
 from bouncing_ball_beyond import named_laws
+from bouncing_ball_beyond.cli import commands, main
 
 BEYOND = Path(__file__).resolve().parents[1]
 PAGES = sorted([*BEYOND.glob("*.md"), *(BEYOND / "docs").glob("*.md")])
@@ -29,6 +33,43 @@ def test_links_lead_to_files(page):
     links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", text)
     files = [link for link in links if "://" not in link]
     assert [file for file in files if not (page.parent / file).exists()] == []
+
+
+def imported(module):
+    """The first names of the modules that a file imports, also within functions."""
+    for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (each.name.partition(".")[0] for each in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module.partition(".")[0]
+
+
+def test_the_installation_of_the_readme_has_what_all_modules_import():
+    project = tomllib.loads((BEYOND / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    readme = (BEYOND / "README.md").read_text(encoding="utf-8")
+    extras = re.search(r"^pip install .*beyond\[([\w,]+)\]", readme, re.MULTILINE)[1].split(",")
+    optional = project["optional-dependencies"]
+    needed = sum((optional[each] for each in extras), project["dependencies"])
+    installed = {re.match(r"[\w-]+", each)[0].replace("-", "_") for each in needed}
+    modules = (BEYOND / "src" / "bouncing_ball_beyond").glob("*.py")
+    names = {name for module in modules for name in imported(module)}
+    assert names - sys.stdlib_module_names - {"bouncing_ball_beyond"} <= installed
+
+
+def test_the_table_of_the_readme_has_all_commands():
+    readme = (BEYOND / "README.md").read_text(encoding="utf-8")
+    table = re.findall(r"^\| .* \| `([\w-]+)[^|]*` \|$", readme, re.MULTILINE)
+    assert set(table) == commands.commands.keys()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_command_lines_run(page, capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    text = page.read_text(encoding="utf-8")
+    for line in re.findall(r"`bouncing-ball (\S[^`]*)`", text):
+        with pytest.raises(SystemExit) as ended:
+            main(line.split())
+        assert (ended.value.code, capsys.readouterr().err) == (0, ""), line
 
 
 def test_the_page_of_all_functions_has_every_public_name():

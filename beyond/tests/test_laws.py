@@ -6,7 +6,9 @@ from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
 from bouncing_ball_beyond import root_time
-from bouncing_ball_beyond.balls import Corrected, H, SpringDamper
+from bouncing_ball_beyond.balls import Corrected, H, Rigid, SpringDamper
+from bouncing_ball_beyond.continuation import follow as path_follow
+from bouncing_ball_beyond.error_law import error_thresholds, law_thresholds
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.named_laws import (
     LAWS,
@@ -24,6 +26,7 @@ from bouncing_ball_beyond.named_laws import (
     simscape_contact,
     tsuji,
 )
+from bouncing_ball_beyond.periodic import orbit
 
 # The integrator and the panels each have errors of some 1e-12 of the speed.
 CLOSE = 1e-11
@@ -496,6 +499,41 @@ class TestUnits:
         law = hunt_crossley(k * np.sqrt(g) / (mass * Omega**3), lam * g / Omega)
         si = law.in_si(mass=mass, length=g / Omega**2, time=1 / Omega)
         np.testing.assert_allclose([si["stiffness"], si["damping"]], [k, lam], rtol=1e-14)
+
+    def test_a_law_of_one_s_own_needs_units_where_parameters_change_together(self):
+        """With them it is the law of the library that has the same force; without, it is none."""
+
+        def force(p, v, k, c):
+            return k * p * (1 + c * v)
+
+        values = {"k": 1000.0, "c": 0.08}
+        with_units = ForceLaw(force, values, units={"k": (1, 0, -2), "c": (0, -1, 1)})
+        named = hunt_crossley_linear(1000.0, 0.08)
+        assert with_units.frequency_powers == {"k": -2, "c": -1}
+        both = [law_thresholds(law, amplitude=1.0)["max_height"] for law in (named, with_units)]
+        assert both[0] == pytest.approx(both[1], rel=1e-12)
+        without = ForceLaw(force, values)
+        one = orbit(without, amplitude=1.0)
+        corrected = orbit(Corrected(without), amplitude=1.0)
+        for question in (
+            lambda: law_thresholds(without, amplitude=1.0),
+            lambda: error_thresholds(without, amplitude=1.0),
+            lambda: path_follow(one, along="frequency", to=1.1),
+            lambda: path_follow(corrected, along="frequency", to=1.1),
+            lambda: without.in_si(mass=1.0, length=1.0, time=1.0),
+        ):
+            with pytest.raises(ValueError, match="units: needed here") as error:
+                question()
+            one_line(error)
+        with pytest.raises(ValueError, match="units: kk is no parameter") as error:
+            ForceLaw(force, values, units={"kk": (1, 0, -2)})
+        one_line(error)
+
+    def test_r_of_the_speed_does_not_follow_the_frequency(self):
+        one = orbit(Rigid(lambda u: 0.7 / (1 + 0.02 * u)), amplitude=1.0)
+        with pytest.raises(ValueError, match="a contact law with units") as error:
+            path_follow(one, along="frequency", to=1.1)
+        one_line(error)
 
 
 class TestRefusedForces:

@@ -10,6 +10,7 @@ from integrated import around, contact
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball_beyond import root_time
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations, dense, newton, solve_bordered
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
@@ -21,6 +22,7 @@ from bouncing_ball_beyond.periodic import (
     orbit_near,
     orbits,
 )
+from bouncing_ball_beyond.root_time import solve_panel
 from bouncing_ball_beyond.simulation import Balls, follow
 
 # Rounding errors of an orbit: some hundred times eps for numbers up to 20.
@@ -280,3 +282,23 @@ def test_nothing_warns_where_rows_have_no_solution():
         warnings.simplefilter("error")
         found = orbit(SpringDamper([0.7, 30.0], restitution=0.5), amplitude=[0.01, 1.4])
     assert isinstance(found[0], OrbitNotFound) and found[1].stable
+
+
+def test_the_search_with_a_contact_law_soon_finds_that_there_is_no_orbit(monkeypatch):
+    """Balls that lie on the table, and impacts that have become long or fast, are not followed.
+
+    The searches took 1063 and 642 panels, and the limit leaves them three times as many.
+    """
+    ball = hunt_crossley(1000.0, 0.08)
+    panels = []
+
+    def counted(*given, **more):
+        panels.append(1)
+        assert len(panels) < 6000
+        return solve_panel(*given, **more)
+
+    monkeypatch.setattr(root_time, "solve_panel", counted)
+    with pytest.raises(OrbitNotFound, match=r"below the saddle-node at Λ = 0\.253185"):
+        orbit(ball, amplitude=0.1)
+    found = orbits(ball, amplitude=1.2)
+    assert [(each.stable, each.admissible) for each in found] == [(False, True), (False, True)]

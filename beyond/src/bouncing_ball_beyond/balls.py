@@ -120,6 +120,10 @@ class Ball:
         """T of impacts: 0 for impacts without a duration."""
         return 0.0 * (tau + u + amplitude)
 
+    def early_release(self, tau, u, amplitude):
+        """As :meth:`first_release`, for a search: a release after a long rest may be left out."""
+        return self.first_release(tau, u, amplitude)
+
     def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:
         """The end of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
@@ -202,6 +206,16 @@ class Rigid(Ball):
         else:
             r = checked("restitution", self.restitution, 0, 1, low_allowed=True)
             object.__setattr__(self, "restitution", r)
+
+    @property
+    def frequency_powers(self):
+        """None for a number r; ValueError for r(u), which changes with the unit g/Ω of u."""
+        if callable(self.restitution):
+            raise ValueError(
+                "restitution: r(u) has the speed in units of g/Ω, which change with the frequency;"
+                " give a number, or a contact law with units"
+            )
+        return {}
 
     def _restitution(self, u):
         return self.restitution(u) if callable(self.restitution) else self.restitution

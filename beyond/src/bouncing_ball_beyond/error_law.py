@@ -342,7 +342,7 @@ def ball_at_ratio(
         impact = free_impact(contacts, n)
         share = np.pi * impact.restitution / ((1 + impact.restitution) * impact.centroid)
         # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
-        powers = {name: length + time for name, (_, length, time) in contacts.units.items()}
+        powers = {name: length + time for name, (_, length, time) in contacts.known_units.items()}
         return lambda ratio: contacts.at(
             **{name: contacts.values[name] * (share / ratio) ** powers[name] for name in powers}
         )

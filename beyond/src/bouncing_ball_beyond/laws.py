@@ -14,7 +14,14 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
-from bouncing_ball_beyond.root_time import ContactMotion, follow, load_of, values_by_row
+from bouncing_ball_beyond.root_time import (
+    MOST_PANELS,
+    PATIENT,
+    ContactMotion,
+    follow,
+    load_of,
+    values_by_row,
+)
 
 SLOWEST = 1e-12
 """The speed that a ball without one is given, because p would stay zero."""
@@ -71,7 +78,8 @@ class ForceLaw(Ball):
         "start_speed" if the force also gets, by this name, the speed at the start of the contact;
         "load" if it gets the load a = 1 - Λ sin τ.
     units : mapping
-        The powers of mass, length and time in the unit of each parameter.
+        The powers of mass, length and time in the unit of each parameter. They are needed where
+        parameters change with the frequency of the table or with the stiffness of the contact.
 
     Raises
     ------
@@ -105,6 +113,8 @@ class ForceLaw(Ball):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
         if self.root != 1 and (self.root < 1 or self.root % 2):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number")
+        for name in self.units.keys() - self.values.keys():
+            raise ValueError(f"units: {name} is no parameter of the law, which has {self._names}")
         for name in self.values.keys() & set(TAKEN):
             raise ValueError(f"{name}: is no name for a parameter of a law; choose another")
         check_force(self)
@@ -112,6 +122,21 @@ class ForceLaw(Ball):
     def __repr__(self):
         values = ", ".join(f"{name}={value}" for name, value in self.values.items())
         return f"{self.force.__name__.lstrip('_')}({values})"
+
+    @property
+    def _names(self):
+        return ", ".join(self.values)
+
+    @property
+    def known_units(self):
+        """The units of all parameters; ValueError in one line if some are not given."""
+        for name in self.values:
+            if name not in self.units:
+                raise ValueError(
+                    f"units: needed here; give the powers of mass, length and time in the unit of"
+                    f" {name}, such as units={{{name!r}: (1, 0, -2)}} for N/m"
+                )
+        return self.units
 
     @property
     def parameters(self):
@@ -123,8 +148,7 @@ class ForceLaw(Ball):
         unknown = values.keys() - self.values.keys()
         if unknown:
             raise ValueError(
-                f"{', '.join(sorted(unknown))}: no parameter of the law, which has"
-                f" {', '.join(self.values)}"
+                f"{', '.join(sorted(unknown))}: no parameter of the law, which has {self._names}"
             )
         if not values:
             return self
@@ -144,14 +168,14 @@ class ForceLaw(Ball):
 
         Lengths are measured in g/Ω² and times in 1/Ω.
         """
-        powers = {name: 2 * length + time for name, (_, length, time) in self.units.items()}
+        powers = {name: 2 * length + time for name, (_, length, time) in self.known_units.items()}
         return {name: power for name, power in powers.items() if power}
 
     def in_si(self, mass, length, time):
         """The parameters in SI units: ``mass`` in kg, the units of length in m and of time in s."""
         return {
             name: self.values[name] * mass**of_mass * length**of_length * time**of_time
-            for name, (of_mass, of_length, of_time) in self.units.items()
+            for name, (of_mass, of_length, of_time) in self.known_units.items()
         }
 
     def start(self, u):
@@ -165,6 +189,11 @@ class ForceLaw(Ball):
     def first_release(self, tau, u, amplitude, gravity=1.0):
         """T of the first releases; NaN for balls that stay in contact."""
         return self._followed(tau, u, amplitude, gravity)[0]
+
+    def early_release(self, tau, u, amplitude):
+        """T of the first releases; below Λ = 1, a ball that lies on the table counts as staying."""
+        panels = PATIENT if amplitude < 1 else MOST_PANELS
+        return self._followed(tau, u, amplitude, 1.0, panels=panels)[0]
 
     def first_impact(self, tau, u, amplitude, gravity=1.0):
         """T of the first releases, and the impacts."""
@@ -270,7 +299,7 @@ class ForceLaw(Ball):
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
-    def _followed(self, tau, u, amplitude, gravity, T=None):
+    def _followed(self, tau, u, amplitude, gravity, T=None, panels=MOST_PANELS):
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         rows = values_by_row(values if T is None else values | {"T": T})
@@ -300,7 +329,7 @@ class ForceLaw(Ball):
             # So many panels are about the least that impacts need.
             first = given["T"] / (1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
-        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits)
+        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, panels)
         s, q, v, t = rows.joined(*ends)
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
 

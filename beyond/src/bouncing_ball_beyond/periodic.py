@@ -504,10 +504,31 @@ def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     starts = starts[np.isfinite(starts).all(axis=1)]
     if not len(starts):
         return starts
-    solution = newton(equations, starts, iterations=30)
-    z = _distinct(equations, solution.z[solution.found])
+    z = _distinct(equations, _solutions_near(equations, starts))
     # Some starts lead to orbits many periods later, at times with fewer digits.
     return newton(equations, z).z if len(z) else z
+
+
+def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """The solutions to which Newton's method leads from starts.
+
+    Where impacts become much faster or longer than all of those at the starts, it is lost.
+    """
+
+    def sizes(z):
+        x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
+        return np.abs(x[..., 1:]).max(axis=1)
+
+    largest = 2 * sizes(z).max(axis=0)
+    found = []
+    for _ in range(30):
+        solution = newton(equations, z, iterations=1)
+        found.append(solution.z[solution.found])
+        z = solution.z[~solution.found]
+        z = z[np.isfinite(z).all(axis=1) & (sizes(z) <= largest).all(axis=1)]
+        if not len(z):
+            break
+    return np.concatenate(found)
 
 
 @np.errstate(all="ignore")
@@ -524,7 +545,7 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     def impacts(tau, u):
         columns = [tau, u, amplitude + 0 * u]
         if ball.lasts:
-            columns.insert(2, ball.first_release(tau, u, amplitude))
+            columns.insert(2, ball.early_release(tau, u, amplitude))
         return np.stack(columns, axis=-1)
 
     change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)

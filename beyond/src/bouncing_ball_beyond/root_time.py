@@ -107,9 +107,9 @@ class Rows(NamedTuple):
     def joined(self, real, imaginary):
         """Results (k, rows) and derivatives (k, rows, directions) in the shape of the values."""
         if not self.directions:
-            return real.reshape(-1, *self.shape)
+            return real.reshape(len(real), *self.shape)
         values = real[:, np.newaxis] + 1j * np.moveaxis(imaginary, 2, 1)
-        return values.reshape(-1, *self.shape)
+        return values.reshape(len(values), *self.shape)
 
 
 def values_by_row(values):
@@ -555,7 +555,7 @@ class _Contacts:
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
+def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MOST_PANELS):
     """Contacts from their starts to the first releases, or to root times.
 
     A contact is permanent if its motion repeats after a period, or if it lasts for PERIODS.
@@ -570,6 +570,8 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
         Derivatives of q and v.
     until, by_until : array, shapes (rows,) and (rows, directions), optional
         Root times at which contacts are left, and their derivatives.
+    panels : int
+        A contact with more panels is taken for a permanent one.
 
     Returns
     -------
@@ -597,7 +599,7 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0):
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
     )
-    for attempt in range(MOST_PANELS):
+    for attempt in range(panels):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:
             break

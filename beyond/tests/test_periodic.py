@@ -280,3 +280,9 @@ def test_nothing_warns_where_rows_have_no_solution():
         warnings.simplefilter("error")
         found = orbit(SpringDamper([0.7, 30.0], restitution=0.5), amplitude=[0.01, 1.4])
     assert isinstance(found[0], OrbitNotFound) and found[1].stable
+
+
+def test_a_ball_without_restitution_leaves_where_the_table_falls_faster():
+    lossy = orbit(Rigid(0.0), amplitude=3.3)
+    assert lossy.admissible and lossy.amplitude * np.sin(lossy.phase) > 1
+    assert not orbit(Rigid(0.0), amplitude=3.2).admissible

@@ -928,7 +928,8 @@ def limits(ball: Ball, *, n=1):
     """The saddle-node and the period doubling of the n-T orbits of a ball.
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
-    and no saddle-node.
+    and no saddle-node. The orbits of other balls may end otherwise, for example with the grazing of
+    an impact if ζ > 1: the ``end`` of a branch of :func:`follow` says how.
 
     Parameters
     ----------

@@ -193,7 +193,7 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
             "apparent_restitution": loaded * load / (r * impact.speed),
-            "saddle_node": -shift / reference["saddle_node"],
+            "saddle_node": np.divide(-shift, reference["saddle_node"]),
             "period_doubling": doubling / reference["period_doubling"] ** 2,
         }
 

@@ -9,8 +9,9 @@ motion,
 is as near, and if the multipliers of M are below 1 by a margin, then the ball is on a periodic
 motion with k impacts. A ball that *sticks* to the table after instantaneous impacts leaves it in a
 state that does not depend on earlier impacts: a motion that sticks twice is *locked*. A contact of
-finite duration sticks if it lasts longer than two free impacts. What neither repeats nor rests is
-called chaotic if neighbouring motions separate exponentially, and undecided otherwise.
+finite duration sticks if it lasts longer than two free impacts; where a free impact does not end, as
+from ζ = 1 on, none does. What neither repeats nor rests is called chaotic if neighbouring motions
+separate exponentially, and undecided otherwise.
 """
 
 from dataclasses import replace
@@ -390,7 +391,8 @@ def _store_periodic(found, lane, record, after, again, seen):
     sticks = np.zeros((len(record), some.size), bool)
     if after.ball.lasts:
         ball = after.ball.rows(some)
-        sticks = ~(record[:, 3, some] <= 2 * ball.free(np.abs(record[:, 2, some])))
+        # A contact that no free impact leaves has no such length, which is NaN.
+        sticks = record[:, 3, some] > 2 * ball.free(np.abs(record[:, 2, some]))
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
     _store_end(
         found,

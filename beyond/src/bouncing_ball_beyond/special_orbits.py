@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, dense, newton
+from bouncing_ball_beyond.equations import Linear, OrbitEquations, dense, newton, solved_or_nan
 
 LONG = 2.0
 """A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
@@ -224,7 +224,7 @@ def special_near(
         right = np.column_stack([linear.legs.reshape(-1, part.size), value])
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
         matrix[~finite] = np.eye(z.shape[1])
-        step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+        step = solved_or_nan(matrix, right[..., np.newaxis])[..., 0]
         size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
         finite &= size < LONG
         z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)

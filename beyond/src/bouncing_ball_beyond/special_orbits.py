@@ -59,6 +59,9 @@ ON_THE_WAY = (
 )
 """The kinds whose tests are computed at each step: they cost little, or end a branch."""
 
+SINGULAR = slice(2, 5)
+"""Those of them at which multipliers have poles or jump: beyond them there are no orbits."""
+
 
 def kind_named(name: str) -> str:
     """The name of a kind that is written with spaces or hyphens.
@@ -113,9 +116,9 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
     names = np.array([*ON_THE_WAY, "grazing of a flight", "grazing of a release"])
     values = np.array(columns)
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
-    # Where tr/(1 + det) has a pole, it changes its sign without passing 1 or -1.
+    # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
-    crossed[:2] &= ~pole
+    crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
     which, at = np.nonzero(crossed)
     both = np.stack([at, at + 1])
     return Crossings(row[at], number[at], names[which], z[both], slopes[both], values[which, both])

@@ -9,9 +9,9 @@ motion,
 is as near, and if the multipliers of M are below 1 by a margin, then the ball is on a periodic
 motion with k impacts. A ball that *sticks* to the table after instantaneous impacts leaves it in a
 state that does not depend on earlier impacts: a motion that sticks twice is *locked*. A contact of
-finite duration sticks if it lasts longer than two free impacts; where these do not end, as from ζ = 1
-on, none does. What neither repeats nor rests is called chaotic if neighbouring motions separate
-exponentially, and undecided otherwise.
+finite duration sticks if it lasts longer than two free impacts; where these do not end, as from
+ζ = 1 on, none does. What neither repeats nor rests is called chaotic if neighbouring motions
+separate exponentially, and undecided otherwise.
 """
 
 from dataclasses import replace

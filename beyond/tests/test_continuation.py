@@ -343,6 +343,17 @@ def test_no_special_orbit_hides_before_the_end_of_a_branch():
     assert np.abs(np.diff(np.arctan(turns[:-1]))).max() < TURN
 
 
+def test_no_special_orbit_hides_where_multipliers_are_large():
+    """From the grazing on tr/(1 + det) falls from 61 to less than -30, within 1e-6 of Λ."""
+    ball = SpringDamper(20.0, restitution=0.65)
+    near = orbits(ball, amplitude=3.0, impacts=2, periods=3)
+    flights = [s for each in near for s in follow(each, to=3.2).special if "flight" in s.kind]
+    grazing = next(each for each in flights if abs(each.amplitude - 3.1019022) < 1e-7)
+    branch = follow(grazing, to=3.4)
+    assert [each.kind for each in branch.special] == ["saddle-node", "period doubling"]
+    assert branch.orbits[1].turn > 50 and min(each.turn for each in branch.orbits) < -30
+
+
 def test_a_lost_release_is_an_orbit_that_leaves_the_table_with_no_speed():
     ball = SpringDamper(7.316726682288825, restitution=0.23276919547357516)
     start = orbit(ball, amplitude=4.0523387951747, n=2)

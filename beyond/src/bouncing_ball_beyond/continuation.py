@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, brief
+from bouncing_ball_beyond.balls import Ball, brief, whole_number
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
 from bouncing_ball_beyond.forms import one_impact_more
 from bouncing_ball_beyond.paths import Path, path_of
@@ -619,6 +619,7 @@ def cascade(doubling, *, to, impacts: int = 64):
         if isinstance(branches, OrbitNotFound):
             raise branches
         return branches
+    impacts = whole_number("impacts", impacts, 2)
     wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
@@ -651,6 +652,11 @@ def _listed(given, name: str, wanted: str) -> list:
 def _follow_all(orbits, along, to, points, until) -> list:
     """Branches of orbits, or reasons, in order; orbits with the same equations side by side."""
     found = list(orbits)
+    several = 2 if isinstance(to, tuple) else len(found)
+    if to is not None and np.shape(to) not in ((), (several,)):
+        raise ValueError(
+            f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
+        )
     tasks = {}
     groups: list = []
     for i, each in enumerate(orbits):

@@ -10,6 +10,7 @@ from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.continuation import (
+    TURN,
     FollowedBranch,
     cascade,
     follow,
@@ -325,6 +326,34 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight_of_the_orbit_without_it():
         follow(ends[0].special[-1], to=1.0)
 
 
+def test_no_special_orbit_hides_before_the_end_of_a_branch():
+    """The saddle-node, the doubling and the grazing are within 2e-5, and a step passes them all."""
+    ball = SpringDamper(5.0, restitution=0.5)
+    flight = follow(orbit(ball, amplitude=2.0, side="unstable"), to=6.0)
+    grazing = flight.first("grazing of a flight")
+    back = follow(grazing, to=2.3)
+    expected = {each.kind: each.amplitude for each in back.special}
+    assert expected.keys() == {"saddle-node", "period doubling"}
+    branch = follow(back.orbits[-1], to=2.5)
+    assert {each.kind: each.amplitude for each in branch.special} == pytest.approx(
+        expected | {"grazing of an impact": grazing.amplitude}, abs=LOCATED
+    )
+    # Rounding decides on tr/(1 + det) at the end itself, but nothing is divided by zero.
+    turns = np.array([each.turn for each in branch.orbits])
+    assert np.abs(np.diff(np.arctan(turns[:-1]))).max() < TURN
+
+
+def test_no_special_orbit_hides_where_multipliers_are_large():
+    """From the grazing on tr/(1 + det) falls from 61 to less than -30, within 1e-6 of Λ."""
+    ball = SpringDamper(20.0, restitution=0.65)
+    near = orbits(ball, amplitude=3.0, impacts=2, periods=3)
+    flights = [s for each in near for s in follow(each, to=3.2).special if "flight" in s.kind]
+    grazing = next(each for each in flights if abs(each.amplitude - 3.1019022) < 1e-7)
+    branch = follow(grazing, to=3.4)
+    assert [each.kind for each in branch.special] == ["saddle-node", "period doubling"]
+    assert branch.orbits[1].turn > 50 and min(each.turn for each in branch.orbits) < -30
+
+
 def test_a_lost_release_is_an_orbit_that_leaves_the_table_with_no_speed():
     ball = SpringDamper(7.316726682288825, restitution=0.23276919547357516)
     start = orbit(ball, amplitude=4.0523387951747, n=2)
@@ -457,6 +486,11 @@ def test_a_path_of_ones_own_and_the_frequency_lead_to_the_same_orbits():
         (lambda: ParameterPath("x", low=2, high=1, amplitude=np.sin), "low must be below high"),
         (lambda: ParameterPath("x", low=1, high=2), "needs a function for each parameter"),
         (lambda: ParameterPath("x", low=-1, high=2, amplitude=np.abs), "must be analytic"),
+        (lambda: ParameterPath("x", low=1, high=2, amplitude=np.abs), "must be analytic"),
+        (
+            lambda: ParameterPath("x", low=0, high=3, amplitude=lambda x: x + np.maximum(x, 2)),
+            "must be analytic",
+        ),
         (lambda: ParameterPath("x", low=0, high=3, amplitude=np.sin), "must rise or fall throu"),
         (lambda: ParameterPath("x", low=1, high=3, amplitude=lambda x: [x]), "arrays, also compl"),
     ],
@@ -466,9 +500,19 @@ def test_a_path_that_is_none_is_refused(path, text):
         path()
 
 
+@pytest.mark.parametrize("low", [1.0, 1e-3])
+def test_a_steep_path_is_analytic(low):
+    path = ParameterPath(
+        "hertz", low=low, high=40.0, amplitude=shaker, frequency_ratio=lambda f: 1e7 / f**3
+    )
+    ball = SpringDamper(1e7 / 20.0**3, restitution=0.85)
+    assert path.place(ball, shaker(20.0)) == pytest.approx(20, abs=1e-12)
+
+
 def test_wrong_goals_and_parameters_are_named_in_one_line():
     start = orbit(Rigid(0.5), amplitude=1.3)
     path = ParameterPath("x", low=1.0, high=2.0, amplitude=lambda x: x, restitution=lambda x: x / 4)
+    wrong = ParameterPath("x", low=1.0, high=2.0, ratio=lambda x: x)
     for call, text in (
         (lambda: follow(start, along="mass", to=2.0), "along = 'mass': must be one of amplitude"),
         (lambda: follow(start, to=-1.0), r"to = -1: amplitude must be in \[1e-12, 1e\+08\]"),
@@ -476,6 +520,7 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
         (lambda: follow(start, along="frequency", to=0.0), r"frequency must be in \[1e-06, "),
         (lambda: follow(start, to=(1.4, 2.0)), "amplitude = 1.3 of the orbit must be between"),
         (lambda: follow(start, along=path, to=2.0), "the orbit is not on the path x"),
+        (lambda: follow(start, along=wrong), "the path x has 'ratio': must be one of amplitude, r"),
         (lambda: limits(0.7), r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"),
         (
             lambda: follow(Rigid(0.5), to=2.0),

@@ -349,3 +349,13 @@ def test_trace_and_determinant_of_the_corrected_model(name):
     assert one.multipliers.prod() == pytest.approx(determinant, abs=1e-6)
     doubling = (1 - g) * v + np.pi * (w + (1 + a) * g) - t * (1 + a + w)
     assert 1 + trace + determinant == pytest.approx(2 * doubling / n, rel=1e-12)
+
+
+def test_an_elastic_ball_has_thresholds_but_no_saddle_node():
+    """Its law has |K|/ε for the velocity, (D - t_c)/π with D - t_c = π/(2ϖ): 1/(2ε)."""
+    elastic = SpringDamper(1.0, restitution=1.0)
+    by_law = law_thresholds(elastic, amplitude=0.5)
+    exactly = error_thresholds(elastic, amplitude=0.5)
+    assert np.isnan(by_law["saddle_node"]) and np.isnan(exactly["saddle_node"].ratio)
+    assert by_law["bounce_velocity"] == pytest.approx(50)
+    assert exactly["bounce_velocity"].ratio == pytest.approx(50, rel=0.01)

@@ -183,6 +183,14 @@ def test_a_compliant_contact_that_lasts_longer_than_two_free_ones_is_locked():
     assert (found.kind, found.periods, found.impacts) == ("locked", 1, 1)
 
 
+def test_a_contact_that_no_free_impact_leaves_does_not_stick():
+    ball = bb.SpringDamper(20.0, damping_ratio=1.2)
+    one = bb.orbit(ball, amplitude=3.5)
+    assert one.stable and one.admissible and one.contact_duration < 0.5
+    found = bb.motion_of(ball, amplitude=3.5, phase=one.phase, velocity=one.impact_velocity)
+    assert (found.kind, found.periods, found.impacts) == ("periodic", 1, 1)
+
+
 def test_balls_with_a_contact_and_with_instants_lock_after_other_periods():
     start = {"amplitude": 3.0, "phase": -1.5, "velocity": 0.0}
     contact = bb.motion_of(bb.SpringDamper(80.0, restitution=0.6), **start)

@@ -302,3 +302,9 @@ def test_the_search_with_a_contact_law_soon_finds_that_there_is_no_orbit(monkeyp
         orbit(ball, amplitude=0.1)
     found = orbits(ball, amplitude=1.2)
     assert [(each.stable, each.admissible) for each in found] == [(False, True), (False, True)]
+
+
+def test_a_ball_without_restitution_leaves_where_the_table_falls_faster():
+    lossy = orbit(Rigid(0.0), amplitude=3.3)
+    assert lossy.admissible and lossy.amplitude * np.sin(lossy.phase) > 1
+    assert not orbit(Rigid(0.0), amplitude=3.2).admissible

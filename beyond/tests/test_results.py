@@ -221,6 +221,24 @@ def test_a_wide_range_has_a_logarithmic_axis():
     assert plot(far, quantity="max_height").axes[0].get_xscale() == "log"
 
 
+def test_a_legend_has_the_colours_of_curves_and_a_curve_to_zero_is_not_logarithmic(rigid):
+    kinds = "period doubling", "saddle-node"
+    curves = [special_curve(rigid.first(kind)) for kind in kinds]
+    assert min(curve.z[:, -2].min() for curve in curves) < 1e-9
+    figure = plot(*curves)
+    axes = figure.axes[0]
+    assert axes.get_xscale() == "linear"
+    colour = {text.get_text(): line.get_color() for line, text in legend_of(figure)}
+    drawn = {line.get_color() for line in axes.lines if line.get_linestyle() != "None"}
+    assert len({colour[kind] for kind in kinds} & drawn) == 2
+
+
+def legend_of(figure):
+    """The samples and the texts of a legend."""
+    legend = figure.legends[0]
+    return zip(legend.get_lines(), legend.get_texts(), strict=True)
+
+
 def test_pictures_refuse_what_they_cannot_draw(rigid):
     with pytest.raises(ValueError, match="quantity = 'colour': must be one of max_height"):
         plot(rigid, quantity="colour")

@@ -487,3 +487,47 @@ def test_mistakes_have_one_line():
         bb.simulate(ball, amplitude=1.0, phase=np.nan)
     with pytest.raises(ValueError, match="height = 0: is below the table"):
         bb.drop(ball, height=0.0, amplitude=1.0, phase=1.0)
+
+
+ONE = bb.Rigid(0.5)
+TWO = bb.orbit(ONE, amplitude=1.3)
+TEXT = {"quantities": "max_height"}
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda: bb.simulate(ONE, amplitude=1.0, impacts=2.5), r"impacts = 2\.5: must be a whole"),
+        (lambda: bb.motion_of(ONE, amplitude=1.0, impacts=0), "impacts = 0: must be a whole nu"),
+        (lambda: bb.basins(ONE, amplitude=1.2, starts=0), "starts = 0: must be a whole number"),
+        (lambda: bb.history(ONE, amplitude=1.0, periods=0), r"periods = 0: must be in \(0, ∞\)"),
+        (
+            lambda: bb.simulate(ONE, amplitude=1.0, velocity=-1.0, relative_velocity=-1.0),
+            "velocity, relative_velocity: at most one of them",
+        ),
+        (
+            lambda: bb.Rigid("0.5"),
+            r"restitution = '0\.5': must be a number or an array in \[0, 1\]",
+        ),
+        (lambda: bb.Rigid([]), r"restitution = \[\]: must be a number or an array in \[0, 1\]"),
+        (lambda: bb.law_thresholds(ONE, amplitude=1.0), r"contacts = Rigid\(.*\): must be a Spri"),
+        (
+            lambda: bb.exact_errors(bb.SpringDamper(9.0, restitution=0.5), amplitude=1, **TEXT),
+            "quantities = 'max_height': must be a list of names",
+        ),
+        (
+            lambda: bb.follow([TWO, TWO], to=[1.2, 1.3, 1.4]),
+            r"to = \[1\.2, .*: must be a number, a",
+        ),
+        (lambda: bb.follow(TWO, to=(1.2, 1.3, 1.4)), r"to = \(1\.2, .*: must be a number, a tuple"),
+        (lambda: bb.cascade(TWO, to=2.0, impacts=1), "impacts = 1: must be a whole number from 2"),
+        (
+            lambda: bb.read_orbits(bb.to_dataset(TWO), ball=bb.SpringDamper(9.0, restitution=0.5)),
+            "the ball of the orbits has no frequency_ratio: give it as ball=",
+        ),
+    ],
+)
+def test_arguments_that_make_no_sense_are_named_in_one_line(call, text):
+    with pytest.raises(ValueError, match=text) as raised:
+        call()
+    assert "\n" not in str(raised.value)

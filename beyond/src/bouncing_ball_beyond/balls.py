@@ -154,13 +154,24 @@ def check_ball(ball):
         raise ValueError(f"ball = {brief(ball)}: must be a ball, such as Rigid(0.7)")
 
 
+def whole_number(name, value, least=1):
+    """A whole number, also as a float, as an int; ValueError if it is none or below the least."""
+    number = np.asarray(value)
+    if number.ndim or number.dtype.kind not in "iuf" or number % 1 or number < least:
+        raise ValueError(f"{name} = {brief(value)}: must be a whole number from {least}")
+    return int(number)
+
+
 def checked(name, value, low, high, *, low_allowed):
     """The value as a number or an array; ValueError unless all are finite, from low to high."""
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
         values = np.array(value, float)
+        is_number = values.size and np.asarray(value).dtype.kind not in "SU"
     except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: must be a number or an array in {allowed}") from None
+        is_number = False
+    if not is_number:
+        raise ValueError(f"{name} = {value!r}: must be a number or an array in {allowed}")
     above = values >= low if low_allowed else values > low
     good = np.isfinite(values) & above & (values <= high)
     if not good.all():

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, brief
+from bouncing_ball_beyond.balls import Ball, brief, whole_number
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
 from bouncing_ball_beyond.forms import one_impact_more
 from bouncing_ball_beyond.paths import Path, path_of
@@ -27,6 +27,7 @@ from bouncing_ball_beyond.periodic import (
 from bouncing_ball_beyond.special_orbits import (
     KINDS,
     ON_THE_WAY,
+    SINGULAR,
     Crossings,
     crossings_of,
     doubled_of,
@@ -48,6 +49,9 @@ STRAIGHT = 0.95
 
 TURN = 0.3
 """The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
+
+BEFORE_END = 1e-3
+"""The share of a step to an end of a branch that is left to the end in a point before it."""
 
 NEAREST = 1e-9
 """Relative distance from a period doubling below which doubled orbits are not told apart.
@@ -293,7 +297,8 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
     """Accepted steps of branches, until they end or their parameter is at an end of its window.
 
     A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
-    too much.
+    too much. Where an impact or a release ends a branch, the multipliers beyond it tell nothing of
+    those before it: such a step has a point in between, just before the end.
     """
     equations = start.equations
     here = _points_at(equations, start.z, start.direction, equations.linear(start.z))
@@ -312,16 +317,19 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
         with np.errstate(all="ignore"):
             there = _points_at(equations, solution.z, solution.tangent, solution.linear)
             there = _same_sign(here, there)
-            turned = np.abs(_angle(there) - _angle(here))
-            # A pole of tr/(1 + det) is no obstacle.
-            turned = np.minimum(turned, np.pi - turned)
+            crossed = here.tests * there.tests < 0
+            ending = crossed[:, SINGULAR].any(axis=1)
+            inner = there
+            if ending.any():
+                inner = _before_end(equations, here, there, ahead.normal)
+            # The determinant is positive up to there, so that tr/(1 + det) has no pole.
+            turned = np.abs(_angle(inner) - _angle(here))
             cosine = _cosine(there, here, units)
             missed = np.linalg.norm((there.z - ahead.z) / units, axis=1)
             inside = (there.z[:, -1] >= low) & (there.z[:, -1] <= high)
         good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * ahead.length)
         good &= (turned < TURN) | (ahead.length < 1e-6)
         easy = (cosine > 0.99) & (turned < TURN / 2)
-        crossed = here.tests * there.tests < 0
         here = here.replaced(good, there)
         longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
         step = np.where(good, longer, ahead.length / 2)
@@ -330,6 +338,8 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
         back &= _cosine(here, first, units) > STRAIGHT
         farthest = np.maximum(farthest, away)
         for j in np.flatnonzero(good):
+            if ending[j] and np.isfinite(inner.tests[j]).all():
+                paths[rows[j]].append(inner.take([j]))
             paths[rows[j]].append(here.take([j]))
             kind = until[rows[j]]
             ends[rows[j]] = _end_of_step(crossed[j], ahead.last[j], back[j], kind)
@@ -348,6 +358,18 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
     units = scales(start.equations, start.z)
     whole = zip(paths, ends, units, strict=True)
     return [_Steps(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
+
+
+def _before_end(equations, here: _Points, there: _Points, normal) -> _Points:
+    """Points of steps just before the first of the ends that they cross, NaN if not found."""
+    before = here.tests[:, SINGULAR]
+    after = there.tests[:, SINGULAR]
+    share = np.where(before * after < 0, before / (before - after), 1.0).min(axis=1)
+    share = (1 - BEFORE_END) * share[:, np.newaxis]
+    solution = newton(equations, here.z + share * (there.z - here.z), normal)
+    inner = _points_at(equations, solution.z, solution.tangent, solution.linear)
+    inner.tests[~solution.found] = np.nan
+    return _same_sign(here, inner)
 
 
 def _cosine(points: _Points, others: _Points, units) -> NDArray:
@@ -597,6 +619,7 @@ def cascade(doubling, *, to, impacts: int = 64):
         if isinstance(branches, OrbitNotFound):
             raise branches
         return branches
+    impacts = whole_number("impacts", impacts, 2)
     wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
@@ -629,6 +652,11 @@ def _listed(given, name: str, wanted: str) -> list:
 def _follow_all(orbits, along, to, points, until) -> list:
     """Branches of orbits, or reasons, in order; orbits with the same equations side by side."""
     found = list(orbits)
+    several = 2 if isinstance(to, tuple) else len(found)
+    if to is not None and np.shape(to) not in ((), (several,)):
+        raise ValueError(
+            f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
+        )
     tasks = {}
     groups: list = []
     for i, each in enumerate(orbits):
@@ -928,7 +956,8 @@ def limits(ball: Ball, *, n=1):
     """The saddle-node and the period doubling of the n-T orbits of a ball.
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
-    and no saddle-node.
+    and no saddle-node. The orbits of other balls may end otherwise, for example with the grazing of
+    an impact if ζ > 1: the ``end`` of a branch of :func:`follow` says how.
 
     Parameters
     ----------

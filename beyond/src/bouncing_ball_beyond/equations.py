@@ -333,7 +333,10 @@ class OrbitEquations:
         x, ball, _ = self.split(z)
         ends = self.ends(z)
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
-        leaving = self.least_release(self.linear(z), z) > 0
+        release = self.least_release(self.linear(z), z)
+        # A ball without speed leaves the table if this falls faster than the ball: δ″ > 0.
+        falls = (ends.amplitude * np.sin(ends.leaves) > 1).all(axis=-1)
+        leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
         clear = (self.clearance(z) > 0) & (self.contact_clearance(z) > 0)
         return clear & leaving & (landing & lasting).all(axis=-1)

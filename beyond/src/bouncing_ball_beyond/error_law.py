@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper
+from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper, brief
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
@@ -193,7 +193,7 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
             "apparent_restitution": loaded * load / (r * impact.speed),
-            "saddle_node": -shift / reference["saddle_node"],
+            "saddle_node": np.divide(-shift, reference["saddle_node"]),
             "period_doubling": doubling / reference["period_doubling"] ** 2,
         }
 
@@ -346,6 +346,10 @@ def ball_at_ratio(
         return lambda ratio: contacts.at(
             **{name: contacts.values[name] * (share / ratio) ** powers[name] for name in powers}
         )
+    if not callable(contacts):
+        raise ValueError(
+            f"contacts = {brief(contacts)}: must be a SpringDamper, a ForceLaw or a function to one"
+        )
     return contacts
 
 
@@ -375,6 +379,8 @@ def contact_values(
         around its instant, which starts t_c before it and lasts D. Whether a ball follows an orbit
         is not examined here, but by ``orbit``.
     """
+    if isinstance(quantities, str):
+        raise ValueError(f"quantities = {quantities!r}: must be a list of names")
     unknown = set(quantities) - set(QUANTITIES)
     if unknown:
         raise ValueError(f"quantities: {min(unknown)!r} must be one of {', '.join(QUANTITIES)}")

@@ -9,8 +9,9 @@ motion,
 is as near, and if the multipliers of M are below 1 by a margin, then the ball is on a periodic
 motion with k impacts. A ball that *sticks* to the table after instantaneous impacts leaves it in a
 state that does not depend on earlier impacts: a motion that sticks twice is *locked*. A contact of
-finite duration sticks if it lasts longer than two free impacts. What neither repeats nor rests is
-called chaotic if neighbouring motions separate exponentially, and undecided otherwise.
+finite duration sticks if it lasts longer than two free impacts; where these do not end, as from
+ζ = 1 on, none does. What neither repeats nor rests is called chaotic if neighbouring motions
+separate exponentially, and undecided otherwise.
 """
 
 from dataclasses import replace
@@ -18,7 +19,14 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtrit
 
-from bouncing_ball_beyond.balls import H, check_ball, contacts, has_closed_form, table_at
+from bouncing_ball_beyond.balls import (
+    H,
+    check_ball,
+    contacts,
+    has_closed_form,
+    table_at,
+    whole_number,
+)
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.periodic import OrbitNotFound, solved
@@ -183,6 +191,7 @@ def ends_of(balls, impacts):
         The variables of :func:`motion_of`, each over the balls, with ``end_speed``, a closing
         speed.
     """
+    impacts = whole_number("impacts", impacts)
     numbers = ("lyapunov_exponent", "lyapunov_error", "exponent_sum", "end_phase", "end_speed")
     found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
@@ -390,7 +399,8 @@ def _store_periodic(found, lane, record, after, again, seen):
     sticks = np.zeros((len(record), some.size), bool)
     if after.ball.lasts:
         ball = after.ball.rows(some)
-        sticks = ~(record[:, 3, some] <= 2 * ball.free(np.abs(record[:, 2, some])))
+        # A contact that no free impact leaves has no such length, which is NaN.
+        sticks = record[:, 3, some] > 2 * ball.free(np.abs(record[:, 2, some]))
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
     _store_end(
         found,
@@ -526,7 +536,7 @@ OF_MOTIONS = DESCRIPTIONS | {
 """Long name, symbol and unit of the variables of datasets of motions."""
 
 
-def motion_of(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000):
+def motion_of(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=2000):
     """The motion on which a ball ends, after a first impact as in :func:`.simulate`.
 
     Parameters
@@ -590,7 +600,7 @@ def in_words(kind, followed, reason):
     return f"{kind}, found within {followed} impacts{unknown}"
 
 
-def lyapunov(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000):
+def lyapunov(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=2000):
     """The Lyapunov exponents of the motion on which a ball ends, as in :func:`motion_of`.
 
     Where the motion looks chaotic, 32 balls that start beside its end are followed for as many
@@ -696,7 +706,7 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     if table.ndim or any(np.ndim(value) for value in ball.parameters.values()):
         raise ValueError("amplitude, ball: basins are those of a single ball on one table")
     amplitude = float(table)
-    middle = (np.arange(starts) + 0.5) / starts
+    middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
     fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
     phase = TURN * middle - np.pi
     speed = fast * middle
@@ -783,7 +793,7 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
 
 
 def orbit_of_motion(
-    ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=2000
+    ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=2000
 ):
     """The periodic orbit on which a ball ends, confirmed by Newton's method.
 

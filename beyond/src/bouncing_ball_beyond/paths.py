@@ -177,6 +177,12 @@ def path_of(along: str | Path, ball: Ball) -> Path:
     ValueError
         If the ball has no such parameter.
     """
+    if isinstance(along, ParameterPath):
+        allowed = ["amplitude", *ball.parameters]
+        for name in along.functions:
+            if name not in allowed:
+                one_of = ", ".join(allowed)
+                raise ValueError(f"the path {along.name} has {name!r}: must be one of {one_of}")
     if not isinstance(along, str):
         return along
     allowed = ["amplitude", "frequency", *ball.parameters]
@@ -186,14 +192,30 @@ def path_of(along: str | Path, ball: Ball) -> Path:
 
 
 def _check_analytic(name, function, samples):
-    """Raise ValueError unless a complex step gives the derivative that a difference gives."""
+    """Raise ValueError unless complex steps give the derivatives, and these have no jump."""
+
+    def slopes(x):
+        return np.broadcast_to(np.imag(function(x + 1j * H)) / H, x.shape)
+
+    shift = 1e-6 * (samples[-1] - samples[0])
+    low = samples[:-1]
+    high = samples[1:]
+    middle = (low + high) / 2
     try:
-        exact = np.broadcast_to(np.imag(function(samples + 1j * H)) / H, samples.shape)
-        values = np.broadcast_to(np.asarray(function(samples), float), samples.shape)
+        exact = slopes(middle)
+        ends = [np.asarray(function(middle + side), float) for side in (-shift, shift)]
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: the function must take arrays, also complex ones") from error
-    # The differences err by the square of the step and by the cube root of the rounding errors.
-    by_difference = np.gradient(values, samples, edge_order=2)
-    size = np.ptp(values) / np.ptp(samples) + np.abs(exact).max()
-    if not np.all(np.abs(exact - by_difference) <= 0.1 * size):
+    by_difference = (ends[1] - ends[0]) / (2 * shift)
+    size = np.abs(exact).max() + np.abs(by_difference).max()
+    # The half of an interval in which the derivative changes more, again and again: what is left
+    # of the change is a jump.
+    for _ in range(40):
+        middle = (low + high) / 2
+        left = np.abs(slopes(middle) - slopes(low)) > np.abs(slopes(high) - slopes(middle))
+        low = np.where(left, low, middle)
+        high = np.where(left, middle, high)
+    jump = np.abs(slopes(high) - slopes(low))
+    steep = np.abs(slopes(high)) + np.abs(slopes(low)) + 1e-4 * size
+    if not (np.all(np.abs(exact - by_difference) <= 0.1 * size) and np.all(jump <= 0.01 * steep)):
         raise ValueError(f"{name}: the function must be analytic, without abs, real or max")

@@ -194,9 +194,12 @@ class PeriodicOrbit:
 
     @property
     def turn(self) -> float:
-        """tr/(1 + det): 1 at a saddle-node, -1 at a period doubling."""
-        trace, determinant = self.trace_and_determinant
-        return trace / (1 + determinant)
+        """tr/(1 + det): 1 at a saddle-node, -1 at a period doubling.
+
+        Where an impact grazes or a release is lost, rounding decides on it, and it may be infinite.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(self.equations.turn(self._linear)[0])
 
     @property
     def stable(self) -> bool:

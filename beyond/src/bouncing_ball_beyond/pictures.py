@@ -47,8 +47,9 @@ MARK: dict[str, Any] = {
 HEIGHT = 2.8
 """Height of a figure in inches."""
 
-DECADES = 2
-"""An axis on which more powers of ten lie is logarithmic."""
+DECADES = 2, 8
+"""An axis on which more powers of ten lie is logarithmic, unless these are so many that its least
+value is as good as zero."""
 
 MARKED = 4
 """Orbits with more impacts have no marks, which would hide their lines."""
@@ -135,7 +136,9 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
         axes.plot(x[part], y[part], **look)
         kind = getattr(whole, "kind", "stable" if steady else "unstable")
         text = kind if admissible else f"{kind}, no ball follows"
-        entries[text] = sample(**look | {"color": "black" if admissible else pale("black")})
+        # Curves of several kinds differ in their colours, and branches also in their lines.
+        common = colour if is_curve else "black"
+        entries[text] = sample(**look | {"color": common if admissible else pale(common)})
     for each, abscissa, ordinates in zip(orbits, x, y, strict=True):
         if each in branch.special and each.impacts <= MARKED:
             look = MARK | {"marker": MARKS[each.kind]}
@@ -179,7 +182,7 @@ def _scale(axes: Axes) -> None:
     """Make axes logarithmic on which the data are positive and cover many powers of ten."""
     data = axes.dataLim
     for name, (low, high) in (("x", data.intervalx), ("y", data.intervaly)):
-        if low > 0 and high > 10**DECADES * low:
+        if low > 0 and DECADES[0] < np.log10(high / low) < DECADES[1]:
             axes.set(**{f"{name}scale": "log"})
 
 

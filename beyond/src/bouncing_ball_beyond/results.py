@@ -233,6 +233,9 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
     if not {"ball", "along", "form"} <= data.attrs.keys():
         raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
     ball = ball or json.loads(data.attrs["ball"], object_hook=decoded)
+    missing = ball.parameters.keys() - data.variables
+    if missing:
+        raise ValueError(f"{name}the ball of the orbits has no {min(missing)}: give it as ball=")
     paths = [_path(each, ball, along) for each in json.loads(data.attrs["along"])]
     orbits = [_orbit_at(data.isel(point=i), ball, paths) for i in range(data.sizes["point"])]
     form = data.attrs["form"]

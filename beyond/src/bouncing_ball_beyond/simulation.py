@@ -22,12 +22,14 @@ from bouncing_ball_beyond.balls import (
     SpringDamper,
     brief,
     check_ball,
+    checked,
     flights,
     has_closed_form,
     releases,
     root_of_parabola,
     safe_steps,
     table_at,
+    whole_number,
 )
 from bouncing_ball_beyond.one_ball import COLUMNS, ROUNDING, STEPS, TURN
 
@@ -357,6 +359,9 @@ def first_impacts(ball, amplitude, phase, velocity, relative_velocity):
     :func:`simulate`.
     """
     absolute = relative_velocity is None
+    if not absolute and velocity is not None:
+        raise ValueError("velocity, relative_velocity: at most one of them may be given")
+    velocity = -np.pi if velocity is None else velocity
     name = "velocity" if absolute else "relative_velocity"
     given = {
         "amplitude": amplitude,
@@ -429,7 +434,7 @@ def described(found, descriptions):
     return found
 
 
-def simulate(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=None, impacts=100):
+def simulate(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=100):
     """The impacts of a ball that begins with a given first impact.
 
     Parameters
@@ -442,7 +447,7 @@ def simulate(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=N
     phase : float or array
         Phase of the table at the first impact.
     velocity : float or array
-        Absolute velocity of the ball before it, in units of g/Ω.
+        Absolute velocity of the ball before it, in units of g/Ω; by default -π.
     relative_velocity : float or array, optional
         In its place, the velocity relative to the table, δ′ ≤ 0.
     impacts : int
@@ -469,7 +474,7 @@ def simulate(ball, *, amplitude, phase=0.0, velocity=-np.pi, relative_velocity=N
     [0.0, 4.0, 6.0]
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
-    record, going, _ = follow(balls, int(impacts))
+    record, going, _ = follow(balls, whole_number("impacts", impacts))
     turns, start, u, _, duration, _, w, flight_time = np.moveaxis(record, 1, 0)
     before = balls.amplitude * np.cos(start)
     after = balls.amplitude * np.cos(start + np.where(duration < np.inf, duration, np.nan))
@@ -494,7 +499,7 @@ def history(
     *,
     amplitude,
     phase=0.0,
-    velocity=-np.pi,
+    velocity=None,
     relative_velocity=None,
     periods=10.0,
     samples=200,
@@ -570,7 +575,8 @@ def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
 
 def over_time(grid, balls, fall, periods, samples):
     """The dataset of balls over time, from their first impacts or from rows that record falls."""
-    times = np.linspace(0, TURN * periods, round(periods * samples) + 1)
+    periods = checked("periods", periods, 0, np.inf, low_allowed=False)
+    times = np.linspace(0, TURN * periods, round(periods * whole_number("samples", samples)) + 1)
     shape = balls.phase.size, times.size
     found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
     found["contact"] = np.empty(shape, bool)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, dense, newton
+from bouncing_ball_beyond.equations import Linear, OrbitEquations, dense, newton, solved_or_nan
 
 LONG = 2.0
 """A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
@@ -58,6 +58,9 @@ ON_THE_WAY = (
     "period halving",
 )
 """The kinds whose tests are computed at each step: they cost little, or end a branch."""
+
+SINGULAR = slice(2, 5)
+"""Those of them at which multipliers have poles or jump: beyond them there are no orbits."""
 
 
 def kind_named(name: str) -> str:
@@ -113,9 +116,9 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
     names = np.array([*ON_THE_WAY, "grazing of a flight", "grazing of a release"])
     values = np.array(columns)
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
-    # Where tr/(1 + det) has a pole, it changes its sign without passing 1 or -1.
+    # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
-    crossed[:2] &= ~pole
+    crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
     which, at = np.nonzero(crossed)
     both = np.stack([at, at + 1])
     return Crossings(row[at], number[at], names[which], z[both], slopes[both], values[which, both])
@@ -224,7 +227,7 @@ def special_near(
         right = np.column_stack([linear.legs.reshape(-1, part.size), value])
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
         matrix[~finite] = np.eye(z.shape[1])
-        step = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+        step = solved_or_nan(matrix, right[..., np.newaxis])[..., 0]
         size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
         finite &= size < LONG
         z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)

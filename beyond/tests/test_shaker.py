@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball_beyond import shaker
 from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.error_law import contact_values
 from bouncing_ball_beyond.periodic import orbit
@@ -208,3 +209,10 @@ def test_mistakes_are_one_line(change, named):
     with pytest.raises(ValueError, match=named) as raised:
         on_shaker(**{**TABLE, **CONTACT, **change})
     assert "\n" not in str(raised.value)
+
+
+def test_below_the_saddle_node_of_the_restitution_model_no_threshold_is_looked_for(monkeypatch):
+    monkeypatch.setattr(shaker, "error_thresholds", None)
+    given = {"frequency": "50 Hz", "restitution": 0.85, "contact_duration": "100 us"}
+    found = on_shaker(acceleration="0.05 g", **given)
+    assert np.isnan([found.max_height.exact, found.longest_contact]).all()

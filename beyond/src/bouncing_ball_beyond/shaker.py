@@ -360,16 +360,20 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
             f"no saddle-node and period doubling are found: a contact lasts"
             f" {duration / (2 * np.pi):.2g} periods of the table"
         )
-    low = duration / np.pi
-    longest = error_thresholds(
-        contacts,
-        amplitude=amplitude,
-        n=n,
-        tolerance=tolerance,
-        quantities=["max_height"],
-        low=low,
-        high=1e6 * low,
-    )["max_height"]
+    longest = np.nan
+    # Below its saddle-node the restitution model has no height that a contact could have.
+    if np.isfinite(simple["max_height"]):
+        low = duration / np.pi
+        threshold = error_thresholds(
+            contacts,
+            amplitude=amplitude,
+            n=n,
+            tolerance=tolerance,
+            quantities=["max_height"],
+            low=low,
+            high=1e6 * low,
+        )["max_height"]
+        longest = float(duration / threshold.ratio) / rate
     unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
     compared = {
         name: ByModel(
@@ -389,7 +393,7 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
         tolerance=tolerance,
         lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact),
         highest_frequency=frequency * _times(ball, amplitude, n, "period_doubling", exact),
-        longest_contact=float(duration / longest.ratio) / rate,
+        longest_contact=longest,
         **compared,
     )
 

@@ -71,7 +71,7 @@ def test_answer_is_that_of_the_old_command_design(answers):
     assert answer.max_height.exact == pytest.approx(558.9e-6, abs=5e-8)
     assert answer.ball.frequency_ratio == pytest.approx(71.18, abs=5e-3)
     assert answer.contact_duration == pytest.approx(140.7e-6, abs=5e-8)
-    assert not answer.is_good_enough and answer.is_stable and answer.bounces
+    assert not answer.is_good_enough and answer.stable and answer.bounces
 
 
 def test_orbit_confirms_the_answer(answers):

@@ -118,7 +118,7 @@ class ShakerAnswer:
         return max(self.saddle_node[:2]) <= self.amplitude
 
     @property
-    def is_stable(self) -> bool:
+    def stable(self) -> bool:
         """Whether the orbit is stable, in the restitution model and on the contact."""
         return self.bounces and self.amplitude <= min(self.period_doubling[:2])
 

@@ -474,6 +474,7 @@ _DRAKE_BOX = (
     "A pair of shapes has one contact, a box as well; a box needs a HalfSpace below, because on a "
     "Box it tumbles (r = 0.632 in place of 0.614)"
 )
+_LIGGGHTS_DELAY = "Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late"
 _VERLET = SemiImplicit(pulls=True)
 _ALL = {
     engine.name: engine
@@ -592,7 +593,7 @@ _ALL = {
             rules={"kn": PAIR, "gamman": PAIR},
             sets_pair=True,
             deepest=1.0,
-            notes=("Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late",),
+            notes=(_LIGGGHTS_DELAY,),
         ),
         Engine(
             name="liggghts-limit-force",
@@ -603,7 +604,7 @@ _ALL = {
             rules={"kn": PAIR, "gamman": PAIR},
             sets_pair=True,
             deepest=1.0,
-            notes=("Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late",),
+            notes=(_LIGGGHTS_DELAY,),
         ),
         Engine(
             name="liggghts-hertz",
@@ -617,7 +618,7 @@ _ALL = {
             of_depth=Hertz.of_depth,
             sets_pair=True,
             deepest=1.0,
-            notes=("Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late",),
+            notes=(_LIGGGHTS_DELAY,),
             unit="N/m^1.5",
         ),
         Engine(

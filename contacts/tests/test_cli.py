@@ -150,10 +150,7 @@ MISTAKES = {
     f"{MUJOCO} kn=1": "it has solref, solimp, refsafe",
     f"{PYBULLET} contactStiffness=1e4": "give both",
     f"{PYBULLET} contactStiffness='1e4 N/m' contactDamping=1": "write a plain number as in '0.8'",
-    "diagnose --engine gazebo --mass 1 --time-step 1ms": "by restitution_coefficient of "
-    "the surface is not computed",
-    "diagnose --engine ode bounce=0.8 --mass 1 --time-step 1ms": "it has soft_cfm, soft_erp",
-    "diagnose --engine physx restitution=0.8 --mass 1 --time-step 1ms": "it has compliantContact",
+    "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
     "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
     "drake-hunt-crossley has it",
     "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",

@@ -24,9 +24,8 @@ from bouncing_ball_contacts.engines import (
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     Array,
+    Bullet,
     Drops,
-    Impulse,
-    Impulsive,
     Law,
     Trials,
     drop,
@@ -361,8 +360,9 @@ class Problem:
 
     def law_of(self, parameters: Mapping[str, Any], step: float) -> Law:
         """Return the contact of written parameters at a time step in s."""
-        other = self.engine.defaults if self.one_body else parameters
-        return self.engine.read(self.engine.combined(parameters, other), self.setting(step))
+        one = {**self.engine.defaults, **parameters}
+        other = self.engine.defaults if self.one_body else one
+        return self.engine.read(self.engine.combined(one, other), self.setting(step))
 
     def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
         """Return the ratios of damping with which the mean r is the target.
@@ -470,7 +470,7 @@ def design(
             keeps = keeps or (not kept and _is_good(problem, yours, largest, bounce.limit))
             if keeps or (bounce.penetration, kept) == (None, None):
                 chosen = YOURS
-        if bounce.points == 1 and (row.impulse or yours is None):
+        if bounce.points == 1 and (row.number or yours is None):
             rows[IMPULSE] = _impulse(problem, step)
     if pick is not None:
         chosen = _picked(pick, rows, problem)
@@ -627,12 +627,10 @@ def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, A
 def _impulse(problem: Problem, step: float) -> Row:
     """Return the restitution by number with which the mean r is the wanted one at a step in s."""
     numbers = np.linspace(0.0, 1.0, 21)
-    law = Impulse(numbers)
-    speed = problem.bounce.impact_speed
-    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _MEAN).mean
+    mean = problem.drops(Bullet(numbers), step, _MEAN).mean
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
     each = _rounded(math.sqrt(best))
-    found = problem.outcome(Impulse(np.asarray(each**2)), step)
+    found = problem.outcome(Bullet(np.asarray(each**2)), step)
     return Row(_rounded(step), math.nan, found, {"restitution": each, **UNDISTURBED})
 
 
@@ -791,7 +789,9 @@ class Design:
             reduced = show(self.bounce.reduced_mass, "kg", 4)
             lines.append(f"Two free bodies act as one of the reduced mass {reduced}.")
         if IMPULSE in self.rows:
-            how = row.impulse or "PyBullet's, because this engine has none"
+            how = "PyBullet's, because this engine has none"
+            if row.number:
+                how = f"{row.number}, {row.rules[row.number].text}"
             if text_of(f"{self.engine}-impulse"):
                 how = f"{how} (--pick impulse writes it)"
             lines.append(f"The row of the impulse is a restitution by number: {how}.")

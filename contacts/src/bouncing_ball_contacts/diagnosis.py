@@ -19,8 +19,23 @@ from bouncing_ball_contacts.designs import (
     Quantity,
     design,
 )
-from bouncing_ball_contacts.engines import ENGINES, UNDISTURBED, Engine, engine_named, text_of
-from bouncing_ball_contacts.schemes import Impedance, Implicit, Impulse, Law, Linear
+from bouncing_ball_contacts.engines import (
+    ENGINES,
+    MODES,
+    UNDISTURBED,
+    Engine,
+    engine_named,
+    text_of,
+)
+from bouncing_ball_contacts.schemes import (
+    Bullet,
+    ContactJoint,
+    Impedance,
+    Implicit,
+    Law,
+    Linear,
+    Solved,
+)
 from bouncing_ball_contacts.units import Refused, in_si, positive, show
 
 # With as many steps in a contact each scheme is within 0.003 of its limit of short steps.
@@ -28,7 +43,15 @@ _SHORT = 1000
 # Fewer steps than these are named as a reason.
 _FEW = 10
 # Parameters from 0 to 1 with which r rises.
-_SHARES = ("e", "coefficientRestitution", "restitution", "soft_erp", "contactERP")
+_SHARES = (
+    "e",
+    "coefficientRestitution",
+    "restitution",
+    "restitution_coefficient",
+    "bounce",
+    "soft_erp",
+    "contactERP",
+)
 # Parameters that are per unit of mass.
 _PER_MASS = {
     "mujoco": ("solref",),
@@ -132,7 +155,7 @@ def _typed(value: Any) -> str:
     """Return a value as it is typed on the command line."""
     if isinstance(value, tuple):
         return '"' + " ".join(f"{each:.6g}" for each in value) + '"'
-    return f"{value:.6g}"
+    return value if isinstance(value, str) else f"{value:.6g}"
 
 
 def _listed(parameters: Mapping[str, Any]) -> str:
@@ -163,7 +186,7 @@ def parameters_of(engine: Engine, given: Mapping[str, Any]) -> dict[str, Any]:
     found = {**engine.defaults, **values}
     missing = [name for name in names if name not in found]
     if missing:
-        raise Refused(f"{missing[0]} is missing: give {' and '.join(names)}{_not_computed(engine)}")
+        raise Refused(f"{missing[0]} is missing: give {' and '.join(names)}")
     if engine.name == "pybullet" and (found[names[0]] < 0) != (found[names[1]] < 0):
         raise Refused(f"PyBullet refuses {names[0]} or {names[1]} alone: give both")
     return values
@@ -179,21 +202,21 @@ def _unknown(engine: Engine, typed: str, names: list[str]) -> str:
         text += f"; {' and '.join(others)} has it"
     elif near:
         text += f"; did you mean {near[0]}?"
-    return text + _not_computed(engine)
-
-
-def _not_computed(engine: Engine) -> str:
-    is_known = text_of(f"{engine.name}-impulse") or not engine.impulse
-    return "" if is_known else f"; a bounce by {engine.impulse} is not computed"
+    return text
 
 
 def _value(engine: Engine, name: str, value: Any) -> Any:
     if name in ("solref", "solimp"):
         return _numbers(name, value)
+    if name == "restitutionCombineMode":
+        if str(value).lower() not in MODES:
+            raise Refused(f"{name} = {value} is none of {', '.join(MODES)}")
+        return str(value).lower()
     number = in_si(name, value, "")
-    if number < 0 and number != engine.defaults.get(name):
+    is_default = number == engine.defaults.get(name)
+    if number < 0 and not is_default:
         raise Refused(f"{name} = {number:g} is negative")
-    if name == engine.names[0] and number == 0:
+    if name == engine.names[0] and number == 0 and not is_default:
         raise Refused(f"{name} = 0 is no contact")
     if name in _SHARES and number > 1:
         raise Refused(f"{name} = {number:g} is not between 0 and 1")
@@ -274,12 +297,10 @@ def diagnose(
     law = pair.law(step)
     outcome = problem.outcome(law, step)
     limit = free = outcome.restitution[1]
-    unused: tuple[str, ...] = row.names
-    if not isinstance(law, Impulse):
+    if not _is_number(law):
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
         free = float(_without_gravity(problem).drops(law, short).mean)
-        unused = tuple(name for name in UNDISTURBED if name != "linearDamping")
     stiffness, ratio = _spring(problem, law)
     reasons = tuple(_reasons(pair, step, law, outcome, limit, free))
     change = None
@@ -292,7 +313,7 @@ def diagnose(
         engine=row.name,
         bounce=bounce,
         time_step=step,
-        parameters={name: value for name, value in of_one.items() if name not in unused},
+        parameters=of_one,
         given=given,
         other=other_given,
         outcome=outcome,
@@ -329,6 +350,10 @@ class _Pair:
         return float(self.problem.drops(self.law(step), step).mean)
 
 
+def _is_number(law: Law) -> bool:
+    return isinstance(law, Solved) and law.is_number
+
+
 def _without_gravity(problem: Problem) -> Problem:
     # A second free body so heavy that it does not move.
     bounce = problem.bounce
@@ -344,7 +369,7 @@ def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     if isinstance(law, Impedance):
         k = law.high**2 * law.points * float(law.stiffness)
         c = law.high * law.points * float(law.damping)
-    elif isinstance(law, Linear):
+    elif isinstance(law, Linear) or isinstance(law, Solved) and not law.is_number:
         k = float(law.stiffness)
         c = float(law.damping)
     else:
@@ -361,25 +386,30 @@ def _reasons(
     _, mean, high = outcome.restitution
     if problem.drag:
         dragged = mean
-        mean = float(replace(problem, drag=0.0).drops(law, step).mean)
+        mean = replace(problem, drag=0.0).outcome(law, step).restitution[1]
         if mean - dragged > 5e-4:
             yield (
                 f"linearDamping = {problem.drag:g} lowers r from {mean:.3f} to {dragged:.3f}; "
                 "designs set it to 0, and PyBullet's default is 0.04"
             )
-    if isinstance(law, Impulse):
-        yield "no spring is set: this is an impact by the number restitution, of both bodies"
-        alike = replace(problem, drag=0.0).outcome(Impulse(law.restitution), step)
-        if alike.around != outcome.around:
+    if problem.engine.caution:
+        yield problem.engine.caution
+    if isinstance(law, Solved) and law.is_number:
+        number = problem.engine.number
+        rule = problem.engine.rules[number].text
+        spring = "no spring is set" if np.isinf(law.stiffness) else "a restitution beside a spring"
+        yield f"{spring}: this is an impact by the number {number}, {rule}"
+        alike = replace(problem, drag=0.0).outcome(Bullet(law.restitution), step)
+        if isinstance(law, Bullet) and alike.around != outcome.around:
             yield (
                 f"PyBullet sees the surface {show(law.ahead, 'm')} ahead and pushes the body out; "
                 f"with {_listed(UNDISTURBED)} r is {alike.around}"
             )
+        elif outcome.deviation(alike.restitution[1]) > TOLERANCE / 2:
+            yield f"the step and the other parameters change r: {number} alone has {alike.around}"
         return
-    if problem.engine.caution:
-        yield problem.engine.caution
-    if pair.one.get("restitution"):
-        yield "what a restitution beside a spring adds is not computed"
+    if isinstance(law, ContactJoint) and law.fastest < bounce.impact_speed:
+        yield f"max_vel caps the rebound from a spring at {law.fastest:g} m/s; designs lift it"
     steps = float(law.duration(bounce.impact_speed)) / step
     if high > 1.02:
         yield f"unstable: a contact takes {steps:.2g} steps, and the body leaves faster than before"
@@ -448,10 +478,10 @@ def _another(pair: _Pair, step: float) -> str:
     """Return what has r at this step if no damping of the given contact has it."""
     problem = pair.problem
     engine = problem.engine
-    is_impulse = isinstance(pair.law(step), Impulse)
-    what = "restitution" if is_impulse else "damping of this contact"
+    is_number = _is_number(pair.law(step))
+    what = engine.number if is_number else "damping of this contact"
     text = f"no {what} keeps r within {TOLERANCE:g} at this step"
-    if isinstance(engine.scheme, Implicit) and not is_impulse:
+    if isinstance(engine.scheme, Implicit) and not is_number:
         name = engine.names[1]
         most = pair.changed(name, 1.0 if name in _SHARES else 0.0).mean(step)
         text += f", which damps by itself: r is {most:.3f} at most"
@@ -473,8 +503,8 @@ def _another(pair: _Pair, step: float) -> str:
 def _least_change(pair: _Pair, step: float) -> Change | None:
     """Return the damping with the wanted r, at this step or at the longest shorter one."""
     problem = pair.problem
-    if isinstance(pair.law(step), Impulse):
-        return _damping(pair, step, "restitution")
+    if _is_number(pair.law(step)):
+        return _damping(pair, step, problem.engine.number)
     for halvings in range(7):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:

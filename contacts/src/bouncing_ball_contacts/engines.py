@@ -9,7 +9,7 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from typing import Any
 
@@ -17,16 +17,19 @@ import numpy as np
 
 from bouncing_ball_contacts.schemes import (
     Array,
+    Bullet,
+    ContactJoint,
+    FoundAhead,
     Hertz,
     HuntCrossley,
     Impedance,
     Implicit,
-    Impulse,
-    Impulsive,
     Law,
     Linear,
+    OfSolver,
     Scheme,
     SemiImplicit,
+    Solved,
     Stepped,
 )
 from bouncing_ball_contacts.units import Refused
@@ -71,6 +74,7 @@ SERIES = Rule(
 SUM = Rule("added", lambda a, b: a + b, lambda x: x / 2, lambda x, other: x - other)
 MEAN = Rule("averaged", lambda a, b: (a + b) / 2, lambda x: x, lambda x, other: 2 * x - other)
 PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt, lambda x, other: x / other)
+LEAST = Rule("the least of both", min, lambda x: x, lambda x, other: x)
 PAIR = Rule("of the pair", lambda a, b: a, lambda x: x, lambda x, other: x)
 
 
@@ -108,8 +112,8 @@ class Engine:
         What a user has to know.
     friction : str
         What friction does to r.
-    impulse : str
-        What sets a restitution coefficient without a spring, if the engine has it.
+    number : str
+        The parameter that is a restitution coefficient, if the engine has one.
     caution : str
         What a diagnosis takes for granted.
     """
@@ -131,7 +135,7 @@ class Engine:
     ran: str = ""
     notes: tuple[str, ...] = ()
     friction: str = "friction acts along the surface only, and leaves r as it is"
-    impulse: str = ""
+    number: str = ""
     caution: str = ""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
@@ -168,8 +172,8 @@ class Engine:
         return values
 
     def scheme_of(self, law: Law) -> Scheme:
-        """Return the scheme of a law, which for an impulse is none of a force."""
-        return Impulsive() if isinstance(law, Impulse) else self.scheme
+        """Return the scheme of a law."""
+        return OfSolver() if isinstance(law, Solved) else self.scheme
 
     @property
     def steps(self) -> str:
@@ -193,6 +197,22 @@ class DrakeDissipation(Engine):
         k2 = other[stiffness]
         mean = (k2 * one[dissipation] + k1 * other[dissipation]) / (k1 + k2)
         return {stiffness: SERIES.of(k1, k2), dissipation: mean}
+
+
+MODES = ("average", "min", "multiply", "max")
+"""How PhysX combines a restitution; of two materials the later one in this list counts."""
+
+
+@dataclass(frozen=True)
+class PhysX(Engine):
+    """PhysX combines restitutions by a mode of the materials."""
+
+    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
+        mode = max(one["restitutionCombineMode"], other["restitutionCombineMode"], key=MODES.index)
+        a = one["restitution"]
+        b = other["restitution"]
+        of_mode = {"average": (a + b) / 2, "min": min(a, b), "multiply": a * b, "max": max(a, b)}
+        return super().combined(one, other) | {"restitution": of_mode[mode]}
 
 
 def text_of(name: str) -> str:
@@ -351,21 +371,24 @@ UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
 
 
 def _write_pybullet(law: Law, at: Setting) -> dict[str, Any]:
-    return _BULLET["write"](law, at) | {"linearDamping": 0.0}
+    undisturbed = ("linearDamping", "contactSlop", "contactProcessingThreshold")
+    return _BULLET["write"](law, at) | dict.fromkeys(undisturbed, 0.0)
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    if p.get("contactStiffness", -1) > 0:
-        return _BULLET["read"](p, at)
     # Bullet finds contacts within 2 % of half the diagonal of the box around the body.
     seen = 0.02 * math.sqrt(3) * at.radius
-    return Impulse(
-        np.asarray(p["restitution"]),
-        p["contactERP"],
-        p["restitutionVelocityThreshold"],
-        p["contactSlop"],
-        min(seen, p["contactProcessingThreshold"]),
+    law = Bullet(
+        restitution=np.asarray(p["restitution"]),
+        threshold=p["restitutionVelocityThreshold"],
+        erp=p["contactERP"],
+        slop=p["contactSlop"],
+        ahead=min(seen, p["contactProcessingThreshold"]),
     )
+    if p["contactStiffness"] < 0:
+        return law
+    spring = _BULLET["read"](p, at)
+    return replace(law, stiffness=spring.stiffness, damping=spring.damping)
 
 
 def _write_drake(law: Law, at: Setting) -> dict[str, Any]:
@@ -440,7 +463,39 @@ def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
 def _read_ode(p: Parameters, at: Setting) -> Law:
     kp = p["soft_erp"] / (p["soft_cfm"] * at.step)
     kd = (1 - p["soft_erp"]) / p["soft_cfm"]
-    return Linear(np.asarray(kp * at.points / at.mass), np.asarray(kd * at.points / at.mass))
+    return ContactJoint(
+        restitution=np.asarray(p["bounce"]),
+        stiffness=np.asarray(kp * at.points / at.mass),
+        damping=np.asarray(kd * at.points / at.mass),
+        threshold=p["bounce_vel"],
+    )
+
+
+_GAZEBO = _forces(("kp", "kd"))
+
+
+def _write_gazebo(law: Law, at: Setting) -> dict[str, Any]:
+    return _GAZEBO["write"](law, at) | {"max_vel": 1000.0}
+
+
+def _read_gazebo(p: Parameters, at: Setting) -> Law:
+    linear = _GAZEBO["read"](p, at)
+    return ContactJoint(
+        restitution=np.asarray(p["restitution_coefficient"]),
+        stiffness=linear.stiffness,
+        damping=linear.damping,
+        threshold=p["threshold"],
+        fastest=p["max_vel"],
+    )
+
+
+_PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
+
+
+def _read_physx(p: Parameters, at: Setting) -> Law:
+    if p["compliantContactStiffness"] > 0:
+        return _PHYSX["read"](p, at)
+    return FoundAhead(np.asarray(p["restitution"]), threshold=p["bounceThresholdVelocity"])
 
 
 def _adams_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
@@ -516,7 +571,7 @@ _ALL = {
                 "A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
                 "r is wrong (0.598 to 0.618 for 0.500)",
             ),
-            impulse="restitution of both bodies, multiplied",
+            number="restitution",
         ),
         Engine(
             name="drake",
@@ -653,18 +708,32 @@ _ALL = {
             rules={"timeconst": MEAN, "dampratio": MEAN},
             notes=("The numbers hold for every mass", _BOTH),
         ),
-        Engine(
+        PhysX(
             name="physx",
             scheme=Implicit(ahead=True),
-            **_forces(("compliantContactStiffness", "compliantContactDamping")),
+            **_PHYSX | {"read": _read_physx},
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
-            rules={"compliantContactStiffness": MEAN, "compliantContactDamping": MEAN},
+            rules={
+                "compliantContactStiffness": MEAN,
+                "compliantContactDamping": MEAN,
+                "restitution": MEAN,
+                "restitutionCombineMode": PAIR,
+                "bounceThresholdVelocity": PAIR,
+            },
+            defaults={
+                "compliantContactStiffness": 0.0,
+                "compliantContactDamping": 0.0,
+                "restitution": 0.0,
+                "restitutionCombineMode": "average",
+                "bounceThresholdVelocity": 0.5,
+            },
             notes=(
                 f"Use the solver PGS; {_STEP_ONLY}",
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
-            impulse="restitution of the material",
+            number="restitution",
+            caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
             name="mercurydpm",
@@ -683,23 +752,36 @@ _ALL = {
             read=_read_ode,
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             ran="ODE 0.16.2",
-            rules={"soft_cfm": PAIR, "soft_erp": PAIR},
+            rules=dict.fromkeys(("soft_cfm", "soft_erp", "bounce", "bounce_vel"), PAIR),
+            defaults={"soft_cfm": 1e-10, "soft_erp": 0.2, "bounce": 0.0, "bounce_vel": 0.0},
             sets_pair=True,
             notes=(f"These are numbers of a contact joint; {_STEP_ONLY}",),
-            impulse="bounce of the contact joint",
+            number="bounce",
         ),
         Engine(
             name="gazebo",
             scheme=Implicit(),
-            **_forces(("kp", "kd")),
+            **_GAZEBO | {"write": _write_gazebo, "read": _read_gazebo},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
-            rules={"kp": SERIES, "kd": SUM},
+            rules={
+                "kp": SERIES,
+                "kd": SUM,
+                "restitution_coefficient": LEAST,
+                "threshold": LEAST,
+                "max_vel": LEAST,
+            },
+            defaults={
+                "kp": 1e12,
+                "kd": 1.0,
+                "restitution_coefficient": 0.0,
+                "threshold": 1e5,
+                "max_vel": 0.01,
+            },
             notes=(
                 f"{_BOTH}; {_STEP_ONLY}",
                 "The snippet lifts max_vel, which limits the correction",
             ),
-            impulse="restitution_coefficient of the surface",
-            caution="max_vel is taken as lifted: Gazebo's default caps the rebound at 0.01 m/s",
+            number="restitution_coefficient",
         ),
         Engine(
             name="chrono",

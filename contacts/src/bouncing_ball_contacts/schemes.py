@@ -20,7 +20,7 @@ offsets for one step, and not for a step beside it.
 """
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -263,36 +263,93 @@ class Impedance(_Explicit):
 
 
 @dataclass(frozen=True)
-class Impulse(_Explicit):
-    """An impact without a duration, whose restitution coefficient is a number, as Bullet has it.
+class Solved(_Explicit):
+    """A contact that a solver of velocities gives: v⁺ = (u + D C)/(1 + D), if this is above u.
 
-    A step from the height z below `ahead` that would have the velocity u has at least
-    e (-u)₊ - E (z + s)/h, where e is the restitution if -u exceeds the `threshold`, s the `slop`,
-    and E the share `erp` of the penetration that a step takes back, or 1 above the surface.
+    u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
+    tells how strongly the spring and the damper hold it there; without them D is infinite. The
+    restitution coefficient e counts at speeds above the `threshold`.
     """
 
     restitution: Array
-    erp: float = 0.0
+    stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
+    damping: Array = field(default_factory=lambda: np.asarray(0.0))
     threshold: float = 0.0
-    slop: float = 0.0
-    ahead: float = 0.0
-
-    @property
-    def stiffness(self) -> Array:
-        return np.full(np.shape(self.restitution), np.inf)
-
-    @property
-    def damping(self) -> Array:
-        return np.zeros(np.shape(self.restitution))
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         raise NotImplementedError("an impulse is no force")
 
+    @property
+    def is_number(self) -> bool:
+        """Whether there is a restitution coefficient, or no spring."""
+        return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
+
     def rest(self, gravity: float) -> Array:
-        return np.full(np.shape(self.restitution), self.slop)
+        return gravity / np.broadcast_to(self.stiffness, np.shape(self.restitution))
 
     def duration(self, speed: float) -> Array:
-        return np.zeros(np.shape(self.restitution))
+        k = np.broadcast_to(self.stiffness, np.shape(self.restitution))
+        return np.pi / np.sqrt(k) + 2 * self.damping / k
+
+    def thrown(self, u: Array) -> Array:
+        """Return the speed of the rebound from the velocity u."""
+        return np.where(u < -self.threshold, -self.restitution * u, 0.0)
+
+    def held(self, u: Array, aim: Array, h: Array) -> Array:
+        """Return v⁺ of an aim C."""
+        return aim + (u - aim) / (1 + h * (h * self.stiffness + self.damping))
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        """Return v⁺ at the height z, if the velocity was v before the step."""
+        return np.where(z < 0, self.held(u, self.thrown(u), h), u)
+
+
+@dataclass(frozen=True)
+class Bullet(Solved):
+    """Bullet's contact, found below the height `ahead`: C = e (-u)₊ - E (z + s)/h.
+
+    s is the `slop`; E is 1 above the surface, and the share of the penetration that a step takes
+    back below it: h k/(h k + c), or `erp` without a spring.
+    """
+
+    erp: float = 0.0
+    slop: float = 0.0
+    ahead: float = 0.0
+
+    def rest(self, gravity: float) -> Array:
+        return super().rest(gravity) + self.slop
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        gap = z + self.slop
+        share = np.asarray(self.erp)
+        if np.all(np.isfinite(self.stiffness)):
+            share = h * self.stiffness / (h * self.stiffness + self.damping)
+        aim = self.thrown(u) - np.where(gap > 0, 1.0, share) * gap / h
+        return np.where((z < 0) | (z < self.ahead), self.held(u, aim, h), u)
+
+
+@dataclass(frozen=True)
+class ContactJoint(Solved):
+    """ODE's contact joint: C is the larger one of e (-v)₊ and h k p/(h k + c)/h, at most `fastest`.
+
+    The rebound is from the velocity before the step.
+    """
+
+    fastest: float = math.inf
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        out = np.minimum(-self.stiffness * z / (h * self.stiffness + self.damping), self.fastest)
+        return np.where(z < 0, self.held(u, np.maximum(self.thrown(v), out), h), u)
+
+
+@dataclass(frozen=True)
+class FoundAhead(Solved):
+    """PhysX's restitution, in the step that would end below the surface: C = e (-u)₊ or -z/h."""
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        thrown = self.thrown(u)
+        aim = np.where(thrown > 0, thrown, np.minimum(-z / h, 0.0))
+        return np.where(z + h * u < 0, self.held(u, aim, h), u)
 
 
 class Scheme(Protocol):
@@ -346,14 +403,11 @@ class Implicit:
 
 
 @dataclass(frozen=True)
-class Impulsive:
-    """A body is thrown back by its restitution coefficient, see :class:`Impulse`."""
+class OfSolver:
+    """The velocity is that of a solver, and a contact never pulls, see :class:`Solved`."""
 
     def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        thrown = np.where(free < -law.threshold, -law.restitution * free, 0.0)
-        gap = z + law.slop
-        pushed = thrown - np.where(gap > 0, 1.0, law.erp) * gap / h
-        return np.where((z < 0) | (z < law.ahead), np.maximum(free, pushed), free)
+        return np.maximum(free, law.velocity(z, v, free, h))
 
 
 @dataclass(frozen=True)
@@ -379,7 +433,7 @@ class Drops:
 
 def _beside(law: Law, trials: Trials) -> Law:
     """Return the law with one more axis at the end of its arrays, for the trials."""
-    values = {field.name: getattr(law, field.name) for field in fields(law)}  # type: ignore[arg-type]
+    values = {each.name: getattr(law, each.name) for each in fields(law)}  # type: ignore[arg-type]
     arrays = {
         name: value[..., None] for name, value in values.items() if isinstance(value, np.ndarray)
     }

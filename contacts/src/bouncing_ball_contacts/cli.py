@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from bouncing_ball_contacts.designs import Bounce, Design, aligned, design
+from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, design
 from bouncing_ball_contacts.engines import ENGINES
 from bouncing_ball_contacts.units import Refused
 
@@ -43,7 +43,7 @@ _CONTACT = [
     click.option("--stiffness", help="Of the contact, in place of the penetration."),
     click.option("--contact-time", help="Of a contact without damping, in place of these."),
     click.option("--friction", help="Coefficient of friction, for a word of warning."),
-    click.option("--tolerance", default="0.02", help="Largest deviation of r; 0.02."),
+    click.option("--tolerance", help="Largest deviation of r; 0.02 if not given."),
     click.option("--pick", help="Row that is written, such as 'what you want' or impulse."),
     click.option("--script", type=click.Path(dir_okay=False), help="File for a script to run."),
 ]
@@ -133,6 +133,7 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
 @_options(*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON)
 def design_command(script: str | None, as_json: bool, **options: Any) -> None:
     """Write the contact of an engine for the bounce that you want."""
+    options["tolerance"] = options["tolerance"] or TOLERANCE
     names = ("engine", "time_step", "tolerance", "one_body", "pick")
     found = design(Bounce(**_given(options)), **{name: options[name] for name in names})
     _write_script(found, script)
@@ -198,7 +199,7 @@ def fit_command(
     intervals: bool,
     engine: str | None,
     time_step: str | None,
-    tolerance: str,
+    tolerance: str | None,
     pick: str | None,
     script: str | None,
     as_json: bool,
@@ -217,14 +218,15 @@ def fit_command(
         click.echo("\n".join([*found.intervals, ""]))
     contact = {name: options[name] for name in ("penetration", "stiffness", "friction")}
     if engine is None:
-        of_engine = contact | {"time_step": time_step, "pick": pick, "script": script}
+        design_only = {"time_step": time_step, "tolerance": tolerance, "pick": pick}
+        of_engine = contact | design_only | {"script": script}
         if needless := [name for name, value in of_engine.items() if value is not None]:
             option = needless[0].replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
         _print(found, as_json)
         return
     bounce = found.bounce(**contact)
-    written = design(bounce, engine, time_step, tolerance=tolerance, pick=pick)
+    written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
     _write_script(written, script)
     _print(found, as_json)
     if not as_json:

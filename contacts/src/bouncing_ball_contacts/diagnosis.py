@@ -212,7 +212,7 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
         if str(value).lower() not in MODES:
             raise Refused(f"{name} = {value} is none of {', '.join(MODES)}")
         return str(value).lower()
-    number = in_si(name, value, "")
+    number = in_si(name, value, engine.units.get(name, ""))
     is_default = number == engine.defaults.get(name)
     if number < 0 and not is_default:
         raise Refused(f"{name} = {number:g} is negative")

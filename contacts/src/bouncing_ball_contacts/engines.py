@@ -96,6 +96,8 @@ class Engine:
         The parameters in terms of k, c and m, both bodies alike.
     of_depth : callable
         The law of an undamped depth, a ratio of damping and a speed, see :class:`.Linear`.
+    units : mapping
+        The SI units of the parameters that have one.
     defaults : mapping
         The parameters of a body for which none are set.
     sets_pair : bool
@@ -126,6 +128,7 @@ class Engine:
     meaning: str
     rules: Mapping[str, Rule]
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
+    units: Mapping[str, str] = field(default_factory=dict)
     defaults: Parameters = field(default_factory=dict)
     sets_pair: bool = False
     points_share: bool = True
@@ -233,7 +236,7 @@ def filled(text: str, values: Mapping[str, Any]) -> str:
 
 
 def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
-    """Return `names`, `write` and `read` of a stiffness in N/m and a damping in N s/m or 1/s."""
+    """Return `names`, `units`, `write` and `read` of a stiffness and a damping, both as forces."""
 
     def write(law: Law, at: Setting) -> dict[str, Any]:
         c = float(law.damping) * (1 if per_mass else at.mass)
@@ -243,7 +246,8 @@ def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
         c = p[names[1]] * at.points / (1 if per_mass else at.mass)
         return Linear(np.asarray(p[names[0]] * at.points / at.mass), np.asarray(c))
 
-    return {"names": names, "write": write, "read": read}
+    units = dict(zip(names, ("N/m", "1/s" if per_mass else "N s/m"), strict=True))
+    return {"names": names, "units": units, "write": write, "read": read}
 
 
 def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
@@ -366,6 +370,12 @@ _BULLET_DEFAULTS = {
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
 }
+_BULLET_UNITS = _BULLET["units"] | {
+    "linearDamping": "1/s",
+    "restitutionVelocityThreshold": "m/s",
+    "contactSlop": "m",
+    "contactProcessingThreshold": "m",
+}
 UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
 """What PyBullet needs beside a restitution for bounces that are alike at all instants."""
 
@@ -474,6 +484,9 @@ def _read_ode(p: Parameters, at: Setting) -> Law:
 _GAZEBO = _forces(("kp", "kd"))
 
 
+_GAZEBO_UNITS = _GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"}
+
+
 def _write_gazebo(law: Law, at: Setting) -> dict[str, Any]:
     return _GAZEBO["write"](law, at) | {"max_vel": 1000.0}
 
@@ -490,6 +503,9 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
 
 
 _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
+
+
+_PHYSX_SPEED = {"bounceThresholdVelocity": "m/s"}
 
 
 def _read_physx(p: Parameters, at: Setting) -> Law:
@@ -510,7 +526,7 @@ def _simscape_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
 
 
 def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -> dict[str, Any]:
-    """Return `names`, `write` and `read` of a damper that is stepped in over a depth in m."""
+    """Return `names`, `units`, `write` and `read` of a damper that is stepped in over a depth."""
 
     def write(law: Any, at: Setting) -> dict[str, Any]:
         numbers = (law.stiffness * at.mass, law.damping * at.mass, law.depth * at.points)
@@ -520,7 +536,9 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
         k, c = (np.asarray(p[name] * at.points / at.mass) for name in names[:2])
         return Stepped(k, c, np.asarray(p[names[2]]), exponent, steps_spring)
 
-    return {"names": names[:2], "write": write, "read": read}
+    spring = "N/m" if exponent == 1 else f"N/m^{exponent}"
+    units = dict(zip(names, (spring, "N s/m", "m"), strict=True))
+    return {"names": names[:2], "units": units, "write": write, "read": read}
 
 
 _BOTH = "Give both bodies these numbers"
@@ -556,7 +574,7 @@ _ALL = {
         Engine(
             name="pybullet",
             scheme=Implicit(),
-            **_BULLET | {"write": _write_pybullet, "read": _read_pybullet},
+            **_BULLET | {"write": _write_pybullet, "read": _read_pybullet, "units": _BULLET_UNITS},
             meaning="contactStiffness = 2 k, contactDamping = c/2",
             rules={
                 "contactStiffness": _if_set(SERIES, 1e18),
@@ -580,6 +598,7 @@ _ALL = {
             write=_write_drake,
             read=_read_drake,
             meaning="point_contact_stiffness = 2 k, relaxation_time = c/(2 k)",
+            units={"point_contact_stiffness": "N/m", "relaxation_time": "s"},
             rules={"point_contact_stiffness": SERIES, "relaxation_time": SUM},
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             points_share=False,
@@ -593,6 +612,7 @@ _ALL = {
             write=_write_dissipation,
             read=_read_dissipation,
             meaning="point_contact_stiffness = 2 k, hunt_crossley_dissipation = d in k p (1 + d w)",
+            units={"point_contact_stiffness": "N/m", "hunt_crossley_dissipation": "s/m"},
             rules={"point_contact_stiffness": SERIES, "hunt_crossley_dissipation": MEAN},
             of_depth=HuntCrossley.of_depth,
             points_share=False,
@@ -631,6 +651,7 @@ _ALL = {
             write=_write_hertz,
             read=_read_hertz,
             meaning="kn = (4/3) E* in Pa, e = r",
+            units={"kn": "Pa"},
             rules={"kn": PAIR, "e": PAIR},
             of_depth=Hertz.of_depth,
             sets_pair=True,
@@ -669,6 +690,7 @@ _ALL = {
             read=_read_liggghts_hertz,
             meaning="youngsModulus = E of both, ν = 0.3, coefficientRestitution = r",
             ran="LIGGGHTS 3.8.0",
+            units={"youngsModulus": "Pa"},
             rules={"youngsModulus": PAIR, "coefficientRestitution": PAIR},
             of_depth=Hertz.of_depth,
             sets_pair=True,
@@ -693,6 +715,7 @@ _ALL = {
             write=_write_newton_mujoco,
             read=_read_newton_mujoco,
             meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
+            units={"ke": "1/s^2", "kd": "1/s"},
             rules={"ke": MEAN, "kd": MEAN},
             ran="Newton 1.8.0",
             notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
@@ -705,13 +728,14 @@ _ALL = {
             read=_read_genesis,
             meaning="timeconst = 2 m/c, dampratio = c/√(4 k m)",
             ran="Genesis 1.4.5",
+            units={"timeconst": "s"},
             rules={"timeconst": MEAN, "dampratio": MEAN},
             notes=("The numbers hold for every mass", _BOTH),
         ),
         PhysX(
             name="physx",
             scheme=Implicit(ahead=True),
-            **_PHYSX | {"read": _read_physx},
+            **_PHYSX | {"read": _read_physx, "units": _PHYSX["units"] | _PHYSX_SPEED},
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={
@@ -752,6 +776,7 @@ _ALL = {
             read=_read_ode,
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             ran="ODE 0.16.2",
+            units={"soft_cfm": "m/N/s", "bounce_vel": "m/s"},
             rules=dict.fromkeys(("soft_cfm", "soft_erp", "bounce", "bounce_vel"), PAIR),
             defaults={"soft_cfm": 1e-10, "soft_erp": 0.2, "bounce": 0.0, "bounce_vel": 0.0},
             sets_pair=True,
@@ -761,7 +786,7 @@ _ALL = {
         Engine(
             name="gazebo",
             scheme=Implicit(),
-            **_GAZEBO | {"write": _write_gazebo, "read": _read_gazebo},
+            **_GAZEBO | {"write": _write_gazebo, "read": _read_gazebo, "units": _GAZEBO_UNITS},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             rules={
                 "kp": SERIES,

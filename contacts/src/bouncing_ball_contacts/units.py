@@ -104,7 +104,7 @@ def _read(name: str, text: str, unit: str) -> float:
     typed = found[3]
     if not typed:
         return number
-    if typed in _COMMON[unit]:
+    if typed in _COMMON.get(unit, ()):
         return number * _COMMON[unit][typed]
     registry = _registry()
     try:
@@ -122,8 +122,8 @@ def _converted(name: str, quantity: Any, unit: str, text: str) -> float:
 
 
 def _wanted(unit: str) -> str:
-    what = "it" if unit else "a plain number"
-    return f"write {what} as in '{_EXAMPLES[unit]}'"
+    what = "it" if unit else "a number without a unit"
+    return f"write {what} as in '{_EXAMPLES.get(unit, f'2 {unit}')}'"
 
 
 def positive(name: str, value: Any, unit: str) -> float:

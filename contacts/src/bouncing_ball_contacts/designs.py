@@ -322,8 +322,10 @@ class Problem:
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
-        points = self.bounce.points if self.engine.points_share else 1
-        return Setting(self.bounce.reduced_mass, step, points, self.bounce.reduced_radius)
+        bounce = self.bounce
+        points = bounce.points if self.engine.points_share else 1
+        both_free = bounce.other_mass is not None
+        return Setting(bounce.reduced_mass, step, points, bounce.reduced_radius, both_free)
 
     def law(self, depth: Array, ratio: Array) -> Law:
         """Return contacts by their undamped depths in m and ratios of damping."""

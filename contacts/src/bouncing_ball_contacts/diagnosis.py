@@ -401,13 +401,21 @@ def _reasons(
         yield f"{spring}: this is an impact by the number {number}, {rule}"
         alike = replace(problem, drag=0.0).outcome(Bullet(law.restitution), step)
         if isinstance(law, Bullet) and alike.around != outcome.around:
+            sees = f"sees the surface {show(law.ahead, 'm')} ahead and " if law.ahead > 0 else ""
             yield (
-                f"PyBullet sees the surface {show(law.ahead, 'm')} ahead and pushes the body out; "
-                f"with {_listed(UNDISTURBED)} r is {alike.around}"
+                f"PyBullet {sees}pushes the body out; with {_listed(UNDISTURBED)} r is "
+                f"{alike.around}"
             )
         elif outcome.deviation(alike.restitution[1]) > TOLERANCE / 2:
             yield f"the step and the other parameters change r: {number} alone has {alike.around}"
         return
+    if isinstance(law, Bullet) and law.ahead > 0:
+        touching = problem.outcome(replace(law, ahead=0.0), step).restitution[1]
+        if abs(outcome.restitution[1] - touching) > TOLERANCE / 2:
+            yield (
+                f"PyBullet sees the surface {show(law.ahead, 'm')} ahead: with "
+                f"contactProcessingThreshold = 0 r is {touching:.3f}"
+            )
     if isinstance(law, ContactJoint) and law.fastest < bounce.impact_speed:
         yield f"max_vel caps the rebound from a spring at {law.fastest:g} m/s; designs lift it"
     steps = float(law.duration(bounce.impact_speed)) / step

@@ -42,13 +42,14 @@ LEAST_IMPEDANCE = 1e-4
 @dataclass(frozen=True)
 class Setting:
     """Where a contact is used: the (reduced) mass in kg, the step in s, the number of points that
-    share the force, and the (reduced) radius in m.
+    share the force, the (reduced) radius in m, and whether both bodies are free.
     """
 
     mass: float
     step: float
     points: int = 1
     radius: float = 0.01
+    both_free: bool = False
 
 
 @dataclass(frozen=True)
@@ -386,8 +387,9 @@ def _write_pybullet(law: Law, at: Setting) -> dict[str, Any]:
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    # Bullet finds contacts within 2 % of half the diagonal of the box around the body.
-    seen = 0.02 * math.sqrt(3) * at.radius
+    # A ball is found within 2 % of half the diagonal of the box around it; two balls, or two boxes,
+    # when they touch.
+    seen = 0.0 if at.both_free or at.points > 1 else 0.02 * math.sqrt(3) * at.radius
     law = Bullet(
         restitution=np.asarray(p["restitution"]),
         threshold=p["restitutionVelocityThreshold"],

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
+from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Problem
 from bouncing_ball_contacts.engines import engine_named
 from bouncing_ball_contacts.schemes import exact, offsets
@@ -119,6 +119,17 @@ def test_the_impulse_is_shown_where_an_engine_has_it_or_no_spring_works():
     assert IMPULSE in design(Bounce(**BALL), "physx", "1 ms").rows
     assert IMPULSE not in design(Bounce(**BALL), "lammps", "1 ms").rows
     assert IMPULSE in design(Bounce(**BALL), "lammps", "10 ms").rows
+
+
+@pytest.mark.parametrize("name", ["pybullet", "physx", "ode", "gazebo"])
+def test_the_impulse_is_the_one_of_the_engine(name):
+    """PhysX and Gazebo had the number of PyBullet, whose product over both bodies counts."""
+    found = design(Bounce(mass=1, restitution=0.75, radius=0.05), name, "1/60")
+    row = found.rows[IMPULSE]
+    assert row.outcome.restitution[1] == pytest.approx(0.75, abs=1e-3)
+    again = diagnose(found.bounce, name, row.parameters, row.step)
+    assert again.outcome == row.outcome
+    assert f"{ENGINES[name].number} = {row.parameters[ENGINES[name].number]:g}" in str(found)
 
 
 def test_a_bounce_is_needed():

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts.engines import (
-    UNDISTURBED,
     Engine,
     Setting,
     engine_named,
@@ -24,7 +23,6 @@ from bouncing_ball_contacts.engines import (
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     Array,
-    Bullet,
     Drops,
     Law,
     Trials,
@@ -627,13 +625,21 @@ def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, A
 
 
 def _impulse(problem: Problem, step: float) -> Row:
-    """Return the restitution by number with which the mean r is the wanted one at a step in s."""
+    """Return the restitution by number with which the mean r is the wanted one at a step in s.
+
+    It is the engine's own, or PyBullet's if the engine has none.
+    """
+    engine = problem.engine if problem.engine.number else engine_named("pybullet")
+    own = replace(problem, engine=engine, one_body=False)
+    step = _rounded(step)
+    law: Any = own.law_of({**engine.undisturbed, engine.number: 0.0}, step)
     numbers = np.linspace(0.0, 1.0, 21)
-    mean = problem.drops(Bullet(numbers), step, _MEAN).mean
+    mean = own.drops(replace(law, restitution=numbers), step, _MEAN).mean
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
-    each = _rounded(math.sqrt(best))
-    found = problem.outcome(Bullet(np.asarray(each**2)), step)
-    return Row(_rounded(step), math.nan, found, {"restitution": each, **UNDISTURBED})
+    each = _rounded(engine.rules[engine.number].alike(best))
+    parameters = {engine.number: each, **engine.undisturbed}
+    found = own.outcome(own.law_of(parameters, step), step)
+    return Row(step, math.nan, found, parameters)
 
 
 def _too_long(
@@ -793,9 +799,11 @@ class Design:
         if IMPULSE in self.rows:
             how = "PyBullet's, because this engine has none"
             if row.number:
-                how = f"{row.number}, {row.rules[row.number].text}"
+                values = self.rows[IMPULSE].parameters
+                how = ", ".join(f"{name} = {value:g}" for name, value in values.items())
+                how += f" ({row.rules[row.number].text})"
             if text_of(f"{self.engine}-impulse"):
-                how = f"{how} (--pick impulse writes it)"
+                how = f"{how}; --pick impulse writes it"
             lines.append(f"The row of the impulse is a restitution by number: {how}.")
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")

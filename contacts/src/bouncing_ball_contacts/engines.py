@@ -117,6 +117,8 @@ class Engine:
         What friction does to r.
     number : str
         The parameter that is a restitution coefficient, if the engine has one.
+    undisturbed : mapping
+        What this needs beside it, for bounces that are alike at all instants and speeds.
     caution : str
         What a diagnosis takes for granted.
     """
@@ -140,6 +142,7 @@ class Engine:
     notes: tuple[str, ...] = ()
     friction: str = "friction acts along the surface only, and leaves r as it is"
     number: str = ""
+    undisturbed: Parameters = field(default_factory=dict)
     caution: str = ""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
@@ -592,6 +595,7 @@ _ALL = {
                 "r is wrong (0.598 to 0.618 for 0.500)",
             ),
             number="restitution",
+            undisturbed=UNDISTURBED,
         ),
         Engine(
             name="drake",
@@ -759,6 +763,7 @@ _ALL = {
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
             number="restitution",
+            undisturbed={"bounceThresholdVelocity": 0.0},
             caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
@@ -809,6 +814,7 @@ _ALL = {
                 "The snippet lifts max_vel, which limits the correction",
             ),
             number="restitution_coefficient",
+            undisturbed={"threshold": 0.0},
         ),
         Engine(
             name="chrono",

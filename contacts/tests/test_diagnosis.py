@@ -92,6 +92,17 @@ def test_steps_that_damp_too_much_are_named_with_the_most_and_the_impulse():
     assert " without a spring has " in reason
 
 
+@pytest.mark.parametrize("share", [0.95, 0.5, 0.01])
+def test_the_spring_of_several_points_of_mujoco_is_the_one_that_acts(share):
+    """Four points of 20 kN/m were called 80 kN/m at every impedance."""
+    solref = {"solref": "-20000 -1", "solimp": f"{share} {share} 0.001"}
+    found = asked(None, "mujoco", solref, "20 us", body={"points": 4, "speed": "5 m/s"})
+    acts = found.outcome.force[1] / found.outcome.depth[1]
+    assert found.stiffness == pytest.approx(acts, rel=0.03)
+    # A damper that is this weak has r = 1 - πζ.
+    assert found.free == pytest.approx(1 - math.pi * found.damping_ratio, abs=2e-3)
+
+
 def test_the_defaults_of_mujoco_do_not_bounce():
     found = asked(0.8, "mujoco", None, "2 ms")
     assert found.outcome.restitution[2] < 0.05

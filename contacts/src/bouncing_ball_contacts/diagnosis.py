@@ -367,13 +367,11 @@ def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     """Return k in N/m and ζ of a spring and a damper."""
     mass = problem.bounce.reduced_mass
     if isinstance(law, Impedance):
-        k = law.high**2 * law.points * float(law.stiffness)
-        c = law.high * law.points * float(law.damping)
-    elif isinstance(law, Linear) or isinstance(law, Solved) and not law.is_number:
-        k = float(law.stiffness)
-        c = float(law.damping)
-    else:
+        law = law.deep
+    if not (isinstance(law, Linear) or isinstance(law, Solved) and not law.is_number):
         return math.nan, math.nan
+    k = float(law.stiffness)
+    c = float(law.damping)
     return k * mass, c / (2 * math.sqrt(k))
 
 

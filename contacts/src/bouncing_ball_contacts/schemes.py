@@ -256,10 +256,14 @@ class Impedance(_Explicit):
             depth = 0.5 * (depth + gravity * (1 - shared) / (shared * self.stiffness * d))
         return depth
 
-    def duration(self, speed: float) -> Array:
+    @property
+    def deep(self) -> Linear:
+        """The spring and the damper of all points together below the width."""
         shared = self._shared(np.asarray(self.high))
-        k = shared * self.high * self.stiffness
-        return np.pi / np.sqrt(k) + 2 * shared * self.damping / k
+        return Linear(shared * self.high * self.stiffness, shared * self.damping)
+
+    def duration(self, speed: float) -> Array:
+        return self.deep.duration(speed)
 
 
 @dataclass(frozen=True)

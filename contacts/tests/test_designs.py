@@ -251,6 +251,22 @@ def test_one_body_may_have_the_spring_alone():
         design(Bounce(mass=1, restitution=0.5), "lammps", one_body=True)
 
 
+def test_what_holds_of_boxes_and_of_tables_is_said_of_them_alone():
+    """Chrono's gn counts the mass of a fixed floor, and two balls were told of boxes."""
+    ball = dict(mass=1, restitution=0.8, radius=0.05)
+    for name in ("pybullet", "drake", "drake-hunt-crossley"):
+        text = str(design(Bounce(**ball), name))
+        assert "box" not in text and " box " in str(design(Bounce(**ball, points=4), name))
+    floor = "counts the mass of a fixed floor"
+    assert floor in str(design(Bounce(**ball), "chrono"))
+    numbers = {"kn": 1e5, "gn": 10}
+    assert floor in str(diagnose(Bounce(**ball), "chrono", numbers, "0.1 ms"))
+    two = Bounce(**ball, other_mass=1, speed=1)
+    assert floor not in str(design(two, "chrono"))
+    assert floor not in str(diagnose(two, "chrono", numbers, "0.1 ms"))
+    assert "of gravity" not in str(diagnose(two, "mujoco", {}, "1 ms"))
+
+
 def test_friction_is_named_where_it_changes_the_bounce():
     found = design(Bounce(**BALL, friction=0.5), "mujoco")
     assert any("0.697 and 0.630 in place of 0.744" in note for note in found.notes)

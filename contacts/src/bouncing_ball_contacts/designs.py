@@ -808,6 +808,10 @@ class Design:
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
         lines += [f"{note}." for note in row.notes]
+        if row.box and self.bounce.points > 1:
+            lines.append(f"{row.box}.")
+        if row.floor and self.bounce.other_mass is None:
+            lines.append(f"{row.floor}.")
         return lines
 
     def __repr__(self) -> str:

@@ -392,6 +392,8 @@ def _reasons(
             )
     if problem.engine.caution:
         yield problem.engine.caution
+    if problem.engine.floor and bounce.other_mass is None:
+        yield problem.engine.floor
     if isinstance(law, Solved) and law.is_number:
         number = problem.engine.number
         rule = problem.engine.rules[number].text
@@ -443,7 +445,7 @@ def _of_mujoco(pair: _Pair, step: float, law: Impedance) -> Iterator[str]:
         yield (
             f"MuJoCo raises the time constant of {time:g} s to {2 * step:g} s, two steps (refsafe)"
         )
-    if law.high > 0.01:
+    if law.high > 0.01 and pair.problem.bounce.load:
         yield (
             f"with the impedance {law.high:g} a contact feels {1 - law.high:.2g} of gravity; a "
             "spring and a damper feel all of it with solimp = 1e-4 1e-4 0.001"

@@ -113,6 +113,10 @@ class Engine:
         The version in which designs of this row were run; empty if none was.
     notes : tuple of str
         What a user has to know.
+    box : str
+        What a user has to know of a body with several points.
+    floor : str
+        What a user has to know of a fixed table.
     friction : str
         What friction does to r.
     number : str
@@ -140,6 +144,8 @@ class Engine:
     unit: str = "N/m"
     ran: str = ""
     notes: tuple[str, ...] = ()
+    box: str = ""
+    floor: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
     number: str = ""
     undisturbed: Parameters = field(default_factory=dict)
@@ -589,11 +595,9 @@ _ALL = {
             },
             defaults=_BULLET_DEFAULTS,
             ran="PyBullet 3.2.7",
-            notes=(
-                f"{_BOTH}; {_STEP_ONLY}",
-                "A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
-                "r is wrong (0.598 to 0.618 for 0.500)",
-            ),
+            notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
+            "r is wrong (0.598 to 0.618 for 0.500)",
             number="restitution",
             undisturbed=UNDISTURBED,
         ),
@@ -609,7 +613,8 @@ _ALL = {
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(f"{_BOTH}; {_STEP_ONLY}", _DRAKE_BOX),
+            notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            box=_DRAKE_BOX,
         ),
         DrakeDissipation(
             name="drake-hunt-crossley",
@@ -625,8 +630,8 @@ _ALL = {
             ran="Drake 1.51.1",
             notes=(
                 f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",
-                _DRAKE_BOX,
             ),
+            box=_DRAKE_BOX,
         ),
         Engine(
             name="lammps",
@@ -823,6 +828,8 @@ _ALL = {
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
             rules={"kn": MEAN, "gn": MEAN},
             notes=("The damping gn is per unit of the effective mass, and holds for it only",),
+            floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "
+            "the floor 1000 times the mass of the body, because an equal mass halves the damping",
         ),
         Engine(
             name="simscape",

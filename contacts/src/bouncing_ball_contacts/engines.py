@@ -628,9 +628,7 @@ _ALL = {
             of_depth=HuntCrossley.of_depth,
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(
-                f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",
-            ),
+            notes=(f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",),
             box=_DRAKE_BOX,
         ),
         Engine(

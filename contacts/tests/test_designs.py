@@ -274,6 +274,26 @@ def test_friction_is_named_where_it_changes_the_bounce():
     assert not design(Bounce(**BALL), "mujoco").notes
 
 
+def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing():
+    """A friction of 0.5 was given, and CoulombFriction(0, 0) was written without a word."""
+    wanted = Bounce(**BALL, friction=0.5)
+    assert "CoulombFriction(0.5, 0.5)" in design(wanted, "drake").snippet
+    for name in ENGINES:
+        found = design(wanted, name)
+        written = re.search(r"[fF]riction.*0\.5|mu = 0\.5", found.snippet)
+        assert bool(written) != ("of 0.5 is not in what is pasted" in repr(found)), name
+        assert "not in what" not in repr(design(Bounce(**BALL), name))
+
+
+@pytest.mark.parametrize("more", [{"stiffness": "10 N/m"}, {"contact_time": "1 s"}])
+def test_a_contact_deeper_than_the_radius_is_said_so(more):
+    """2.49 m of a ball of 31 mm went without a warning."""
+    found = design(Bounce(mass=1, restitution=0.6, **more), "mujoco", "10 ms")
+    assert found.row.outcome.depth[1] > found.bounce.size
+    assert "it sinks deeper than its radius of 31.2 mm" in repr(found)
+    assert "deeper than" not in repr(design(Bounce(**BALL), "mujoco", "1 ms"))
+
+
 def test_a_row_that_was_never_run_says_so():
     for name, row in ENGINES.items():
         text = str(design(Bounce(**BALL), name))

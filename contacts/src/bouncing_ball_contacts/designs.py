@@ -701,6 +701,8 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
         found.append(
             f"{problem.engine.name} loses a body that sinks more than its {bounce.size_name}"
         )
+    elif sinks > bounce.size and (bounce.stiffness or bounce.contact_time):
+        found.append(f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}")
     if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:
         found.append(
             f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
@@ -713,6 +715,8 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
             found.append(f"from a tenth of the height r is {slower.around}")
     if bounce.friction:
         found.append(problem.engine.friction)
+        if "@friction@" not in text_of(problem.engine.name):
+            found.append(f"a friction of {bounce.friction:g} is not in what is pasted")
     return found
 
 
@@ -752,6 +756,7 @@ class Design:
         values = {
             "step": self.row.step,
             "mass": show(self.bounce.mass, "kg", 4),
+            "friction": self.bounce.friction or 0,
             "bodies": "one of both bodies" if self.one_body else "both bodies alike",
             "names": "(one,)" if self.one_body else "(one, other)",
         }

@@ -120,7 +120,12 @@ MISTAKES = {
     f"{BALL} --time-step 1ms --pick impulse --engine drake": "no impulse is written for drake",
     "design --mass 1 --restitution 0.5 --radius 0.05 --time-step 1ms --engine pybullet --one-body "
     "--pick impulse": "has none alone",
-    f"{BALL} --gravity 0": "not positive",
+    f"{BALL} --gravity 0": "give the speed, --speed '2 m/s'",
+    f"{BALL} --gravity -1": "negative",
+    f"{BALL} --gravity 0 --speed 2 --engine mujoco --script drop.py": "it needs gravity",
+    f"{BALL} --time-step 240": "or '240 Hz' for a rate",
+    "diagnose --engine mujoco --mass 1 --time-step 2s": "time step = 2 s is longer than 100 ms",
+    f"{BALL} --time-step 0Hz": "not positive",
     f"{BALL} --friction slippery": "does not begin",
     f"{BALL} --one-body --engine mujoco": "averages solimp",
     f"{BALL} --one-body --engine lammps": "no contact that one body alone sets",
@@ -154,7 +159,7 @@ MISTAKES = {
     "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
     "drake-hunt-crossley has it",
     "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",
-    LAMMPS: "kn is missing",
+    LAMMPS: "kn is missing: give kn and gamma_n; lammps has no defaults",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
     f"{LAMMPS} kn=-1 gamma_n=1": "negative",

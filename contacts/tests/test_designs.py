@@ -294,6 +294,22 @@ def test_a_contact_deeper_than_the_radius_is_said_so(more):
     assert "deeper than" not in repr(design(Bounce(**BALL), "mujoco", "1 ms"))
 
 
+def test_a_step_may_be_given_as_a_rate():
+    rate, step = (design(Bounce(**BALL), "drake", each) for each in ("240 Hz", "1/240"))
+    assert rate.row == step.row and "time step 4.167 ms" in str(rate)
+
+
+def test_an_impact_may_be_without_gravity():
+    """Gravity 0 was refused, also with a speed."""
+    ball = dict(mass=1, restitution=0.8, radius=0.05, speed=2)
+    wall = design(Bounce(**ball, gravity=0), "mujoco", "1 ms")
+    # As of two free bodies, if one is so heavy that it does not move.
+    heavy = design(Bounce(**ball, other_mass=1e9), "mujoco", "1 ms")
+    assert wall.row.outcome.force == pytest.approx(heavy.row.outcome.force, rel=1e-6)
+    assert wall.row.outcome.restitution == pytest.approx(heavy.row.outcome.restitution)
+    assert wall.table[1][4] == "–" and "gravity 0 m/s^2" in str(wall)
+
+
 def test_a_row_that_was_never_run_says_so():
     for name, row in ENGINES.items():
         text = str(design(Bounce(**BALL), name))

@@ -110,6 +110,21 @@ def test_the_defaults_of_mujoco_do_not_bounce():
     assert any("without oscillation" in reason for reason in found.reasons)
 
 
+def test_vectors_are_read_as_they_are_copied():
+    """The printed form, solref = "-20000 -20", was refused in its quotes, as were brackets."""
+    plain, *others = (
+        asked(None, "mujoco", {"solref": text}, "2 ms")
+        for text in ("-20000 -20", '"-20000 -20"', "[-20000, -20]", "(-20000, -20)")
+    )
+    assert all(other.outcome == plain.outcome for other in others)
+
+
+def test_the_defaults_of_newton_are_critical_damping_in_its_mujoco_solver():
+    found = diagnose(Bounce(mass="2 kg"), "newton-mujoco", None, "1 ms")
+    assert found.damping_ratio == pytest.approx(1)
+    assert "the defaults ke = 2500, kd = 100" in str(found)
+
+
 def test_a_time_constant_is_raised_to_two_steps():
     """It was sent to check its units, where MuJoCo takes 0.004 s."""
     found = asked(0.8, "mujoco", {"solref": "1e-7 1"}, "2 ms")

@@ -36,18 +36,18 @@ _BODY = [
     click.option("--density", help="In place of the radius; also steel, rubber, wood, …"),
     click.option("--points", type=int, default=1, help="Contact points: 4 for the face of a box."),
     click.option("--other-mass", help="Mass of a second free body; needs the speed of approach."),
-    click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given."),
+    click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given; 0 with a speed."),
 ]
 _CONTACT = [
     click.option("--penetration", help="Depth that must not be exceeded."),
     click.option("--stiffness", help="Of the contact, in place of the penetration."),
     click.option("--contact-time", help="Of a contact without damping, in place of these."),
-    click.option("--friction", help="Coefficient of friction, for a word of warning."),
+    click.option("--friction", help="Coefficient of friction; r is computed without."),
     click.option("--tolerance", help="Largest deviation of r; 0.02 if not given."),
     click.option("--pick", help="Row that is written, such as 'what you want' or impulse."),
     click.option("--script", type=click.Path(dir_okay=False), help="File for a script to run."),
 ]
-_STEP = click.option("--time-step", help="Of the engine, such as '2 ms' or 1/240.")
+_STEP = click.option("--time-step", help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 _ENGINE = click.option("--engine", default="generic", help="One of those of 'bounce engines'.")
 _ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps its defaults.")
 _JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
@@ -160,7 +160,7 @@ def diagnose_command(
 ) -> None:
     """Say what bounce the numbers of an engine give, why, and the least change for yours.
 
-    Without numbers they are the engine's defaults.
+    Without numbers they are the engine's defaults, if it has some.
     """
     from bouncing_ball_contacts.diagnosis import diagnose
 

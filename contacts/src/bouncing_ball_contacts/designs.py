@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball_contacts import units
 from bouncing_ball_contacts.engines import (
     Engine,
     Setting,
@@ -103,8 +104,9 @@ class Bounce:
     other_mass : Quantity, optional
         Of a second free body, in an impact without gravity.
     friction : Quantity, optional
-        The coefficient of friction, for a word of warning only.
+        The coefficient of friction, for the snippet and a word of warning; r is computed without.
     gravity : Quantity
+        0 for an impact without gravity, as on a vertical wall; it needs the speed.
 
     Raises
     ------
@@ -130,7 +132,7 @@ class Bounce:
     def __post_init__(self) -> None:
         if self.mass is None:
             raise Refused("the mass is missing: --mass '50 g' or mass='50 g'")
-        units = {
+        in_units = {
             "mass": "kg",
             "drop_height": "m",
             "speed": "m/s",
@@ -142,7 +144,7 @@ class Bounce:
         }
         values: dict[str, Any] = {}
         shown: dict[str, str] = {}
-        for name, unit in units.items():
+        for name, unit in in_units.items():
             given = getattr(self, name)
             if given is not None:
                 values[name] = positive(name.replace("_", " "), given, unit)
@@ -156,7 +158,13 @@ class Bounce:
         if self.friction is not None:
             values["friction"] = in_si("friction", self.friction, "")
             shown["friction"] = f"{values['friction']:g}"
-        values["gravity"] = positive("gravity", self.gravity, "m/s^2")
+        values["gravity"] = in_si("gravity", self.gravity, "m/s^2")
+        if values["gravity"] < 0:
+            raise Refused(f"gravity = {show(values['gravity'], 'm/s^2')} is negative")
+        if values["gravity"] == 0 and self.speed is None:
+            raise Refused("without gravity nothing falls: give the speed, --speed '2 m/s'")
+        if values["gravity"] != STANDARD_GRAVITY:
+            shown["gravity"] = show(values["gravity"], "m/s^2", 4)
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._require_one("drop_height", "speed")
@@ -230,7 +238,9 @@ class Bounce:
         """The penetration in m that must not be exceeded."""
         if self.penetration is not None:
             return float(self.penetration)
-        return min(self.size / 10, self.impact_speed**2 / (10 * self.gravity))
+        if not self.load:
+            return self.size / 10
+        return min(self.size / 10, self.impact_speed**2 / (10 * self.load))
 
     @property
     def assumed_body(self) -> list[str]:
@@ -449,7 +459,7 @@ def design(
     row = engine_named(engine)
     problem = Problem(bounce, row, one_body)
     largest = within("tolerance", tolerance, 1e-4, 1)
-    step = None if time_step is None else positive("time step", time_step, "s")
+    step = None if time_step is None else units.time_step(time_step)
     if step is not None and not row.fixed_steps:
         raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
     kept = _undamped_depth(problem)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball_contacts import units
 from bouncing_ball_contacts.designs import (
     IMPULSE,
     LEAST_RESTITUTION,
@@ -36,7 +37,7 @@ from bouncing_ball_contacts.schemes import (
     Linear,
     Solved,
 )
-from bouncing_ball_contacts.units import Refused, in_si, positive, show
+from bouncing_ball_contacts.units import Refused, in_si, show
 
 # With as many steps in a contact each scheme is within 0.003 of its limit of short steps.
 _SHORT = 1000
@@ -186,7 +187,9 @@ def parameters_of(engine: Engine, given: Mapping[str, Any]) -> dict[str, Any]:
     found = {**engine.defaults, **values}
     missing = [name for name in names if name not in found]
     if missing:
-        raise Refused(f"{missing[0]} is missing: give {' and '.join(names)}")
+        raise Refused(
+            f"{missing[0]} is missing: give {' and '.join(names)}; {engine.name} has no defaults"
+        )
     if engine.name == "pybullet" and (found[names[0]] < 0) != (found[names[1]] < 0):
         raise Refused(f"PyBullet refuses {names[0]} or {names[1]} alone: give both")
     return values
@@ -225,7 +228,9 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
 
 def _numbers(name: str, value: Any) -> tuple[float, ...]:
     texts = (
-        value.replace(",", " ").split() if isinstance(value, str) else list(np.atleast_1d(value))
+        value.strip("\"'()[] ").replace(",", " ").split()
+        if isinstance(value, str)
+        else list(np.atleast_1d(value))
     )
     numbers = tuple(in_si(name, each, "") for each in texts)
     if name == "solimp":
@@ -293,7 +298,7 @@ def diagnose(
     if time_step is None:
         step = float(pair.law(1.0).duration(bounce.impact_speed)) / _SHORT
     else:
-        step = positive("time step", time_step, "s")
+        step = units.time_step(time_step)
     law = pair.law(step)
     outcome = problem.outcome(law, step)
     limit = free = outcome.restitution[1]
@@ -355,11 +360,7 @@ def _is_number(law: Law) -> bool:
 
 
 def _without_gravity(problem: Problem) -> Problem:
-    # A second free body so heavy that it does not move.
-    bounce = problem.bounce
-    alone = replace(
-        bounce, drop_height=None, speed=bounce.impact_speed, other_mass=1e9 * bounce.reduced_mass
-    )
+    alone = replace(problem.bounce.slower(1.0), gravity=0.0)
     return replace(problem, bounce=alone, drag=0.0)
 
 

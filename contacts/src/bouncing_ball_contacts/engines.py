@@ -726,6 +726,7 @@ _ALL = {
             meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
             units={"ke": "1/s^2", "kd": "1/s"},
             rules={"ke": MEAN, "kd": MEAN},
+            defaults={"ke": 2500.0, "kd": 100.0},
             ran="Newton 1.8.0",
             notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
         ),

@@ -310,6 +310,18 @@ def test_an_impact_may_be_without_gravity():
     assert wall.table[1][4] == "–" and "gravity 0 m/s^2" in str(wall)
 
 
+def test_liggghts_takes_soft_and_hard_grains_and_no_restitution_below_its_least():
+    """It ended with "youngsModulus >= 5e6 required" and "0.05 < coefficientRestitution"."""
+    soft = Bounce(mass="5 g", restitution=0.8, radius="20 mm", drop_height="10 cm")
+    hard = Bounce(mass="5 kg", restitution=0.9, radius="5 cm", penetration="0.05 mm")
+    for wanted in (soft, hard):
+        found = design(wanted, "liggghts-hertz")
+        assert not 5e6 <= found.parameters["youngsModulus"] <= 1e9
+        assert "soft_particles yes\nhard_particles yes\n" in found.snippet
+    with pytest.raises(Refused, match="no coefficientRestitution below 0.05"):
+        design(Bounce(mass=0.2, restitution=0.01, radius=0.03, drop_height=10), "liggghts-hertz")
+
+
 def test_a_row_that_was_never_run_says_so():
     for name, row in ENGINES.items():
         text = str(design(Bounce(**BALL), name))

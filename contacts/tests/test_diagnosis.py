@@ -125,6 +125,16 @@ def test_the_defaults_of_newton_are_critical_damping_in_its_mujoco_solver():
     assert "the defaults ke = 2500, kd = 100" in str(found)
 
 
+def test_a_damper_that_is_far_too_strong_stops_the_body():
+    """Exchanged, kn and gamma_n had r = 24754, with steps that were too long for it."""
+    found = asked(None, "lammps", {"kn": 50, "gamma_n": 1e5}, "10 us")
+    assert found.outcome.restitution[2] < 0.05 and found.limit < 1e-3
+    assert any("without oscillation" in reason for reason in found.reasons)
+    # A spring that takes back nearly nothing of the penetration; 0 was a traceback.
+    weak = asked(None, "ode", {"soft_erp": 1e-9, "soft_cfm": 1e-5}, "1 ms")
+    assert weak.outcome.restitution[2] < 1e-3
+
+
 def test_a_time_constant_is_raised_to_two_steps():
     """It was sent to check its units, where MuJoCo takes 0.004 s."""
     found = asked(0.8, "mujoco", {"solref": "1e-7 1"}, "2 ms")
@@ -380,6 +390,7 @@ def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
         ("lammps", {"kn": "soft", "gamma_n": 2}, "does not begin"),
         ("lammps-hertz", {"kn": 1e5, "e": 2}, "not between 0 and 1"),
         ("ode", {"bounce": 2}, "not between 0 and 1"),
+        ("ode", {"soft_erp": 0}, "soft_erp = 0 is not computed: give a small number"),
         ("physx", {"restitutionCombineMode": "mean"}, "none of average, min, multiply, max"),
         ("pybullet", {"contactStiffness": -2}, "negative"),
         ("nothing", {}, "not known"),

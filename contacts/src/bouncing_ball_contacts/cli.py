@@ -147,6 +147,8 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
             raise Refused(f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5")
+        if name.strip() in found:
+            raise Refused(f"{name.strip()} is given twice")
         found[name.strip()] = value.strip()
     return found
 

@@ -219,6 +219,8 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
     is_default = number == engine.defaults.get(name)
     if number < 0 and not is_default:
         raise Refused(f"{name} = {number:g} is negative")
+    if name in ("soft_cfm", "soft_erp") and number == 0:
+        raise Refused(f"{name} = 0 is not computed: give a small number")
     if name == engine.names[0] and number == 0 and not is_default:
         raise Refused(f"{name} = 0 is no contact")
     if name in _SHARES and number > 1:

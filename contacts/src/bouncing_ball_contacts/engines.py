@@ -462,10 +462,10 @@ _POISSON = 0.3
 def _write_liggghts_hertz(law: Law, at: Setting) -> dict[str, Any]:
     # Two alike bodies have 1/E* = 2 (1 - ν²)/E, and k = (4/3) E* √R.
     reduced = 0.75 * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
-    return {
-        "youngsModulus": 2 * (1 - _POISSON**2) * reduced,
-        "coefficientRestitution": _tsuji_restitution(law),
-    }
+    e = _tsuji_restitution(law)
+    if e <= 0.05:
+        raise Refused(f"LIGGGHTS takes no coefficientRestitution below 0.05, as here {e:.3g}")
+    return {"youngsModulus": 2 * (1 - _POISSON**2) * reduced, "coefficientRestitution": e}
 
 
 def _read_liggghts_hertz(p: Parameters, at: Setting) -> Law:

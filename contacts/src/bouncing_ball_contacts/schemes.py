@@ -101,6 +101,14 @@ class _Explicit:
         raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
 
+def _contact_time(k: Array, c: Array) -> Array:
+    """Return π/√k + 2 c/k, or 300/c if the damper stops the body long before it comes out.
+
+    Steps of 1/3000 of it are then still short for the damper.
+    """
+    return np.minimum(np.pi / np.sqrt(k) + 2 * c / k, 300 / np.maximum(c, 1e-300))
+
+
 @dataclass(frozen=True)
 class Linear:
     """A spring and a damper: a = k p + c w, with k in 1/s² and c in 1/s; ratio ζ = c/(2√k)."""
@@ -118,7 +126,7 @@ class Linear:
         return gravity / self.stiffness
 
     def duration(self, speed: float) -> Array:
-        return np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
+        return _contact_time(self.stiffness, self.damping)
 
     @classmethod
     def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
@@ -293,7 +301,7 @@ class Solved(_Explicit):
 
     def duration(self, speed: float) -> Array:
         k = np.broadcast_to(self.stiffness, np.shape(self.restitution))
-        return np.pi / np.sqrt(k) + 2 * self.damping / k
+        return _contact_time(k, self.damping)
 
     def thrown(self, u: Array) -> Array:
         """Return the speed of the rebound from the velocity u."""

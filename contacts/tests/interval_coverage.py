@@ -257,6 +257,25 @@ KINDS = [
         VISCOELASTIC,
         partial(speeds, v=np.linspace(1, 4, 4), error=0.02, scatter=0),
     ),
+    (
+        "4 impacts heard, 0.1 ms, scatter 0.02",
+        partial(FLAT, 0.7),
+        CONSTANT,
+        partial(flights, impacts=4, error=1e-4, scatter=0.02, start=4.2),
+    ),
+    (
+        "9 impacts filmed, times rounded to 1/120 s, scatter 0.007",
+        partial(SOFT, 0.82),
+        VISCOELASTIC,
+        partial(rounded, impacts=9, digits=1 / 120, scatter=0.007),
+    ),
+    (
+        "9 impacts filmed, times rounded to 1/120 s, scatter 0.007, resolution stated",
+        partial(SOFT, 0.82),
+        VISCOELASTIC,
+        partial(rounded, impacts=9, digits=1 / 120, scatter=0.007),
+        1 / 120 / math.sqrt(12),
+    ),
 ]
 
 

@@ -287,6 +287,17 @@ def test_one_body_with_a_spring_rests_by_the_spring_of_its_points():
     assert both.outcome.rest == pytest.approx(196e-3, abs=1e-3)
 
 
+def test_parameters_may_have_units():
+    with_units = {
+        "contactStiffness": "20 kN/m",
+        "contactDamping": "10 N s/m",
+        "contactSlop": "1 mm",
+    }
+    plain = {"contactStiffness": 2e4, "contactDamping": 10, "contactSlop": 1e-3}
+    found = asked(None, "pybullet", with_units, "1 ms")
+    assert found.given == pytest.approx(plain)
+
+
 @pytest.mark.parametrize("rule", [SERIES, SUM, MEAN, PRODUCT, PAIR], ids=lambda rule: rule.text)
 def test_a_rule_and_its_inverses_agree(rule):
     assert rule.of(rule.alike(0.3), rule.alike(0.3)) == pytest.approx(0.3)

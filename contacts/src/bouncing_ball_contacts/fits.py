@@ -10,15 +10,17 @@ of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - c v, and 
 that changes at low speeds only. The slope s has a normal prior of the width 0.25, because measured
 slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
 enters the flights on both of its sides. φ is the share of the scatter between impacts in the
-variance of ln r; its size σ has a log-normal prior about 0.006, which is wide. If the errors of the
-readings are given, σ² (1 - φ) is known.
+variance of ln r, so that scatter has the size σ √φ and errors of readings σ √(1 - φ). Both sizes
+have log-normal priors with a factor of 7 either way. That of scatter is about 0.011, the middle of
+the published experiments (0.0004 to 0.04); that of errors about what instruments have, 1 ms, 2 mm
+or 0.02 m/s. If the errors of the readings are given, σ² (1 - φ) is known.
 
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
 does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
-scatter, and for weights of φ that are proportional to φ, if they do. The first one is left out if
-the impacts contradict it or if both are alike. The impacts contradict it if a test of φ = 0 rejects
-it at 5 %. Its statistic is Q(0)/σ², which has the χ² distribution, if the errors are known, and
-Q(0)/Q(1) otherwise, where Q(φ) is the sum of squares that a power of the speed leaves.
+scatter, and for all other φ, if they do. The first one is left out if the impacts contradict it or
+if both are alike. The impacts contradict it if a test of φ = 0 rejects it at 5 %. Its statistic is
+Q(0)/σ², which has the χ² distribution, if the errors are known, and Q(0)/Q(1) otherwise, where Q(φ)
+is the sum of squares that a power of the speed leaves.
 
 A law is judged by how much worse it fits than a parabola in ln v, for each φ: by the F
 distribution, of whose probabilities the largest one counts among those φ that are at least 1/20 as
@@ -47,12 +49,13 @@ from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, sh
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
-# φ for unknown and for given errors of the readings.
-_SHARES = np.array([0.0, 0.01, 0.05, 0.2, 0.5, 1.0])
-_SHARES_GIVEN = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.94, 0.985])
-# σ, with the middle and the width of the prior of ln σ.
-_SIZE = 0.006
-_SIZE_WIDTH = 2.0
+# φ: none, and evenly in ln(φ/(1 - φ)), so that sizes of scatter and errors are even in logarithms.
+_SHARES = np.concatenate([[0.0], special.expit(np.arange(-6.0, 7.0, 2.0))])
+# Usual sizes of scatter in ln r and of errors of readings, and the width of the priors of both in
+# their logarithms: a factor of 7 either way.
+_SCATTER = 0.011
+_USUAL = {"flights": 1e-3, "heights": 2e-3, "drops": 2e-3, "speeds": 0.02, "coefficients": 0.011}
+_WIDTH = 2.0
 _LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
 # What is less likely than this, compared with something else, is left out.
@@ -75,12 +78,13 @@ class Impacts:
     """Impacts of a recording.
 
     ``speed`` is in m/s; ``readings`` is M, the derivative of ln r by the readings (of times in s,
-    heights in m, speeds in m/s, or r).
+    heights in m, speeds in m/s, or r), and ``usual`` is the usual standard deviation of these.
     """
 
     speed: Array
     log_r: Array
     readings: Array
+    usual: float
 
     @property
     def restitution(self) -> Array:
@@ -145,7 +149,8 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
     speeds, logs, blocks = zip(*parts, strict=True)
-    return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
+    readings = linalg.block_diag(*blocks)
+    return Impacts(np.concatenate(speeds), np.concatenate(logs), readings, _USUAL[recording.kind])
 
 
 def without_contacts(recording: Recording, durations: Array) -> Recording:
@@ -186,20 +191,27 @@ def errors_of(impacts: Impacts, known: float | Array | None) -> Errors:
     if isinstance(known, np.ndarray):
         of_readings = np.diag((known / impacts.restitution) ** 2)
     unit = float(np.median(np.diag(of_readings)))
-    shares = _SHARES if known is None else _SHARES_GIVEN
-    share = shares[:, None, None]
+    share = _SHARES[:, None, None]
     shapes = (1 - share) * of_readings / unit + share * np.eye(n)
     # Contributions below 10⁻⁴ of σ keep the covariances regular.
     shapes = shapes + 1e-9 * np.eye(n)
+    still = np.sqrt(1 - _SHARES)[:, None]
     if known is None:
         # ln σ is known to about 1/√(2n), which the grid resolves.
         size = np.geomspace(_LEAST, _MOST, 28 + (n if n > 11 else 0))
-        sizes = np.tile(size, (len(shares), 1))
-        prior = -0.5 * (np.log(sizes / _SIZE) / _SIZE_WIDTH) ** 2
-        return Errors(shares, shapes, sizes, prior)
-    given = 1.0 if isinstance(known, np.ndarray) else known
-    sizes = given * math.sqrt(unit) / np.sqrt(1 - shares)[:, None]
-    return Errors(shares, shapes, sizes, np.zeros_like(sizes))
+        sizes = np.tile(size, (len(_SHARES), 1))
+        prior = _log_prior(sizes * still / (impacts.usual * math.sqrt(unit)))
+    else:
+        given = 1.0 if isinstance(known, np.ndarray) else known
+        sizes = given * math.sqrt(unit) / still
+        prior = np.zeros_like(sizes)
+    prior[1:] += _log_prior(sizes * np.sqrt(_SHARES)[:, None] / _SCATTER)[1:]
+    return Errors(_SHARES, shapes, sizes, prior)
+
+
+def _log_prior(size: Array) -> Array:
+    """Return the logarithm of a log-normal prior of a size over its usual one."""
+    return -0.5 * (np.log(np.maximum(size, 1e-300)) / _WIDTH) ** 2
 
 
 @dataclass(frozen=True)
@@ -303,7 +315,11 @@ def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
     squares = float(z @ np.linalg.solve(still, z))
     if is_known:
         return float(special.chdtrc(len(z), squares / curves.errors.sizes[0, 0] ** 2))
-    factors = 1 - squares / float(z @ z) * np.linalg.eigvalsh(still)
+    scattered = float(z @ z)
+    if scattered < 1e-20:
+        # A power of the speed but for rounding errors.
+        return 1.0
+    factors = 1 - squares / scattered * np.linalg.eigvalsh(still)
     if np.abs(factors).max() < 1e-6:
         # Errors of readings are like scatter.
         return 1.0
@@ -321,7 +337,7 @@ def estimates(impacts: Impacts, curves: Curves, is_known: bool) -> tuple[Estimat
     """
     y = impacts.log_r
     shares = curves.errors.shares
-    scattering = _estimate(curves, y, shares)
+    scattering = _estimate(curves, y, np.where(shares > 0, 1.0, 0.0))
     if without_scatter(impacts, curves, is_known) < _UNLIKELY:
         return scattering, None
     still = _estimate(curves, y, np.where(shares == 0, 1.0, 0.0))
@@ -451,8 +467,7 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
     x = np.log(v) - np.mean(np.log(v))
     powers = np.column_stack([np.ones_like(x), x, x**2])
     posterior, _, _ = curves.posterior(y - np.mean(y))
-    # A law is judged with all sizes of errors alike.
-    likelihood = posterior.sum(axis=1) * np.exp(-curves.errors.size_prior)
+    likelihood = posterior.sum(axis=1)
     share, size = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
     shapes = curves.errors.shapes
     sizes = curves.errors.sizes
@@ -461,8 +476,9 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
     further = shape.shape[1] - 1
     likely = shapes[share] * sizes[share, size] ** 2
     root = np.linalg.cholesky(likely)
-    of_share = likelihood.sum(axis=1)
-    smooth = _rest(shapes, shape, y)
+    of_share = np.where(curves.errors.shares > 0, likelihood.sum(axis=1), 0.0)
+    # An r without any deviation leaves rounding errors.
+    smooth = np.maximum(_rest(shapes, shape, y), 1e-20)
     left = n - shape.shape[1]
     judged = []
     for name, law in LAWS.items():

@@ -503,8 +503,11 @@ def _another(pair: _Pair, step: float) -> str:
 def _least_change(pair: _Pair, step: float) -> Change | None:
     """Return the damping with the wanted r, at this step or at the longest shorter one."""
     problem = pair.problem
-    if _is_number(pair.law(step)):
+    law = pair.law(step)
+    if _is_number(law):
         return _damping(pair, step, problem.engine.number)
+    if isinstance(law, ContactJoint) and law.fastest < problem.bounce.impact_speed:
+        return None
     for halvings in range(7):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:

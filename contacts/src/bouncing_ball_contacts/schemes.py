@@ -502,9 +502,12 @@ def drop(
     peak = np.zeros(z.shape)
     found = np.zeros(z.shape)
     inside = np.ones(z.shape, bool)
+    fall = h * g
     # A contact that is stable has ended, or has come to rest, within a few contact times.
     for _ in range(200 + int(np.max(12 * duration / h))):
-        free = v - h * (g + drag * v * (1 + np.abs(v)))
+        free = v - fall
+        if drag:
+            free = free - h * drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
         peak = np.maximum(peak, np.where(inside, new - free, 0.0))
         rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)

@@ -12,7 +12,6 @@ from bouncing_ball_contacts.fits import (
     LAWS,
     ContactLaw,
     curves_of,
-    errors_of,
     impacts_of,
     without_scatter,
 )
@@ -101,8 +100,8 @@ def test_recordings_without_scatter_are_rejected_as_one_in_twenty(known):
     found = []
     for _ in range(300):
         impacts = impacts_of(heard(rng, 1e-3, 0.0))
-        curves = curves_of(impacts, errors_of(impacts, known), 2.0)
-        found.append(without_scatter(impacts, curves, known is not None))
+        curves = curves_of(impacts, known, 2.0)
+        found.append(without_scatter(impacts, curves))
     assert 3 <= np.sum(np.array(found) < 0.05) <= 30
     assert 115 <= np.sum(np.array(found) < 0.5) <= 185
 
@@ -180,10 +179,10 @@ def test_errors_of_times_enter_the_flights_on_both_sides():
 
 def test_weights_are_those_of_a_distribution():
     impacts = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64, 0.5]),)))
-    curves = curves_of(impacts, errors_of(impacts, None), 3.0)
+    curves = curves_of(impacts, None, 3.0)
     weights, _, _ = curves.posterior(impacts.log_r)
     assert weights.sum() == pytest.approx(1.0)
-    assert curves.errors.shapes.shape[1:] == (3, 3)
+    assert curves.shapes.shape[1:] == (3, 3)
 
 
 def test_intervals_are_read_and_shown(tmp_path):

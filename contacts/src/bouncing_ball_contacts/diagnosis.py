@@ -304,7 +304,7 @@ def diagnose(
     law = pair.law(step)
     outcome = problem.outcome(law, step)
     limit = free = outcome.restitution[1]
-    if not _is_number(law):
+    if not law.is_number:
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
         free = float(_without_gravity(problem).drops(law, short).mean)
@@ -357,12 +357,9 @@ class _Pair:
         return float(self.problem.drops(self.law(step), step).mean)
 
 
-def _is_number(law: Law) -> bool:
-    return isinstance(law, Solved) and law.is_number
-
-
 def _without_gravity(problem: Problem) -> Problem:
-    alone = replace(problem.bounce.slower(1.0), gravity=0.0)
+    bounce = problem.bounce
+    alone = replace(bounce, drop_height=None, speed=bounce.impact_speed, gravity=0.0)
     return replace(problem, bounce=alone, drag=0.0)
 
 
@@ -371,7 +368,7 @@ def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     mass = problem.bounce.reduced_mass
     if isinstance(law, Impedance):
         law = law.deep
-    if not (isinstance(law, Linear) or isinstance(law, Solved) and not law.is_number):
+    if not isinstance(law, Linear | Solved) or law.is_number:
         return math.nan, math.nan
     k = float(law.stiffness)
     c = float(law.damping)
@@ -489,7 +486,7 @@ def _another(pair: _Pair, step: float) -> str:
     """Return what has r at this step if no damping of the given contact has it."""
     problem = pair.problem
     engine = problem.engine
-    is_number = _is_number(pair.law(step))
+    is_number = pair.law(step).is_number
     what = engine.number if is_number else "damping of this contact"
     text = f"no {what} keeps r within {TOLERANCE:g} at this step"
     if isinstance(engine.scheme, Implicit) and not is_number:
@@ -514,8 +511,11 @@ def _another(pair: _Pair, step: float) -> str:
 def _least_change(pair: _Pair, step: float) -> Change | None:
     """Return the damping with the wanted r, at this step or at the longest shorter one."""
     problem = pair.problem
-    if _is_number(pair.law(step)):
+    law = pair.law(step)
+    if law.is_number:
         return _damping(pair, step, problem.engine.number)
+    if isinstance(law, ContactJoint) and law.fastest < problem.bounce.impact_speed:
+        return None
     for halvings in range(7):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:

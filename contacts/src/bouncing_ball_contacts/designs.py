@@ -158,13 +158,14 @@ class Bounce:
             values["restitution"] = within("restitution", self.restitution, 0, 1)
             shown["restitution"] = f"{values['restitution']:g}"
         if self.friction is not None:
-            values["friction"] = in_si("friction", self.friction, "")
+            values["friction"] = within("friction", self.friction, 0, math.inf)
             shown["friction"] = f"{values['friction']:g}"
         values["gravity"] = in_si("gravity", self.gravity, "m/s^2")
-        if values["gravity"] < 0:
-            raise Refused(f"gravity = {show(values['gravity'], 'm/s^2')} is negative")
-        if values["gravity"] == 0 and self.speed is None:
-            raise Refused("without gravity nothing falls: give the speed, --speed '2 m/s'")
+        if values["gravity"] < 0 or (values["gravity"] == 0 and self.speed is None):
+            raise Refused(
+                f"gravity = {show(values['gravity'], 'm/s^2')} is not positive; without any, give "
+                "the speed, --speed '2 m/s'"
+            )
         if values["gravity"] != STANDARD_GRAVITY:
             shown["gravity"] = show(values["gravity"], "m/s^2", 4)
         for name, value in values.items():

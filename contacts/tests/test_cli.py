@@ -33,7 +33,7 @@ def test_everything_in_json(typed):
 
 def test_without_a_command_the_help_is_shown(typed):
     status, out, err = typed("")
-    assert (status, err) == (0, "") and "Examples:\n  bounce design" in out
+    assert (status, err) == (0, "") and "Examples:\n    bounce design --mass" in out
 
 
 @pytest.mark.parametrize("option", ["--help", "-h"])

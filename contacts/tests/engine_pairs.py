@@ -1,4 +1,4 @@
-"""Bodies of other materials, or with defaults, in MuJoCo, PyBullet and Drake.
+"""Bodies of other materials, with defaults or with a restitution by number, in engines.
 
 ``python tests/engine_pairs.py`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m, at 16
 instants within a step, and prints r and the depth at rest: as diagnosed, and in the engine. The
@@ -7,7 +7,9 @@ exit status is 1 if one differs.
 
 import math
 import sys
+from types import SimpleNamespace
 
+import engine_runs
 import numpy as np
 
 from bouncing_ball_contacts import Bounce, diagnose
@@ -99,6 +101,20 @@ def drake(one, other, height, step):
     return log.FindLog(simulator.get_context()).data()[6, 1:] + height
 
 
+def run_alone(run, seconds):
+    """Return the drop of a design of :mod:`engine_runs` with these parameters."""
+
+    def drop(one, other, height, step):
+        written = SimpleNamespace(parameters=one, bounce=BALL, row=SimpleNamespace(step=step))
+        steps = int(seconds / step)
+        return run(engine_runs.Trial(written, "ball", float(height), 0.0, steps, G))[0]
+
+    return drop
+
+
+ODE = run_alone(engine_runs.ode, 60.0)
+# PhysX takes 10 ms for a step.
+PHYSX = run_alone(engine_runs.physx, 1.2)
 DIRECT = {"solref": "-20000 -30", "solimp": "1e-4 1e-4 0.001"}
 AHEAD = {"contactProcessingThreshold": 0.0, "contactSlop": 0.0}
 SPRING = {"contactStiffness": 2e4, "contactDamping": 10.0, "linearDamping": 0.0, **AHEAD}
@@ -106,6 +122,8 @@ WORLD = ("contactERP", "contactSlop", "restitutionVelocityThreshold")
 SAP = {"point_contact_stiffness": 2e4, "relaxation_time": 0.002}
 LAGGED = {"point_contact_stiffness": 2e4, "hunt_crossley_dissipation": 0.1}
 SOFT = {"contactStiffness": 1e4, "contactDamping": 1.5}
+HARD = {"contactStiffness": 2e5, "contactDamping": 10.0}
+PUSHED = {**HARD, "restitution": 0.5}
 # Engine, its drop, the parameters of the ball and of the table, and the step in s; None are the
 # defaults.
 CASES = [
@@ -115,6 +133,9 @@ CASES = [
     ("pybullet", pybullet, SPRING, None, SHORT),
     ("pybullet", pybullet, SPRING, {"contactStiffness": 1e4, "contactDamping": 2.0}, SHORT),
     ("pybullet", pybullet, SOFT, SOFT, SHORT),
+    ("pybullet", pybullet, HARD, HARD, SHORT),
+    ("pybullet", pybullet, {"contactStiffness": 1e5, "contactDamping": 30.0}, None, LONG),
+    ("pybullet", pybullet, PUSHED, PUSHED, SHORT),
     *(
         ("pybullet", pybullet, both, both, LONG)
         for both in (
@@ -126,6 +147,18 @@ CASES = [
         )
     ),
     ("pybullet", pybullet, {"restitution": 0.9}, {"restitution": 0.7}, LONG),
+    *(
+        ("ode", ODE, both, both, 0.01)
+        for both in (
+            {"bounce": 0.9},
+            {"bounce": 0.9, "soft_cfm": 1e-3},
+            {"bounce": 0.6, "soft_cfm": 2e-3, "soft_erp": 0.8},
+        )
+    ),
+    *(
+        ("physx", PHYSX, both, both, LONG)
+        for both in ({"restitution": 0.5}, {"restitution": 0.9}, {"restitution": 0.0})
+    ),
     ("drake", drake, SAP, {"point_contact_stiffness": 6e4, "relaxation_time": 0.001}, SHORT),
     ("drake", drake, SAP, None, SHORT),
     (

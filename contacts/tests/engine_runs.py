@@ -17,6 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball_contacts.engines import ENGINES
+
 
 class Trial(NamedTuple):
     """A design with the shape "ball", "box" or "two"; the gap in m at the start, the speed in m/s
@@ -344,10 +346,10 @@ def ode(trial):
     group = odepy.dJointGroupCreate(0)
     contact = odepy.dContact()
     surface = contact.surface
-    surface.mode = odepy.dContactSoftERP | odepy.dContactSoftCFM
+    surface.mode = odepy.dContactSoftERP | odepy.dContactSoftCFM | odepy.dContactBounce
     surface.mu = 0
-    surface.soft_erp = trial.design.parameters["soft_erp"]
-    surface.soft_cfm = trial.design.parameters["soft_cfm"]
+    for name, value in (ENGINES["ode"].defaults | trial.design.parameters).items():
+        setattr(surface, name, value)
     size = ctypes.sizeof(odepy.dContactGeom)
     heights = []
     for _ in range(trial.steps):
@@ -377,13 +379,14 @@ def Xform "World"
         float physics:gravityMagnitude = {gravity!r}
         uniform token physxScene:solverType = "PGS"
         bool physxScene:enableGPUDynamics = 0
+        float physxScene:bounceThreshold = {bounceThresholdVelocity!r}
         uniform token physxScene:broadphaseType = "MBP"
     }}
     def Material "Material" (prepend apiSchemas = ["PhysicsMaterialAPI", "PhysxMaterialAPI"])
     {{
         float physics:dynamicFriction = 0
         float physics:staticFriction = 0
-        float physics:restitution = 0
+        float physics:restitution = {restitution!r}
         float physxMaterial:compliantContactStiffness = {compliantContactStiffness!r}
         float physxMaterial:compliantContactDamping = {compliantContactDamping!r}
     }}
@@ -441,7 +444,7 @@ def physx(trial):
         radius=r,
         start=r + trial.gap,
         mass=trial.mass,
-        **trial.design.parameters,
+        **ENGINES["physx"].defaults | trial.design.parameters,
     )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "stage.usda")

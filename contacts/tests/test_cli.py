@@ -33,7 +33,7 @@ def test_everything_in_json(typed):
 
 def test_without_a_command_the_help_is_shown(typed):
     status, out, err = typed("")
-    assert (status, err) == (0, "") and "Examples:\n  bounce design" in out
+    assert (status, err) == (0, "") and "Examples:\n    bounce design --mass" in out
 
 
 @pytest.mark.parametrize("option", ["--help", "-h"])
@@ -120,8 +120,14 @@ MISTAKES = {
     f"{BALL} --time-step 1ms --pick impulse --engine drake": "no impulse is written for drake",
     "design --mass 1 --restitution 0.5 --radius 0.05 --time-step 1ms --engine pybullet --one-body "
     "--pick impulse": "has none alone",
-    f"{BALL} --gravity 0": "not positive",
+    f"{BALL} --gravity 0": "give the speed, --speed '2 m/s'",
+    f"{BALL} --gravity -1": "not positive",
+    f"{BALL} --gravity 0 --speed 2 --engine mujoco --script drop.py": "it needs gravity",
+    f"{BALL} --time-step 240": "or '240 Hz' for a rate",
+    "diagnose --engine mujoco --mass 1 --time-step 2s": "time step = 2 s is longer than 100 ms",
+    f"{BALL} --time-step 0Hz": "not positive",
     f"{BALL} --friction slippery": "does not begin",
+    f"{BALL} --friction -0.5": "not between 0 and inf",
     f"{BALL} --one-body --engine mujoco": "averages solimp",
     f"{BALL} --one-body --engine lammps": "no contact that one body alone sets",
     f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
@@ -149,18 +155,17 @@ MISTAKES = {
     f"{MUJOCO} solreff=0.02": "did you mean solref",
     f"{MUJOCO} kn=1": "it has solref, solimp, refsafe",
     f"{PYBULLET} contactStiffness=1e4": "give both",
-    f"{PYBULLET} contactStiffness='1e4 N/m' contactDamping=1": "write a plain number as in '0.8'",
-    "diagnose --engine gazebo --mass 1 --time-step 1ms": "by restitution_coefficient of "
-    "the surface is not computed",
-    "diagnose --engine ode bounce=0.8 --mass 1 --time-step 1ms": "it has soft_cfm, soft_erp",
-    "diagnose --engine physx restitution=0.8 --mass 1 --time-step 1ms": "it has compliantContact",
+    f"{PYBULLET} contactStiffness='1e4 kg' contactDamping=1": "write it as in '100 kN/m'",
+    f"{PYBULLET} restitution='0.8 m'": "write a number without a unit as in '0.8'",
+    "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
     "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
     "drake-hunt-crossley has it",
     "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",
-    LAMMPS: "kn is missing",
+    LAMMPS: "kn is missing: give kn and gamma_n; lammps has no defaults",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
     f"{LAMMPS} kn=-1 gamma_n=1": "negative",
+    f"{LAMMPS} kn=1e4 kn=2e4 gamma_n=1": "kn is given twice",
     f"{LAMMPS} kn=1e5 gamma_n=1 --points 0": "no whole number",
     f"{LAMMPS} kn=1e5 gamma_n=1 --restitution 2": "not between 0 and 1",
     f"{MUJOCO} --one-body --other solref=1": "not both",
@@ -170,6 +175,7 @@ MISTAKES = {
     "fit croquet --speed 0": "not positive",
     "fit croquet --leave-out one": "numbers of lines",
     "fit croquet --time-step 1ms": "--time-step needs an engine",
+    "fit croquet --tolerance 0.1": "--tolerance needs an engine",
     "fit croquet --penetration 1mm": "--penetration needs an engine",
     "fit bouncy_ball --engine mujoco": "mass is missing",
     "fit croquet --resolution 1ms": "resolution",

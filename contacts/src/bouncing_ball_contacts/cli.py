@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from bouncing_ball_contacts.designs import Bounce, Design, aligned, design
+from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, design
 from bouncing_ball_contacts.engines import ENGINES
 from bouncing_ball_contacts.units import Refused
 
@@ -36,40 +36,34 @@ _BODY = [
     click.option("--density", help="In place of the radius; also steel, rubber, wood, …"),
     click.option("--points", type=int, default=1, help="Contact points: 4 for the face of a box."),
     click.option("--other-mass", help="Mass of a second free body; needs the speed of approach."),
-    click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given."),
+    click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given; 0 with a speed."),
 ]
 _CONTACT = [
     click.option("--penetration", help="Depth that must not be exceeded."),
     click.option("--stiffness", help="Of the contact, in place of the penetration."),
     click.option("--contact-time", help="Of a contact without damping, in place of these."),
-    click.option("--friction", help="Coefficient of friction, for a word of warning."),
-    click.option("--tolerance", default="0.02", help="Largest deviation of r; 0.02."),
+    click.option("--friction", help="Coefficient of friction; r is computed without."),
+    click.option("--tolerance", help="Largest deviation of r; 0.02 if not given."),
     click.option("--pick", help="Row that is written, such as 'what you want' or impulse."),
     click.option("--script", type=click.Path(dir_okay=False), help="File for a script to run."),
 ]
-_STEP = click.option("--time-step", help="Of the engine, such as '2 ms' or 1/240.")
+_STEP = click.option("--time-step", help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 _ENGINE = click.option("--engine", default="generic", help="One of those of 'bounce engines'.")
 _ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps its defaults.")
 _JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
 
 
-class _Examples(click.Group):
-    """A group whose help shows examples as they are typed."""
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        formatter.write(
-            """
+_EXAMPLES = """\b
 Examples:
   bounce design --mass "50 g" --restitution 0.8 --time-step "2 ms" --engine mujoco
   bounce diagnose --engine mujoco solref="0.02 1" --mass "50 g" --time-step "2 ms" --restitution 0.8
   bounce fit croquet --engine pybullet --time-step 1/240
   bounce engines
 """
-        )
 
 
 @click.group(
-    cls=_Examples,
+    epilog=_EXAMPLES,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -133,6 +127,7 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
 @_options(*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON)
 def design_command(script: str | None, as_json: bool, **options: Any) -> None:
     """Write the contact of an engine for the bounce that you want."""
+    options["tolerance"] = options["tolerance"] or TOLERANCE
     names = ("engine", "time_step", "tolerance", "one_body", "pick")
     found = design(Bounce(**_given(options)), **{name: options[name] for name in names})
     _write_script(found, script)
@@ -146,6 +141,8 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
             raise Refused(f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5")
+        if name.strip() in found:
+            raise Refused(f"{name.strip()} is given twice")
         found[name.strip()] = value.strip()
     return found
 
@@ -159,7 +156,7 @@ def diagnose_command(
 ) -> None:
     """Say what bounce the numbers of an engine give, why, and the least change for yours.
 
-    Without numbers they are the engine's defaults.
+    Without numbers they are the engine's defaults, if it has some.
     """
     from bouncing_ball_contacts.diagnosis import diagnose
 
@@ -198,7 +195,7 @@ def fit_command(
     intervals: bool,
     engine: str | None,
     time_step: str | None,
-    tolerance: str,
+    tolerance: str | None,
     pick: str | None,
     script: str | None,
     as_json: bool,
@@ -217,14 +214,15 @@ def fit_command(
         click.echo("\n".join([*found.intervals, ""]))
     contact = {name: options[name] for name in ("penetration", "stiffness", "friction")}
     if engine is None:
-        of_engine = contact | {"time_step": time_step, "pick": pick, "script": script}
+        design_only = {"time_step": time_step, "tolerance": tolerance, "pick": pick}
+        of_engine = contact | design_only | {"script": script}
         if needless := [name for name, value in of_engine.items() if value is not None]:
             option = needless[0].replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
         _print(found, as_json)
         return
     bounce = found.bounce(**contact)
-    written = design(bounce, engine, time_step, tolerance=tolerance, pick=pick)
+    written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
     _write_script(written, script)
     _print(found, as_json)
     if not as_json:

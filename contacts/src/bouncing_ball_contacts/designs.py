@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball_contacts import units
 from bouncing_ball_contacts.engines import (
-    UNDISTURBED,
     Engine,
     Setting,
     engine_named,
@@ -25,9 +25,9 @@ from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     Array,
     Drops,
-    Impulse,
-    Impulsive,
     Law,
+    OfSolver,
+    Solved,
     Trials,
     drop,
     exact,
@@ -106,8 +106,9 @@ class Bounce:
     other_mass : Quantity, optional
         Of a second free body, in an impact without gravity.
     friction : Quantity, optional
-        The coefficient of friction, for a word of warning only.
+        The coefficient of friction, for the snippet and a word of warning; r is computed without.
     gravity : Quantity
+        0 for an impact without gravity, as on a vertical wall; it needs the speed.
 
     Raises
     ------
@@ -133,7 +134,7 @@ class Bounce:
     def __post_init__(self) -> None:
         if self.mass is None:
             raise Refused("the mass is missing: --mass '50 g' or mass='50 g'")
-        units = {
+        in_units = {
             "mass": "kg",
             "drop_height": "m",
             "speed": "m/s",
@@ -145,7 +146,7 @@ class Bounce:
         }
         values: dict[str, Any] = {}
         shown: dict[str, str] = {}
-        for name, unit in units.items():
+        for name, unit in in_units.items():
             given = getattr(self, name)
             if given is not None:
                 values[name] = positive(name.replace("_", " "), given, unit)
@@ -157,9 +158,16 @@ class Bounce:
             values["restitution"] = within("restitution", self.restitution, 0, 1)
             shown["restitution"] = f"{values['restitution']:g}"
         if self.friction is not None:
-            values["friction"] = in_si("friction", self.friction, "")
+            values["friction"] = within("friction", self.friction, 0, math.inf)
             shown["friction"] = f"{values['friction']:g}"
-        values["gravity"] = positive("gravity", self.gravity, "m/s^2")
+        values["gravity"] = in_si("gravity", self.gravity, "m/s^2")
+        if values["gravity"] < 0 or (values["gravity"] == 0 and self.speed is None):
+            raise Refused(
+                f"gravity = {show(values['gravity'], 'm/s^2')} is not positive; without any, give "
+                "the speed, --speed '2 m/s'"
+            )
+        if values["gravity"] != STANDARD_GRAVITY:
+            shown["gravity"] = show(values["gravity"], "m/s^2", 4)
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._require_one("drop_height", "speed")
@@ -233,7 +241,9 @@ class Bounce:
         """The penetration in m that must not be exceeded."""
         if self.penetration is not None:
             return float(self.penetration)
-        return min(self.size / 10, self.impact_speed**2 / (10 * self.gravity))
+        if not self.load:
+            return self.size / 10
+        return min(self.size / 10, self.impact_speed**2 / (10 * self.load))
 
     @property
     def assumed_body(self) -> list[str]:
@@ -257,10 +267,6 @@ class Bounce:
                 by = "a fifth of the drop height"
             found.append(f"it may sink {show(self.limit, 'm')}, {by} (--penetration)")
         return found
-
-    def slower(self, share: float) -> "Bounce":
-        """Return the same bounce at a share of the impact speed."""
-        return replace(self, drop_height=None, speed=share * self.impact_speed)
 
 
 @dataclass(frozen=True)
@@ -323,8 +329,10 @@ class Problem:
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
-        points = self.bounce.points if self.engine.points_share else 1
-        return Setting(self.bounce.reduced_mass, step, points, self.bounce.reduced_radius)
+        bounce = self.bounce
+        points = bounce.points if self.engine.points_share else 1
+        both_free = bounce.other_mass is not None
+        return Setting(bounce.reduced_mass, step, points, bounce.reduced_radius, both_free)
 
     def law(self, depth: Array, ratio: Array) -> Law:
         """Return contacts by their undamped depths in m and ratios of damping."""
@@ -332,13 +340,14 @@ class Problem:
 
     def drops(self, law: Law, step: Array | float, trials: Trials = _COARSE) -> Drops:
         """Return the drops of contacts at time steps in s."""
-        scheme = self.engine.scheme_of(law)
+        scheme = OfSolver() if isinstance(law, Solved) else self.engine.scheme
         speed = self.bounce.impact_speed
         return drop(law, scheme, step, speed, self.bounce.load, trials, drag=self.drag)
 
     def outcome(self, law: Law, step: float, trials: Trials = _FINE) -> Outcome:
         """Return what one contact does at a time step in s."""
-        found = self.drops(law, step, trials)
+        # With error control it does not matter where in a step an impact begins.
+        found = self.drops(law, step, trials if self.engine.fixed_steps else _COARSE)
         mass = self.bounce.reduced_mass
         r = found.restitution
         rest = float(law.rest(self.bounce.load)) if self.bounce.load else 0.0
@@ -361,8 +370,9 @@ class Problem:
 
     def law_of(self, parameters: Mapping[str, Any], step: float) -> Law:
         """Return the contact of written parameters at a time step in s."""
-        other = self.engine.defaults if self.one_body else parameters
-        return self.engine.read(self.engine.combined(parameters, other), self.setting(step))
+        one = {**self.engine.defaults, **parameters}
+        other = self.engine.defaults if self.one_body else one
+        return self.engine.read(self.engine.combined(one, other), self.setting(step))
 
     def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
         """Return the ratios of damping with which the mean r is the target.
@@ -449,7 +459,7 @@ def design(
     row = engine_named(engine)
     problem = Problem(bounce, row, one_body)
     largest = within("tolerance", tolerance, 1e-4, 1)
-    step = None if time_step is None else positive("time step", time_step, "s")
+    step = None if time_step is None else units.time_step(time_step)
     if step is not None and not row.fixed_steps:
         raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
     kept = _undamped_depth(problem)
@@ -470,7 +480,7 @@ def design(
             keeps = keeps or (not kept and _is_good(problem, yours, largest, bounce.limit))
             if keeps or (bounce.penetration, kept) == (None, None):
                 chosen = YOURS
-        if bounce.points == 1 and (row.impulse or yours is None):
+        if bounce.points == 1 and (row.number or yours is None):
             rows[IMPULSE] = _impulse(problem, step)
     if pick is not None:
         chosen = _picked(pick, rows, problem)
@@ -625,15 +635,21 @@ def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, A
 
 
 def _impulse(problem: Problem, step: float) -> Row:
-    """Return the restitution by number with which the mean r is the wanted one at a step in s."""
+    """Return the restitution by number with which the mean r is the wanted one at a step in s.
+
+    It is the engine's own, or PyBullet's if the engine has none.
+    """
+    engine = problem.engine if problem.engine.number else engine_named("pybullet")
+    own = replace(problem, engine=engine, one_body=False)
+    step = _rounded(step)
+    law: Any = own.law_of({**engine.undisturbed, engine.number: 0.0}, step)
     numbers = np.linspace(0.0, 1.0, 21)
-    law = Impulse(numbers)
-    speed = problem.bounce.impact_speed
-    mean = drop(law, Impulsive(), step, speed, problem.bounce.load, _MEAN).mean
+    mean = own.drops(replace(law, restitution=numbers), step, _MEAN).mean
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
-    each = _rounded(math.sqrt(best))
-    found = problem.outcome(Impulse(np.asarray(each**2)), step)
-    return Row(_rounded(step), math.nan, found, {"restitution": each, **UNDISTURBED})
+    each = _rounded(engine.rules[engine.number].alike(best))
+    parameters = {engine.number: each, **engine.undisturbed}
+    found = own.outcome(own.law_of(parameters, step), step)
+    return Row(step, math.nan, found, parameters)
 
 
 def _too_long(
@@ -695,18 +711,22 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
         found.append(
             f"{problem.engine.name} loses a body that sinks more than its {bounce.size_name}"
         )
+    elif sinks > bounce.size and (bounce.stiffness or bounce.contact_time):
+        found.append(f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}")
     if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:
         found.append(
             f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
             "not computed, and change r by less than 0.001"
         )
     if bounce.load:
-        slow = bounce.slower(math.sqrt(0.1))
+        slow = replace(bounce, drop_height=None, speed=math.sqrt(0.1) * bounce.impact_speed)
         slower = replace(problem, bounce=slow).outcome(law, row.step)
         if slower.deviation(bounce.restitution) > max(tolerance, 2 * row.outcome.error):
             found.append(f"from a tenth of the height r is {slower.around}")
     if bounce.friction:
         found.append(problem.engine.friction)
+        if "@friction@" not in text_of(problem.engine.name):
+            found.append(f"a friction of {bounce.friction:g} is not in what is pasted")
     return found
 
 
@@ -746,6 +766,7 @@ class Design:
         values = {
             "step": self.row.step,
             "mass": show(self.bounce.mass, "kg", 4),
+            "friction": self.bounce.friction or 0,
             "bodies": "one of both bodies" if self.one_body else "both bodies alike",
             "names": "(one,)" if self.one_body else "(one, other)",
         }
@@ -791,13 +812,21 @@ class Design:
             reduced = show(self.bounce.reduced_mass, "kg", 4)
             lines.append(f"Two free bodies act as one of the reduced mass {reduced}.")
         if IMPULSE in self.rows:
-            how = row.impulse or "PyBullet's, because this engine has none"
+            how = "PyBullet's, because this engine has none"
+            if row.number:
+                values = self.rows[IMPULSE].parameters
+                how = ", ".join(f"{name} = {value:g}" for name, value in values.items())
+                how += f" ({row.rules[row.number].text})"
             if text_of(f"{self.engine}-impulse"):
-                how = f"{how} (--pick impulse writes it)"
+                how = f"{how}; --pick impulse writes it"
             lines.append(f"The row of the impulse is a restitution by number: {how}.")
         if not row.ran:
             lines.append(f"The row of {row.name} was never run in its engine.")
         lines += [f"{note}." for note in row.notes]
+        if row.box and self.bounce.points > 1:
+            lines.append(f"{row.box}.")
+        if row.floor and self.bounce.other_mass is None:
+            lines.append(f"{row.floor}.")
         return lines
 
     def __repr__(self) -> str:

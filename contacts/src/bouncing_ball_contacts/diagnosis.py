@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball_contacts import units
 from bouncing_ball_contacts.designs import (
     IMPULSE,
     LEAST_RESTITUTION,
@@ -19,16 +20,39 @@ from bouncing_ball_contacts.designs import (
     Quantity,
     design,
 )
-from bouncing_ball_contacts.engines import ENGINES, UNDISTURBED, Engine, engine_named, text_of
-from bouncing_ball_contacts.schemes import Impedance, Implicit, Impulse, Law, Linear
-from bouncing_ball_contacts.units import Refused, in_si, positive, show
+from bouncing_ball_contacts.engines import (
+    ENGINES,
+    MODES,
+    UNDISTURBED,
+    Engine,
+    engine_named,
+    text_of,
+)
+from bouncing_ball_contacts.schemes import (
+    Bullet,
+    ContactJoint,
+    Impedance,
+    Implicit,
+    Law,
+    Linear,
+    Solved,
+)
+from bouncing_ball_contacts.units import Refused, in_si, show
 
 # With as many steps in a contact each scheme is within 0.003 of its limit of short steps.
 _SHORT = 1000
 # Fewer steps than these are named as a reason.
 _FEW = 10
 # Parameters from 0 to 1 with which r rises.
-_SHARES = ("e", "coefficientRestitution", "restitution", "soft_erp", "contactERP")
+_SHARES = (
+    "e",
+    "coefficientRestitution",
+    "restitution",
+    "restitution_coefficient",
+    "bounce",
+    "soft_erp",
+    "contactERP",
+)
 # Parameters that are per unit of mass.
 _PER_MASS = {
     "mujoco": ("solref",),
@@ -132,7 +156,7 @@ def _typed(value: Any) -> str:
     """Return a value as it is typed on the command line."""
     if isinstance(value, tuple):
         return '"' + " ".join(f"{each:.6g}" for each in value) + '"'
-    return f"{value:.6g}"
+    return value if isinstance(value, str) else f"{value:.6g}"
 
 
 def _listed(parameters: Mapping[str, Any]) -> str:
@@ -163,7 +187,9 @@ def parameters_of(engine: Engine, given: Mapping[str, Any]) -> dict[str, Any]:
     found = {**engine.defaults, **values}
     missing = [name for name in names if name not in found]
     if missing:
-        raise Refused(f"{missing[0]} is missing: give {' and '.join(names)}{_not_computed(engine)}")
+        raise Refused(
+            f"{missing[0]} is missing: give {' and '.join(names)}; {engine.name} has no defaults"
+        )
     if engine.name == "pybullet" and (found[names[0]] < 0) != (found[names[1]] < 0):
         raise Refused(f"PyBullet refuses {names[0]} or {names[1]} alone: give both")
     return values
@@ -179,21 +205,23 @@ def _unknown(engine: Engine, typed: str, names: list[str]) -> str:
         text += f"; {' and '.join(others)} has it"
     elif near:
         text += f"; did you mean {near[0]}?"
-    return text + _not_computed(engine)
-
-
-def _not_computed(engine: Engine) -> str:
-    is_known = text_of(f"{engine.name}-impulse") or not engine.impulse
-    return "" if is_known else f"; a bounce by {engine.impulse} is not computed"
+    return text
 
 
 def _value(engine: Engine, name: str, value: Any) -> Any:
     if name in ("solref", "solimp"):
         return _numbers(name, value)
-    number = in_si(name, value, "")
-    if number < 0 and number != engine.defaults.get(name):
+    if name == "restitutionCombineMode":
+        if str(value).lower() not in MODES:
+            raise Refused(f"{name} = {value} is none of {', '.join(MODES)}")
+        return str(value).lower()
+    number = in_si(name, value, engine.units.get(name, ""))
+    is_default = number == engine.defaults.get(name)
+    if number < 0 and not is_default:
         raise Refused(f"{name} = {number:g} is negative")
-    if name == engine.names[0] and number == 0:
+    if name in ("soft_cfm", "soft_erp") and number == 0:
+        raise Refused(f"{name} = 0 is not computed: give a small number")
+    if name == engine.names[0] and number == 0 and not is_default:
         raise Refused(f"{name} = 0 is no contact")
     if name in _SHARES and number > 1:
         raise Refused(f"{name} = {number:g} is not between 0 and 1")
@@ -202,7 +230,9 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
 
 def _numbers(name: str, value: Any) -> tuple[float, ...]:
     texts = (
-        value.replace(",", " ").split() if isinstance(value, str) else list(np.atleast_1d(value))
+        value.strip("\"'()[] ").replace(",", " ").split()
+        if isinstance(value, str)
+        else list(np.atleast_1d(value))
     )
     numbers = tuple(in_si(name, each, "") for each in texts)
     if name == "solimp":
@@ -270,16 +300,14 @@ def diagnose(
     if time_step is None:
         step = float(pair.law(1.0).duration(bounce.impact_speed)) / _SHORT
     else:
-        step = positive("time step", time_step, "s")
+        step = units.time_step(time_step)
     law = pair.law(step)
     outcome = problem.outcome(law, step)
     limit = free = outcome.restitution[1]
-    unused: tuple[str, ...] = row.names
-    if not isinstance(law, Impulse):
+    if not law.is_number:
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
         free = float(_without_gravity(problem).drops(law, short).mean)
-        unused = tuple(name for name in UNDISTURBED if name != "linearDamping")
     stiffness, ratio = _spring(problem, law)
     reasons = tuple(_reasons(pair, step, law, outcome, limit, free))
     change = None
@@ -292,7 +320,7 @@ def diagnose(
         engine=row.name,
         bounce=bounce,
         time_step=step,
-        parameters={name: value for name, value in of_one.items() if name not in unused},
+        parameters=of_one,
         given=given,
         other=other_given,
         outcome=outcome,
@@ -330,11 +358,8 @@ class _Pair:
 
 
 def _without_gravity(problem: Problem) -> Problem:
-    # A second free body so heavy that it does not move.
     bounce = problem.bounce
-    alone = replace(
-        bounce, drop_height=None, speed=bounce.impact_speed, other_mass=1e9 * bounce.reduced_mass
-    )
+    alone = replace(bounce, drop_height=None, speed=bounce.impact_speed, gravity=0.0)
     return replace(problem, bounce=alone, drag=0.0)
 
 
@@ -342,13 +367,11 @@ def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     """Return k in N/m and ζ of a spring and a damper."""
     mass = problem.bounce.reduced_mass
     if isinstance(law, Impedance):
-        k = law.high**2 * law.points * float(law.stiffness)
-        c = law.high * law.points * float(law.damping)
-    elif isinstance(law, Linear):
-        k = float(law.stiffness)
-        c = float(law.damping)
-    else:
+        law = law.deep
+    if not isinstance(law, Linear | Solved) or law.is_number:
         return math.nan, math.nan
+    k = float(law.stiffness)
+    c = float(law.damping)
     return k * mass, c / (2 * math.sqrt(k))
 
 
@@ -361,25 +384,40 @@ def _reasons(
     _, mean, high = outcome.restitution
     if problem.drag:
         dragged = mean
-        mean = float(replace(problem, drag=0.0).drops(law, step).mean)
+        mean = replace(problem, drag=0.0).outcome(law, step).restitution[1]
         if mean - dragged > 5e-4:
             yield (
                 f"linearDamping = {problem.drag:g} lowers r from {mean:.3f} to {dragged:.3f}; "
                 "designs set it to 0, and PyBullet's default is 0.04"
             )
-    if isinstance(law, Impulse):
-        yield "no spring is set: this is an impact by the number restitution, of both bodies"
-        alike = replace(problem, drag=0.0).outcome(Impulse(law.restitution), step)
-        if alike.around != outcome.around:
-            yield (
-                f"PyBullet sees the surface {show(law.ahead, 'm')} ahead and pushes the body out; "
-                f"with {_listed(UNDISTURBED)} r is {alike.around}"
-            )
-        return
     if problem.engine.caution:
         yield problem.engine.caution
-    if pair.one.get("restitution"):
-        yield "what a restitution beside a spring adds is not computed"
+    if problem.engine.floor and bounce.other_mass is None:
+        yield problem.engine.floor
+    if isinstance(law, Solved) and law.is_number:
+        number = problem.engine.number
+        rule = problem.engine.rules[number].text
+        spring = "no spring is set" if np.isinf(law.stiffness) else "a restitution beside a spring"
+        yield f"{spring}: this is an impact by the number {number}, {rule}"
+        alike = replace(problem, drag=0.0).outcome(Bullet(law.restitution), step)
+        if isinstance(law, Bullet) and alike.around != outcome.around:
+            sees = f"sees the surface {show(law.ahead, 'm')} ahead and " if law.ahead > 0 else ""
+            yield (
+                f"PyBullet {sees}pushes the body out; with {_listed(UNDISTURBED)} r is "
+                f"{alike.around}"
+            )
+        elif outcome.deviation(alike.restitution[1]) > TOLERANCE / 2:
+            yield f"the step and the other parameters change r: {number} alone has {alike.around}"
+        return
+    if isinstance(law, Bullet) and law.ahead > 0:
+        touching = problem.outcome(replace(law, ahead=0.0), step).restitution[1]
+        if abs(outcome.restitution[1] - touching) > TOLERANCE / 2:
+            yield (
+                f"PyBullet sees the surface {show(law.ahead, 'm')} ahead: with "
+                f"contactProcessingThreshold = 0 r is {touching:.3f}"
+            )
+    if isinstance(law, ContactJoint) and law.fastest < bounce.impact_speed:
+        yield f"max_vel caps the rebound from a spring at {law.fastest:g} m/s; designs lift it"
     steps = float(law.duration(bounce.impact_speed)) / step
     if high > 1.02:
         yield f"unstable: a contact takes {steps:.2g} steps, and the body leaves faster than before"
@@ -407,7 +445,7 @@ def _of_mujoco(pair: _Pair, step: float, law: Impedance) -> Iterator[str]:
         yield (
             f"MuJoCo raises the time constant of {time:g} s to {2 * step:g} s, two steps (refsafe)"
         )
-    if law.high > 0.01:
+    if law.high > 0.01 and pair.problem.bounce.load:
         yield (
             f"with the impedance {law.high:g} a contact feels {1 - law.high:.2g} of gravity; a "
             "spring and a damper feel all of it with solimp = 1e-4 1e-4 0.001"
@@ -448,10 +486,10 @@ def _another(pair: _Pair, step: float) -> str:
     """Return what has r at this step if no damping of the given contact has it."""
     problem = pair.problem
     engine = problem.engine
-    is_impulse = isinstance(pair.law(step), Impulse)
-    what = "restitution" if is_impulse else "damping of this contact"
+    is_number = pair.law(step).is_number
+    what = engine.number if is_number else "damping of this contact"
     text = f"no {what} keeps r within {TOLERANCE:g} at this step"
-    if isinstance(engine.scheme, Implicit) and not is_impulse:
+    if isinstance(engine.scheme, Implicit) and not is_number:
         name = engine.names[1]
         most = pair.changed(name, 1.0 if name in _SHARES else 0.0).mean(step)
         text += f", which damps by itself: r is {most:.3f} at most"
@@ -473,8 +511,11 @@ def _another(pair: _Pair, step: float) -> str:
 def _least_change(pair: _Pair, step: float) -> Change | None:
     """Return the damping with the wanted r, at this step or at the longest shorter one."""
     problem = pair.problem
-    if isinstance(pair.law(step), Impulse):
-        return _damping(pair, step, "restitution")
+    law = pair.law(step)
+    if law.is_number:
+        return _damping(pair, step, problem.engine.number)
+    if isinstance(law, ContactJoint) and law.fastest < problem.bounce.impact_speed:
+        return None
     for halvings in range(7):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:

@@ -9,7 +9,7 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from typing import Any
 
@@ -17,15 +17,15 @@ import numpy as np
 
 from bouncing_ball_contacts.schemes import (
     Array,
+    Bullet,
+    ContactJoint,
+    FoundAhead,
     Hertz,
     HuntCrossley,
     Impedance,
     Implicit,
-    Impulse,
-    Impulsive,
     Law,
     Linear,
-    Scheme,
     SemiImplicit,
     Stepped,
 )
@@ -39,13 +39,14 @@ LEAST_IMPEDANCE = 1e-4
 @dataclass(frozen=True)
 class Setting:
     """Where a contact is used: the (reduced) mass in kg, the step in s, the number of points that
-    share the force, and the (reduced) radius in m.
+    share the force, the (reduced) radius in m, and whether both bodies are free.
     """
 
     mass: float
     step: float
     points: int = 1
     radius: float = 0.01
+    both_free: bool = False
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,7 @@ SERIES = Rule(
 SUM = Rule("added", lambda a, b: a + b, lambda x: x / 2, lambda x, other: x - other)
 MEAN = Rule("averaged", lambda a, b: (a + b) / 2, lambda x: x, lambda x, other: 2 * x - other)
 PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt, lambda x, other: x / other)
+LEAST = Rule("the least of both", min, lambda x: x, lambda x, other: x)
 PAIR = Rule("of the pair", lambda a, b: a, lambda x: x, lambda x, other: x)
 
 
@@ -92,6 +94,8 @@ class Engine:
         The parameters in terms of k, c and m, both bodies alike.
     of_depth : callable
         The law of an undamped depth, a ratio of damping and a speed, see :class:`.Linear`.
+    units : mapping
+        The SI units of the parameters that have one.
     defaults : mapping
         The parameters of a body for which none are set.
     sets_pair : bool
@@ -106,10 +110,16 @@ class Engine:
         The version in which designs of this row were run; empty if none was.
     notes : tuple of str
         What a user has to know.
+    box : str
+        What a user has to know of a body with several points.
+    floor : str
+        What a user has to know of a fixed table.
     friction : str
         What friction does to r.
-    impulse : str
-        What sets a restitution coefficient without a spring, if the engine has it.
+    number : str
+        The parameter that is a restitution coefficient, if the engine has one.
+    undisturbed : mapping
+        What this needs beside it, for bounces that are alike at all instants and speeds.
     caution : str
         What a diagnosis takes for granted.
     """
@@ -122,6 +132,7 @@ class Engine:
     meaning: str
     rules: Mapping[str, Rule]
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
+    units: Mapping[str, str] = field(default_factory=dict)
     defaults: Parameters = field(default_factory=dict)
     sets_pair: bool = False
     points_share: bool = True
@@ -130,8 +141,11 @@ class Engine:
     unit: str = "N/m"
     ran: str = ""
     notes: tuple[str, ...] = ()
+    box: str = ""
+    floor: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
-    impulse: str = ""
+    number: str = ""
+    undisturbed: Parameters = field(default_factory=dict)
     caution: str = ""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
@@ -167,10 +181,6 @@ class Engine:
                 )
         return values
 
-    def scheme_of(self, law: Law) -> Scheme:
-        """Return the scheme of a law, which for an impulse is none of a force."""
-        return Impulsive() if isinstance(law, Impulse) else self.scheme
-
     @property
     def steps(self) -> str:
         """The scheme in a few words."""
@@ -195,6 +205,22 @@ class DrakeDissipation(Engine):
         return {stiffness: SERIES.of(k1, k2), dissipation: mean}
 
 
+MODES = ("average", "min", "multiply", "max")
+"""How PhysX combines a restitution; of two materials the later one in this list counts."""
+
+
+@dataclass(frozen=True)
+class PhysX(Engine):
+    """PhysX combines restitutions by a mode of the materials."""
+
+    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
+        mode = max(one["restitutionCombineMode"], other["restitutionCombineMode"], key=MODES.index)
+        a = one["restitution"]
+        b = other["restitution"]
+        of_mode = {"average": (a + b) / 2, "min": min(a, b), "multiply": a * b, "max": max(a, b)}
+        return super().combined(one, other) | {"restitution": of_mode[mode]}
+
+
 def text_of(name: str) -> str:
     """Return the text of a file of snippets; empty if there is none."""
     path = files(__package__).joinpath("snippets", f"{name}.txt")
@@ -213,7 +239,7 @@ def filled(text: str, values: Mapping[str, Any]) -> str:
 
 
 def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
-    """Return `names`, `write` and `read` of a stiffness in N/m and a damping in N s/m or 1/s."""
+    """Return `names`, `units`, `write` and `read` of a stiffness and a damping, both as forces."""
 
     def write(law: Law, at: Setting) -> dict[str, Any]:
         c = float(law.damping) * (1 if per_mass else at.mass)
@@ -223,7 +249,8 @@ def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
         c = p[names[1]] * at.points / (1 if per_mass else at.mass)
         return Linear(np.asarray(p[names[0]] * at.points / at.mass), np.asarray(c))
 
-    return {"names": names, "write": write, "read": read}
+    units = dict(zip(names, ("N/m", "1/s" if per_mass else "N s/m"), strict=True))
+    return {"names": names, "units": units, "write": write, "read": read}
 
 
 def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
@@ -240,17 +267,9 @@ def _solimp(values: Any) -> tuple[float, ...]:
     given = [float(value) for value in np.atleast_1d(values)]
     low, high, width, middle, power = given + [0.9, 0.95, 0.001, 0.5, 2.0][len(given) :]
 
-    def within_bounds(share: float) -> float:
-        # MuJoCo keeps impedances and the middle within these bounds.
-        return min(max(share, LEAST_IMPEDANCE), 1 - LEAST_IMPEDANCE)
-
-    return (
-        within_bounds(low),
-        within_bounds(high),
-        max(width, 1e-15),
-        within_bounds(middle),
-        max(power, 1.0),
-    )
+    # MuJoCo keeps impedances and the middle within these bounds.
+    low, high, middle = np.clip([low, high, middle], LEAST_IMPEDANCE, 1 - LEAST_IMPEDANCE)
+    return float(low), float(high), max(width, 1e-15), float(middle), max(power, 1.0)
 
 
 def _read_mujoco(p: Parameters, at: Setting) -> Law:
@@ -346,26 +365,36 @@ _BULLET_DEFAULTS = {
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
 }
+_BULLET_UNITS = _BULLET["units"] | {
+    "linearDamping": "1/s",
+    "restitutionVelocityThreshold": "m/s",
+    "contactSlop": "m",
+    "contactProcessingThreshold": "m",
+}
 UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
 """What PyBullet needs beside a restitution for bounces that are alike at all instants."""
 
 
 def _write_pybullet(law: Law, at: Setting) -> dict[str, Any]:
-    return _BULLET["write"](law, at) | {"linearDamping": 0.0}
+    undisturbed = ("linearDamping", "contactSlop", "contactProcessingThreshold")
+    return _BULLET["write"](law, at) | dict.fromkeys(undisturbed, 0.0)
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    if p.get("contactStiffness", -1) > 0:
-        return _BULLET["read"](p, at)
-    # Bullet finds contacts within 2 % of half the diagonal of the box around the body.
-    seen = 0.02 * math.sqrt(3) * at.radius
-    return Impulse(
-        np.asarray(p["restitution"]),
-        p["contactERP"],
-        p["restitutionVelocityThreshold"],
-        p["contactSlop"],
-        min(seen, p["contactProcessingThreshold"]),
+    # A ball is found within 2 % of half the diagonal of the box around it; two balls, or two boxes,
+    # when they touch.
+    seen = 0.0 if at.both_free or at.points > 1 else 0.02 * math.sqrt(3) * at.radius
+    law = Bullet(
+        restitution=np.asarray(p["restitution"]),
+        threshold=p["restitutionVelocityThreshold"],
+        erp=p["contactERP"],
+        slop=p["contactSlop"],
+        ahead=min(seen, p["contactProcessingThreshold"]),
     )
+    if p["contactStiffness"] < 0:
+        return law
+    spring = _BULLET["read"](p, at)
+    return replace(law, stiffness=spring.stiffness, damping=spring.damping)
 
 
 def _write_drake(law: Law, at: Setting) -> dict[str, Any]:
@@ -418,10 +447,10 @@ _POISSON = 0.3
 def _write_liggghts_hertz(law: Law, at: Setting) -> dict[str, Any]:
     # Two alike bodies have 1/E* = 2 (1 - ν²)/E, and k = (4/3) E* √R.
     reduced = 0.75 * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
-    return {
-        "youngsModulus": 2 * (1 - _POISSON**2) * reduced,
-        "coefficientRestitution": _tsuji_restitution(law),
-    }
+    e = _tsuji_restitution(law)
+    if e <= 0.05:
+        raise Refused(f"LIGGGHTS takes no coefficientRestitution below 0.05, as here {e:.3g}")
+    return {"youngsModulus": 2 * (1 - _POISSON**2) * reduced, "coefficientRestitution": e}
 
 
 def _read_liggghts_hertz(p: Parameters, at: Setting) -> Law:
@@ -440,7 +469,45 @@ def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
 def _read_ode(p: Parameters, at: Setting) -> Law:
     kp = p["soft_erp"] / (p["soft_cfm"] * at.step)
     kd = (1 - p["soft_erp"]) / p["soft_cfm"]
-    return Linear(np.asarray(kp * at.points / at.mass), np.asarray(kd * at.points / at.mass))
+    return ContactJoint(
+        restitution=np.asarray(p["bounce"]),
+        stiffness=np.asarray(kp * at.points / at.mass),
+        damping=np.asarray(kd * at.points / at.mass),
+        threshold=p["bounce_vel"],
+    )
+
+
+_GAZEBO = _forces(("kp", "kd"))
+
+
+_GAZEBO_UNITS = _GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"}
+
+
+def _write_gazebo(law: Law, at: Setting) -> dict[str, Any]:
+    return _GAZEBO["write"](law, at) | {"max_vel": 1000.0}
+
+
+def _read_gazebo(p: Parameters, at: Setting) -> Law:
+    linear = _GAZEBO["read"](p, at)
+    return ContactJoint(
+        restitution=np.asarray(p["restitution_coefficient"]),
+        stiffness=linear.stiffness,
+        damping=linear.damping,
+        threshold=p["threshold"],
+        fastest=p["max_vel"],
+    )
+
+
+_PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
+
+
+_PHYSX_SPEED = {"bounceThresholdVelocity": "m/s"}
+
+
+def _read_physx(p: Parameters, at: Setting) -> Law:
+    if p["compliantContactStiffness"] > 0:
+        return _PHYSX["read"](p, at)
+    return FoundAhead(np.asarray(p["restitution"]), threshold=p["bounceThresholdVelocity"])
 
 
 def _adams_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
@@ -455,7 +522,7 @@ def _simscape_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
 
 
 def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -> dict[str, Any]:
-    """Return `names`, `write` and `read` of a damper that is stepped in over a depth in m."""
+    """Return `names`, `units`, `write` and `read` of a damper that is stepped in over a depth."""
 
     def write(law: Any, at: Setting) -> dict[str, Any]:
         numbers = (law.stiffness * at.mass, law.damping * at.mass, law.depth * at.points)
@@ -465,7 +532,9 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
         k, c = (np.asarray(p[name] * at.points / at.mass) for name in names[:2])
         return Stepped(k, c, np.asarray(p[names[2]]), exponent, steps_spring)
 
-    return {"names": names[:2], "write": write, "read": read}
+    spring = "N/m" if exponent == 1 else f"N/m^{exponent}"
+    units = dict(zip(names, (spring, "N s/m", "m"), strict=True))
+    return {"names": names[:2], "units": units, "write": write, "read": read}
 
 
 _BOTH = "Give both bodies these numbers"
@@ -501,7 +570,7 @@ _ALL = {
         Engine(
             name="pybullet",
             scheme=Implicit(),
-            **_BULLET | {"write": _write_pybullet, "read": _read_pybullet},
+            **_BULLET | {"write": _write_pybullet, "read": _read_pybullet, "units": _BULLET_UNITS},
             meaning="contactStiffness = 2 k, contactDamping = c/2",
             rules={
                 "contactStiffness": _if_set(SERIES, 1e18),
@@ -511,12 +580,11 @@ _ALL = {
             },
             defaults=_BULLET_DEFAULTS,
             ran="PyBullet 3.2.7",
-            notes=(
-                f"{_BOTH}; {_STEP_ONLY}",
-                "A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
-                "r is wrong (0.598 to 0.618 for 0.500)",
-            ),
-            impulse="restitution of both bodies, multiplied",
+            notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
+            "r is wrong (0.598 to 0.618 for 0.500)",
+            number="restitution",
+            undisturbed=UNDISTURBED,
         ),
         Engine(
             name="drake",
@@ -525,11 +593,13 @@ _ALL = {
             write=_write_drake,
             read=_read_drake,
             meaning="point_contact_stiffness = 2 k, relaxation_time = c/(2 k)",
+            units={"point_contact_stiffness": "N/m", "relaxation_time": "s"},
             rules={"point_contact_stiffness": SERIES, "relaxation_time": SUM},
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(f"{_BOTH}; {_STEP_ONLY}", _DRAKE_BOX),
+            notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            box=_DRAKE_BOX,
         ),
         DrakeDissipation(
             name="drake-hunt-crossley",
@@ -538,14 +608,13 @@ _ALL = {
             write=_write_dissipation,
             read=_read_dissipation,
             meaning="point_contact_stiffness = 2 k, hunt_crossley_dissipation = d in k p (1 + d w)",
+            units={"point_contact_stiffness": "N/m", "hunt_crossley_dissipation": "s/m"},
             rules={"point_contact_stiffness": SERIES, "hunt_crossley_dissipation": MEAN},
             of_depth=HuntCrossley.of_depth,
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(
-                f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",
-                _DRAKE_BOX,
-            ),
+            notes=(f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",),
+            box=_DRAKE_BOX,
         ),
         Engine(
             name="lammps",
@@ -576,6 +645,7 @@ _ALL = {
             write=_write_hertz,
             read=_read_hertz,
             meaning="kn = (4/3) E* in Pa, e = r",
+            units={"kn": "Pa"},
             rules={"kn": PAIR, "e": PAIR},
             of_depth=Hertz.of_depth,
             sets_pair=True,
@@ -614,6 +684,7 @@ _ALL = {
             read=_read_liggghts_hertz,
             meaning="youngsModulus = E of both, ν = 0.3, coefficientRestitution = r",
             ran="LIGGGHTS 3.8.0",
+            units={"youngsModulus": "Pa"},
             rules={"youngsModulus": PAIR, "coefficientRestitution": PAIR},
             of_depth=Hertz.of_depth,
             sets_pair=True,
@@ -638,7 +709,9 @@ _ALL = {
             write=_write_newton_mujoco,
             read=_read_newton_mujoco,
             meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
+            units={"ke": "1/s^2", "kd": "1/s"},
             rules={"ke": MEAN, "kd": MEAN},
+            defaults={"ke": 2500.0, "kd": 100.0},
             ran="Newton 1.8.0",
             notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
         ),
@@ -650,21 +723,37 @@ _ALL = {
             read=_read_genesis,
             meaning="timeconst = 2 m/c, dampratio = c/√(4 k m)",
             ran="Genesis 1.4.5",
+            units={"timeconst": "s"},
             rules={"timeconst": MEAN, "dampratio": MEAN},
             notes=("The numbers hold for every mass", _BOTH),
         ),
-        Engine(
+        PhysX(
             name="physx",
             scheme=Implicit(ahead=True),
-            **_forces(("compliantContactStiffness", "compliantContactDamping")),
+            **_PHYSX | {"read": _read_physx, "units": _PHYSX["units"] | _PHYSX_SPEED},
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
-            rules={"compliantContactStiffness": MEAN, "compliantContactDamping": MEAN},
+            rules={
+                "compliantContactStiffness": MEAN,
+                "compliantContactDamping": MEAN,
+                "restitution": MEAN,
+                "restitutionCombineMode": PAIR,
+                "bounceThresholdVelocity": PAIR,
+            },
+            defaults={
+                "compliantContactStiffness": 0.0,
+                "compliantContactDamping": 0.0,
+                "restitution": 0.0,
+                "restitutionCombineMode": "average",
+                "bounceThresholdVelocity": 0.5,
+            },
             notes=(
                 f"Use the solver PGS; {_STEP_ONLY}",
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
-            impulse="restitution of the material",
+            number="restitution",
+            undisturbed={"bounceThresholdVelocity": 0.0},
+            caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
             name="mercurydpm",
@@ -683,23 +772,38 @@ _ALL = {
             read=_read_ode,
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             ran="ODE 0.16.2",
-            rules={"soft_cfm": PAIR, "soft_erp": PAIR},
+            units={"soft_cfm": "m/N/s", "bounce_vel": "m/s"},
+            rules=dict.fromkeys(("soft_cfm", "soft_erp", "bounce", "bounce_vel"), PAIR),
+            defaults={"soft_cfm": 1e-10, "soft_erp": 0.2, "bounce": 0.0, "bounce_vel": 0.0},
             sets_pair=True,
             notes=(f"These are numbers of a contact joint; {_STEP_ONLY}",),
-            impulse="bounce of the contact joint",
+            number="bounce",
         ),
         Engine(
             name="gazebo",
             scheme=Implicit(),
-            **_forces(("kp", "kd")),
+            **_GAZEBO | {"write": _write_gazebo, "read": _read_gazebo, "units": _GAZEBO_UNITS},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
-            rules={"kp": SERIES, "kd": SUM},
+            rules={
+                "kp": SERIES,
+                "kd": SUM,
+                "restitution_coefficient": LEAST,
+                "threshold": LEAST,
+                "max_vel": LEAST,
+            },
+            defaults={
+                "kp": 1e12,
+                "kd": 1.0,
+                "restitution_coefficient": 0.0,
+                "threshold": 1e5,
+                "max_vel": 0.01,
+            },
             notes=(
                 f"{_BOTH}; {_STEP_ONLY}",
                 "The snippet lifts max_vel, which limits the correction",
             ),
-            impulse="restitution_coefficient of the surface",
-            caution="max_vel is taken as lifted: Gazebo's default caps the rebound at 0.01 m/s",
+            number="restitution_coefficient",
+            undisturbed={"threshold": 0.0},
         ),
         Engine(
             name="chrono",
@@ -708,6 +812,8 @@ _ALL = {
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
             rules={"kn": MEAN, "gn": MEAN},
             notes=("The damping gn is per unit of the effective mass, and holds for it only",),
+            floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "
+            "the floor 1000 times the mass of the body, because an equal mass halves the damping",
         ),
         Engine(
             name="simscape",

@@ -174,10 +174,15 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
         if found:
             before = head.get(found[1].lower())
             head[found[1].lower()] = f"{before} {found[2]}" if before else found[2]
-        elif line.strip() and not line.lstrip().startswith("#"):
+        elif not line.lstrip().startswith("#"):
             body.append((number, line))
-    if not body:
+    full = [each for each in body if each[1].strip()]
+    if not full:
         raise Refused(f"{name} is empty")
+    # Empty lines divide series, unless each line is followed by one.
+    body = [each for each in body if full[0] <= each <= full[-1]]
+    if len(body) > 1.5 * len(full):
+        body = full
     if missing := leave_out - {number for number, _ in body}:
         raise Refused(f"{name} has no line {min(missing)} of numbers to leave out")
     values, numbers, headings = _table(name, body, leave_out)
@@ -186,12 +191,11 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     recording, used = _measured(name, columns, head, intervals, known)
     # Lines that were left out on purpose are known to be missing.
     has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
-    inside = range(int(numbers[0]), int(numbers[-1]))
-    empty = {number for number in inside if not lines[number - 1].strip()}
-    gaps = sorted((empty | set(columns["line"][has_gap])) - leave_out)
+    gaps = sorted(set(columns["line"][has_gap]) - leave_out)
     if gaps:
         shown = ", ".join(f"{number:.0f}" for number in gaps[:5]) + (", …" if gaps[5:] else "")
-        note = f"a number is missing in line {shown}, which is left out"
+        divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
+        note = f"a number is missing in line {shown}, which is left out{divides}"
         return replace(recording, notes=(*recording.notes, note))
     return recording
 
@@ -209,7 +213,7 @@ def _table(
     decimal_comma = delimiter in ("\t", ";")
     if delimiter == ",":
         # Commas are decimal signs in a single column, whose heading has no comma.
-        one_column = all(_is_decimal(line) for _, line in body[1:])
+        one_column = all(_is_decimal(line) for _, line in body[1:] if line.strip())
         decimal_comma = one_column and ("," not in first_line or _is_decimal(first_line))
     is_column = decimal_comma if delimiter == "," else len(last.split()) < 2 and not delimiter
     if is_column:
@@ -239,7 +243,7 @@ def _table(
         values[i, : len(row)] = row
     headings = [("", "")] * width
     for texts in cells[:first]:
-        if not min(width, 2) <= len(texts) <= width:
+        if not (any(texts) and min(width, 2) <= len(texts) <= width):
             continue
         each = texts + [""] * (width - len(texts))
         units = [cell.strip("[]()") for cell in each]

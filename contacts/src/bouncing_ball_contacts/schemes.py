@@ -20,8 +20,8 @@ offsets for one step, and not for a step beside it.
 """
 
 import math
-from dataclasses import dataclass, fields, replace
-from typing import Any, Protocol, Self
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,37 +72,41 @@ def nearby(steps: int, count: int) -> Trials:
     return Trials(at, step, losses)
 
 
-class Law(Protocol):
+class Law:
     """A contact force per unit of mass; the parameters are arrays, one entry for each contact."""
 
-    @property
-    def stiffness(self) -> Array: ...
+    stiffness: Array
+    damping: Array
 
     @property
-    def damping(self) -> Array: ...
+    def is_number(self) -> bool:
+        """Whether the rebound is by a restitution coefficient, and not by a spring."""
+        return False
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s."""
+        raise NotImplementedError(f"a force of {type(self).__name__}")
 
     def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
         """Return v⁺ of an implicit step from z, if v is the velocity without the contact."""
+        raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:
         """Return the depth at rest in m."""
+        return gravity / self.stiffness
 
     def duration(self, speed: float) -> Array:
-        """Return the order of the contact time in s."""
+        """Return the order of the contact time in s.
 
-
-class _Explicit:
-    """A law that no engine steps implicitly."""
-
-    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
-        raise NotImplementedError(f"implicit steps of {type(self).__name__}")
+        It is 300/c if a strong damper stops the body long before it comes out: steps of 1/3000 of
+        it are still short for the damper.
+        """
+        time = np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
+        return np.minimum(time, 300 / np.maximum(self.damping, 1e-300))
 
 
 @dataclass(frozen=True)
-class Linear:
+class Linear(Law):
     """A spring and a damper: a = k p + c w, with k in 1/s² and c in 1/s; ratio ζ = c/(2√k)."""
 
     stiffness: Array
@@ -114,12 +118,6 @@ class Linear:
     def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
         return (v - h * self.stiffness * z) / (1 + h * self.damping + h * h * self.stiffness)
 
-    def rest(self, gravity: float) -> Array:
-        return gravity / self.stiffness
-
-    def duration(self, speed: float) -> Array:
-        return np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
-
     @classmethod
     def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
         """Return the contact that sinks in by `depth` without damping."""
@@ -127,7 +125,7 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class HuntCrossley:
+class HuntCrossley(Law):
     """Drake's a = k p (1 + d w)₊, with k in 1/s² and d in s/m; the ratio is d times the speed."""
 
     stiffness: Array
@@ -144,9 +142,6 @@ class HuntCrossley:
         e = v - h * self.stiffness * z
         return 2 * e / (b + np.sqrt(np.maximum(b * b - 4 * a * e, 0.0)))
 
-    def rest(self, gravity: float) -> Array:
-        return gravity / self.stiffness
-
     def duration(self, speed: float) -> Array:
         return (np.pi + self.damping * speed) / np.sqrt(self.stiffness)
 
@@ -156,7 +151,7 @@ class HuntCrossley:
 
 
 @dataclass(frozen=True)
-class Hertz(_Explicit):
+class Hertz(Law):
     """Hertz with Tsuji's damper: a = K p^(3/2) + β √(5 K) p^(1/4) w, K in 1/(s² √m).
 
     Its r = exp(-πβ/√(1 - β²)) is the same at every speed; the ratio is β.
@@ -182,7 +177,7 @@ class Hertz(_Explicit):
 
 
 @dataclass(frozen=True)
-class Stepped(_Explicit):
+class Stepped(Law):
     """The contacts of Adams and Simscape: a = K pⁿ + C s w, where s(p/d) = x²(3 - 2x), x ≤ 1.
 
     Simscape multiplies the spring by s as well. In designs d is a tenth of the penetration without
@@ -216,7 +211,7 @@ class Stepped(_Explicit):
 
 
 @dataclass(frozen=True)
-class Impedance(_Explicit):
+class Impedance(Law):
     """MuJoCo's contact: of N points with the impedance d(p) it is a = D (g + K d p + b w).
 
     D = N d/(1 + (N - 1) d) is the share of all points together. d rises from `low` at the surface
@@ -256,55 +251,99 @@ class Impedance(_Explicit):
             depth = 0.5 * (depth + gravity * (1 - shared) / (shared * self.stiffness * d))
         return depth
 
-    def duration(self, speed: float) -> Array:
+    @property
+    def deep(self) -> Linear:
+        """The spring and the damper of all points together below the width."""
         shared = self._shared(np.asarray(self.high))
-        k = shared * self.high * self.stiffness
-        return np.pi / np.sqrt(k) + 2 * shared * self.damping / k
+        return Linear(shared * self.high * self.stiffness, shared * self.damping)
+
+    def duration(self, speed: float) -> Array:
+        return self.deep.duration(speed)
 
 
 @dataclass(frozen=True)
-class Impulse(_Explicit):
-    """An impact without a duration, whose restitution coefficient is a number, as Bullet has it.
+class Solved(Law):
+    """A contact that a solver of velocities gives: v⁺ = (u + D C)/(1 + D), if this is above u.
 
-    A step from the height z below `ahead` that would have the velocity u has at least
-    e (-u)₊ - E (z + s)/h, where e is the restitution if -u exceeds the `threshold`, s the `slop`,
-    and E the share `erp` of the penetration that a step takes back, or 1 above the surface.
+    u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
+    tells how strongly the spring and the damper hold it there; without them D is infinite. The
+    restitution coefficient e counts at speeds above the `threshold`.
     """
 
     restitution: Array
-    erp: float = 0.0
+    stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
+    damping: Array = field(default_factory=lambda: np.asarray(0.0))
     threshold: float = 0.0
+
+    @property
+    def is_number(self) -> bool:
+        """Whether there is a restitution coefficient, or no spring."""
+        return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
+
+    def thrown(self, u: Array) -> Array:
+        """Return the speed of the rebound from the velocity u."""
+        return np.where(u < -self.threshold, -self.restitution * u, 0.0)
+
+    def held(self, u: Array, aim: Array, h: Array) -> Array:
+        """Return v⁺ of an aim C."""
+        return aim + (u - aim) / (1 + h * (h * self.stiffness + self.damping))
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        """Return v⁺ at the height z, if the velocity was v before the step."""
+        return np.where(z < 0, self.held(u, self.thrown(u), h), u)
+
+
+@dataclass(frozen=True)
+class Bullet(Solved):
+    """Bullet's contact, found below the height `ahead`: C = e (-u)₊ - E (z + s)/h.
+
+    s is the `slop`; E is 1 above the surface, and the share of the penetration that a step takes
+    back below it: h k/(h k + c), or `erp` without a spring.
+    """
+
+    erp: float = 0.0
     slop: float = 0.0
     ahead: float = 0.0
 
-    @property
-    def stiffness(self) -> Array:
-        return np.full(np.shape(self.restitution), np.inf)
-
-    @property
-    def damping(self) -> Array:
-        return np.zeros(np.shape(self.restitution))
-
-    def push(self, p: Array, w: Array, gravity: Array) -> Array:
-        raise NotImplementedError("an impulse is no force")
-
     def rest(self, gravity: float) -> Array:
-        return np.full(np.shape(self.restitution), self.slop)
+        return super().rest(gravity) + self.slop
 
-    def duration(self, speed: float) -> Array:
-        return np.zeros(np.shape(self.restitution))
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        gap = z + self.slop
+        share = np.asarray(self.erp)
+        if np.all(np.isfinite(self.stiffness)):
+            share = h * self.stiffness / (h * self.stiffness + self.damping)
+        aim = self.thrown(u) - np.where(gap > 0, 1.0, share) * gap / h
+        return np.where((z < 0) | (z < self.ahead), self.held(u, aim, h), u)
 
 
-class Scheme(Protocol):
-    """How an engine steps a contact."""
+@dataclass(frozen=True)
+class ContactJoint(Solved):
+    """ODE's contact joint: C is the larger one of e (-v)₊ and h k p/(h k + c)/h, at most `fastest`.
 
-    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        """Return the velocity after the step; `free` is that without the contact."""
+    The rebound is from the velocity before the step.
+    """
+
+    fastest: float = math.inf
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        out = np.minimum(-self.stiffness * z / (h * self.stiffness + self.damping), self.fastest)
+        return np.where(z < 0, self.held(u, np.maximum(self.thrown(v), out), h), u)
+
+
+@dataclass(frozen=True)
+class FoundAhead(Solved):
+    """PhysX's restitution, in the step that would end below the surface: C = e (-u)₊ or -z/h."""
+
+    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+        thrown = self.thrown(u)
+        aim = np.where(thrown > 0, thrown, np.minimum(-z / h, 0.0))
+        return np.where(z + h * u < 0, self.held(u, aim, h), u)
 
 
 @dataclass(frozen=True)
 class SemiImplicit:
-    """The force is that of the beginning of the step.
+    """The force is that of the beginning of the step; `free` is the velocity without the contact.
 
     It never pulls unless the damper `pulls` (the release of LAMMPS and MercuryDPM). The damper of
     Newton acts on `approach` only.
@@ -346,14 +385,11 @@ class Implicit:
 
 
 @dataclass(frozen=True)
-class Impulsive:
-    """A body is thrown back by its restitution coefficient, see :class:`Impulse`."""
+class OfSolver:
+    """The velocity is that of a solver, and a contact never pulls, see :class:`Solved`."""
 
     def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        thrown = np.where(free < -law.threshold, -law.restitution * free, 0.0)
-        gap = z + law.slop
-        pushed = thrown - np.where(gap > 0, 1.0, law.erp) * gap / h
-        return np.where((z < 0) | (z < law.ahead), np.maximum(free, pushed), free)
+        return np.maximum(free, law.velocity(z, v, free, h))
 
 
 @dataclass(frozen=True)
@@ -379,7 +415,7 @@ class Drops:
 
 def _beside(law: Law, trials: Trials) -> Law:
     """Return the law with one more axis at the end of its arrays, for the trials."""
-    values = {field.name: getattr(law, field.name) for field in fields(law)}  # type: ignore[arg-type]
+    values = {each.name: getattr(law, each.name) for each in fields(law)}  # type: ignore[arg-type]
     arrays = {
         name: value[..., None] for name, value in values.items() if isinstance(value, np.ndarray)
     }
@@ -403,7 +439,7 @@ def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
 
 def drop(
     law: Law,
-    scheme: Scheme,
+    scheme: SemiImplicit | Implicit | OfSolver,
     step: Array | float,
     speed: float,
     gravity: float,
@@ -448,9 +484,12 @@ def drop(
     peak = np.zeros(z.shape)
     found = np.zeros(z.shape)
     inside = np.ones(z.shape, bool)
+    fall = h * g
     # A contact that is stable has ended, or has come to rest, within a few contact times.
     for _ in range(200 + int(np.max(12 * duration / h))):
-        free = v - h * (g + drag * v * (1 + np.abs(v)))
+        free = v - fall
+        if drag:
+            free = free - h * drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
         peak = np.maximum(peak, np.where(inside, new - free, 0.0))
         rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)

@@ -56,6 +56,8 @@ def drop_script(design: Design) -> str:
         raise Refused(f"no script of two free balls is written for {design.engine}")
     if bounce.points > 1 and (bounce.points != 4 or family not in _SHAPES or is_pair):
         raise Refused("a script drops a ball, or in MuJoCo, PyBullet and Drake a box of 4 points")
+    if not (bounce.gravity or is_pair):
+        raise Refused("a script drops a body: it needs gravity")
     if design.one_body:
         raise Refused("a script gives both bodies the same numbers: leave out --one-body")
     row = design.row

@@ -17,6 +17,7 @@ _COMMON = {
     "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6},
     "m/s^2": {"m/s^2": 1.0, "m/s²": 1.0},
     "kg/m^3": {"kg/m^3": 1.0, "kg/m³": 1.0, "g/cm^3": 1e3, "g/cm³": 1e3},
+    "Hz": {"Hz": 1.0, "kHz": 1e3},
     "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
     "": {"%": 1e-2},
 }
@@ -31,6 +32,7 @@ DENSITIES = {
     "ice": 917.0,
 }
 """Of solid materials, in kg/m³."""
+_LONGEST_STEP = 0.1
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _EXAMPLES = {
@@ -104,7 +106,7 @@ def _read(name: str, text: str, unit: str) -> float:
     typed = found[3]
     if not typed:
         return number
-    if typed in _COMMON[unit]:
+    if typed in _COMMON.get(unit, ()):
         return number * _COMMON[unit][typed]
     registry = _registry()
     try:
@@ -122,8 +124,8 @@ def _converted(name: str, quantity: Any, unit: str, text: str) -> float:
 
 
 def _wanted(unit: str) -> str:
-    what = "it" if unit else "a plain number"
-    return f"write {what} as in '{_EXAMPLES[unit]}'"
+    what = "it" if unit else "a number without a unit"
+    return f"write {what} as in '{_EXAMPLES.get(unit, f'2 {unit}')}'"
 
 
 def positive(name: str, value: Any, unit: str) -> float:
@@ -132,6 +134,26 @@ def positive(name: str, value: Any, unit: str) -> float:
     if number <= 0:
         raise Refused(f"{name} = {show(number, unit)} is not positive")
     return number
+
+
+def time_step(value: Any) -> float:
+    """Return a time step in s, which may be given as a rate in Hz.
+
+    Raises
+    ------
+    Refused
+        If it cannot be read, or is too long for any simulation of a contact.
+    """
+    if isinstance(value, str) and value.strip().endswith("Hz"):
+        step = 1 / positive("rate of the steps", value, "Hz")
+    else:
+        step = positive("time step", value, "s")
+    if step > _LONGEST_STEP:
+        raise Refused(
+            f"time step = {show(step, 's', 4)} is longer than {show(_LONGEST_STEP, 's')}: write "
+            "'2 ms', 1/240, or '240 Hz' for a rate"
+        )
+    return step
 
 
 def within(name: str, value: Any, low: float, high: float) -> float:

@@ -1,0 +1,117 @@
+"""Contacts that PyBullet finds ahead, or when bodies touch.
+
+``python tests/engine_bullet.py`` lets balls and boxes meet a table or each other, at 16 instants
+within a step, and prints r as diagnosed and in PyBullet. The exit status is 1 if one differs.
+"""
+
+import sys
+
+import numpy as np
+import pybullet
+
+from bouncing_ball_contacts import Bounce, diagnose
+
+G = 9.80665
+SPEED = 3.0
+LONG = 1 / 240
+NUMBER = {"restitution": 0.9}
+HALF = {"restitution": 0.5}
+
+
+def spring(stiffness, damping):
+    return {"contactStiffness": stiffness, "contactDamping": damping}
+
+
+# What meets what, the radius or half height in m, the other mass in kg, the step, the parameters.
+CASES = [
+    ("ball, plane", 0.5, None, LONG, spring(1e5, 10)),
+    ("ball, plane", 1.0, None, LONG, spring(1e6, 5)),
+    ("ball, plane", 1.0, None, 1e-3, spring(1e6, 5)),
+    ("ball, plane", 0.5, None, LONG, spring(1e4, 2)),
+    ("ball, plane", 0.1, None, 1e-3, spring(1e5, 5)),
+    ("ball, plane", 0.02, None, 1e-3, spring(1e5, 20)),
+    ("ball, plane", 0.5, None, LONG, NUMBER),
+    ("ball, plane", 0.05, None, 1e-3, NUMBER),
+    ("ball, box", 0.5, None, LONG, spring(1e5, 10)),
+    ("ball, box", 0.1, None, 1e-3, spring(1e5, 5)),
+    ("ball, ball", 0.05, 3.0, 1e-3, NUMBER),
+    ("ball, ball", 0.05, 1.0, 1e-3, HALF),
+    ("ball, ball", 0.05, 3.0, LONG, NUMBER),
+    ("ball, ball", 0.1, 1.0, 1e-3, spring(1e5, 5)),
+    ("ball, ball", 0.5, 3.0, LONG, spring(1e4, 2)),
+    ("box, box", 0.1, None, 1e-3, spring(1e4, 2)),
+    ("box, box", 0.1, None, 1e-3, spring(1e5, 5)),
+    ("box, box", 0.1, 1.0, 1e-3, spring(1e4, 2)),
+    ("box, box", 0.1, 1.0, 1e-3, NUMBER),
+]
+
+
+def body(shape, size, mass, height):
+    if shape == "plane":
+        found = pybullet.createCollisionShape(pybullet.GEOM_PLANE)
+    elif shape == "ball":
+        found = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=size)
+    else:
+        found = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[size] * 3)
+    return pybullet.createMultiBody(mass, found, basePosition=[0, 0, height])
+
+
+def met(shapes, size, other_mass, step, parameters, gap):
+    """Return r of one impact, as a ratio of speeds, or of the heights above a table."""
+    pybullet.resetSimulation()
+    pybullet.setGravity(0, 0, 0 if other_mass else -G)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=1)
+    above, below = shapes.split(", ")
+    other_size = size * other_mass ** (1 / 3) if other_mass else 9.0
+    bottom = 0.0 if below == "plane" else -other_size
+    one = body(above, size, 1.0, size + gap)
+    other = body(below, other_size, other_mass or 0, bottom)
+    for each in (one, other):
+        pybullet.changeDynamics(each, -1, **parameters)
+    if other_mass:
+        pybullet.resetBaseVelocity(one, [0, 0, -SPEED])
+    heights = [gap]
+    speeds = [-SPEED]
+    for _ in range(int((0.2 if other_mass else 1.2) / step)):
+        pybullet.stepSimulation()
+        upper, lower = (pybullet.getBasePositionAndOrientation(each)[0][2] for each in (one, other))
+        heights.append(upper - size - (lower - bottom))
+        upper, lower = (pybullet.getBaseVelocity(each)[0][2] for each in (one, other))
+        speeds.append(upper - lower)
+    turn = int(np.argmax(np.diff(heights) >= -1e-9))
+    if other_mass:
+        # The first free step after the impact.
+        leaves = turn + int(np.argmax(np.asarray(heights[turn:]) > 0))
+        return speeds[leaves] / SPEED
+    falls = np.diff(heights[turn:]) < 0
+    top = turn + int(np.argmax(falls)) if falls.any() else len(heights) - 1
+    return np.sqrt(max(max(heights[turn : top + 1]), 0) / gap)
+
+
+def main():
+    pybullet.connect(pybullet.DIRECT)
+    wrong = 0
+    for shapes, size, other_mass, step, parameters in CASES:
+        asked = dict(mass=1.0, radius=size, speed=SPEED, points=4 if "box, " in shapes else 1)
+        found = diagnose(Bounce(**asked, other_mass=other_mass), "pybullet", parameters, step)
+        height = 0.01 if other_mass else SPEED**2 / (2 * G)
+        measured = [
+            met(shapes, size, other_mass, step, parameters, height + SPEED * step * share)
+            for share in np.linspace(0, 1, 16)
+        ]
+        low, mean, high = found.outcome.restitution
+        agrees = low - 2e-3 <= min(measured) and max(measured) <= high + 2e-3
+        agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
+        wrong += not agrees
+        print(
+            f"{shapes:12} {size:5g} m {other_mass or '-':3} kg {1e3 * step:5.3g} ms "
+            f"{str(parameters):55} {low:.3f} to {high:.3f}, {min(measured):.3f} to "
+            f"{max(measured):.3f}{'' if agrees else ' (differs)'}",
+            flush=True,
+        )
+    print(f"{len(CASES) - wrong} of {len(CASES)} agree with PyBullet.")
+    sys.exit(wrong > 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -303,7 +303,11 @@ def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
     squares = float(z @ np.linalg.solve(still, z))
     if is_known:
         return float(special.chdtrc(len(z), squares / curves.errors.sizes[0, 0] ** 2))
-    factors = 1 - squares / float(z @ z) * np.linalg.eigvalsh(still)
+    scattered = float(z @ z)
+    if scattered < 1e-20:
+        # A power of the speed but for rounding errors.
+        return 1.0
+    factors = 1 - squares / scattered * np.linalg.eigvalsh(still)
     if np.abs(factors).max() < 1e-6:
         # Errors of readings are like scatter.
         return 1.0
@@ -462,7 +466,8 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
     likely = shapes[share] * sizes[share, size] ** 2
     root = np.linalg.cholesky(likely)
     of_share = likelihood.sum(axis=1)
-    smooth = _rest(shapes, shape, y)
+    # Not less than rounding errors leave.
+    smooth = np.maximum(_rest(shapes, shape, y), 1e-20)
     left = n - shape.shape[1]
     judged = []
     for name, law in LAWS.items():
